@@ -58,6 +58,24 @@ def test_what_is_kept_can_be_read_again(path: Path) -> None:
     assert names(path) == {path.name}
 
 
+def test_a_table_is_on_the_disk_with_the_evidence_after_it(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When evidence is acknowledged, the tables that the student kept before it are written too."""
+    monkeypatch.setattr("lacoc_client.phases.store.TABLE_S", 1e6)
+    copy = tmp_path / "copy.sqlite"
+    with ClassStore(path) as store:
+        store.keep(table("Ada", "1"))
+        store.keep(table("Bob", "1"))
+        store.add("Ada", EDIT, 1.5).result()
+        for end in ("", "-wal"):  # what a killed program leaves
+            Path(f"{copy}{end}").write_bytes(Path(f"{path}{end}").read_bytes())
+    file = ClassFile(copy)
+    assert file.tables() == [table("Ada", "1")]
+    assert len(file.evidence()) == 1
+    file.close()
+
+
 def test_a_class_at_once(path: Path) -> None:
     """Eight threads that add evidence at the same time lose nothing and keep their own order."""
     students = [f"student {number}" for number in range(8)]

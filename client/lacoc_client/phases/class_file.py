@@ -90,13 +90,16 @@ class ClassFile:
             self._db.close()
             raise
 
-    def add(self, student: str, evidence: Evidence, at_s: float) -> int:
-        """Write evidence; return its number.
+    def add(
+        self, student: str, evidence: Evidence, at_s: float, tables: Iterable[KeptTable] = ()
+    ) -> int:
+        """Write evidence, and tables with it; return the number of the evidence.
 
         Raises:
             sqlite3.Error: if the file can't be written; `problem` says why.
         """
         with self._db:
+            self._write_tables(tables)
             return self._add(student, evidence, at_s)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> bool:
@@ -126,7 +129,7 @@ class ClassFile:
     def write_tables(self, tables: Iterable[KeptTable]) -> None:
         """Write the newest content of gait files; raises the same error as `add`."""
         with self._db:
-            self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", tables)
+            self._write_tables(tables)
 
     def evidence(self, student: str | None = None, after: int = 0) -> list[Kept]:
         """Read evidence in the order in which it was written; skip evidence that can't be decoded.
@@ -174,6 +177,9 @@ class ClassFile:
         if opening:
             return UserError(say("class.cannot-open", file=text_of(self._path), why=why))
         return UserError(say("class.no-room", file=file, why=why))
+
+    def _write_tables(self, tables: Iterable[KeptTable]) -> None:
+        self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", tables)
 
     def _add(self, student: str, evidence: Evidence, at_s: float) -> int:
         added = self._db.execute(

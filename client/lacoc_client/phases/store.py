@@ -3,7 +3,7 @@
 import sqlite3
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -75,7 +75,7 @@ class ClassStore:
         return self._no_room or self._damage
 
     def add(self, student: str, evidence: Evidence, at_s: float) -> "Future[int]":
-        """Keep evidence.
+        """Keep evidence, and with it the tables of the student that wait.
 
         Args:
             student: name of the student.
@@ -85,7 +85,14 @@ class ClassStore:
         Returns:
             The number of the evidence in the class.
         """
-        return self._do(lambda file: file.add(student, evidence, at_s), writes=True)
+
+        def work(file: ClassFile) -> int:
+            tables = self._waiting_tables(student)
+            number = file.add(student, evidence, at_s, tables)
+            self._written(tables)
+            return number
+
+        return self._do(work, writes=True)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> "Future[bool]":
         """Count a vote; the result is that of `ClassFile.vote`."""
@@ -207,21 +214,26 @@ class ClassStore:
             raise self._file.problem(error) from error
 
     def _write_tables(self) -> None:
-        with self._lock:
-            tables = [self._tables[key] for key in sorted(self._waiting)]
+        tables = self._waiting_tables()
         if not tables:
             return
         job = _Job(lambda file: file.write_tables(tables), writes=True)
         self._work(job)
-        if job.done.exception() is not None:
-            return  # `trouble` says why; the tables wait for the next try
-        with self._lock:
-            # A table that was kept during the write is newer, and goes on waiting.
-            written = {(one.student, one.name) for one in tables if self._is_newest(one)}
-            self._waiting -= written
+        if job.done.exception() is None:  # else `trouble` says why, and the tables go on waiting
+            self._written(tables)
 
-    def _is_newest(self, table: KeptTable) -> bool:
-        return self._tables.get((table.student, table.name)) is table
+    def _waiting_tables(self, student: str | None = None) -> list[KeptTable]:
+        """Return the tables of a student, or of all (None), that are not on the disk yet."""
+        with self._lock:
+            return [self._tables[key] for key in sorted(self._waiting) if student in (None, key[0])]
+
+    def _written(self, tables: Iterable[KeptTable]) -> None:
+        """Take in that tables are on the disk; one that was kept meanwhile is newer, and waits."""
+        with self._lock:
+            for table in tables:
+                key = table.student, table.name
+                if self._tables.get(key) is table:
+                    self._waiting.discard(key)
 
     def _fresh(self) -> ClassFile:
         """Rename the damaged file, and make a fresh one."""
