@@ -169,9 +169,11 @@ def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_p
     keep = [word for n in (2, 5) for word in ("--keep", str(six / f"variant-{n}.txt"))]
     assert len(found("--variants", *keep)["variants"]) == 6
     for wrong in (["--map", "--size", "cell"], ["--map", *keep], ["--variants", "--for", "left"]):
-        with pytest.raises(SystemExit) as stop:
-            cli.main(["coach", str(SAMPLE), *wrong])
-        assert stop.value.code != 0
+        try:
+            code = cli.main(["coach", str(SAMPLE), *wrong])
+        except SystemExit as ended:
+            code = int(ended.code or 0)
+        assert code != 0
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""`lacoc coach`: say which numbers of a gait matter, and search for better or other gaits."""
+"""`lacoc coach`: rank the numbers of a gait, and search for a better gait or for other ones."""
 
 import signal
 import threading

@@ -1,4 +1,4 @@
-"""Runs the searches of a studio's coach: one at a time, while the others wait in order."""
+"""Runs the searches of a studio: one at a time, while the others wait in order."""
 
 import threading
 import time

@@ -27,7 +27,7 @@ from lacoc_shared.studio import (
 from lacoc_shared.words import say
 
 _MOST_S = 120.0
-"""Longest search."""
+"""Longest time that a search may ask for [s]."""
 _MOST_KEPT, _MOST_BEFORE = 2, 60
 """Most tables to breed from, and most tables that were shown before."""
 
@@ -107,10 +107,10 @@ def _tables(field: str, task: Task, sent: Sequence[Angles], most: int) -> list[A
 
 
 def _chosen(field: str, text: str, kind: type[_Choice]) -> _Choice:
-    """Read one of a few words.
+    """Read a field of a request that must be one of a few words.
 
     Raises:
-        UserError: if it is none of them.
+        UserError: if the text is none of these words.
     """
     try:
         return kind(text)

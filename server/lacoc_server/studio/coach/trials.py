@@ -94,7 +94,7 @@ class Trials:
         return self._walks(tables, SUBSTEPS, _CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
-        """Return the figures of walks, with the physics of the contest; a stop changes nothing."""
+        """Return the figures of walks with the contest's physics, also after a stop."""
         jobs = [
             self._workers.submit(_figures, self.task, [table], SUBSTEPS, _CYCLES)
             for table in tables
