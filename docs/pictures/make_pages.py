@@ -4,6 +4,7 @@ Run it from the checkout, with the packages of its tests: python docs/pictures/m
 takes some minutes without a graphics card. Arguments such as "replay" choose some pictures.
 """
 
+import random
 import subprocess
 import sys
 import tempfile
@@ -19,8 +20,10 @@ sys.path.append(str(Path(__file__).parents[2] / "tests" / "common"))
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "pages"))
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "gateway"))
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "client"))
+sys.path.append(str(Path(__file__).parents[2] / "tests" / "classroom"))
 
 from chromium import FLAGS, build_pages, find_chromium
+from class_room import ClassRoom
 from contestant import Contestant, own_page
 from court_process import environment
 from lacoc_process import COMMAND
@@ -28,6 +31,7 @@ from show import Show
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_arenas import arena as arenas
+from lacoc_client.gateway.wire import Kind
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.record.schema import Setup
 
@@ -43,7 +47,7 @@ def main() -> None:
     build_pages()
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
-        for take in (practice, design, replay, contest, broadcast):
+        for take in (practice, design, classroom, replay, contest, broadcast):
             if sys.argv[1:] and take.__name__ not in sys.argv:
                 continue
             own = Path(folder) / take.__name__
@@ -96,6 +100,48 @@ def design(folder: Path, open_page: Open) -> None:
         page.page.wait_for_timeout(2500)
         page.page.click("[aria-label=Pause]")
         picture(page.page, "design")
+
+
+NAMES = (
+    "Aoi Ben Chie Dan Eva Finn Gina Hal Ida Jo Kim Leo Mia Nao Ole Pia Quin Ren Sora Tom Uta Vera "
+    "Wim Xena Yuki Zoe Emil Fumi Gert Hana"
+)
+SEQUENCES = [[0], [4, 3, 2, 1], [1, 2, 3, 4], [8, 7, 6, 5]]
+
+
+def classroom(folder: Path, open_page: Open) -> None:
+    """Take the picture of a teacher's page, with a class of thirty at work."""
+    chance = random.Random(3)
+    with ExitStack() as stack:
+        room = ClassRoom(folder)
+        stack.callback(room.close)
+        for number, name in enumerate(NAMES.split()):
+            student = room.student(name)
+            stack.callback(student.close)
+            student.until(lambda page=student: page.last(Kind.STUDIO).get("present"))
+            table = student.sample()
+            student.ask("edit", table=table, sequences=SEQUENCES)
+            for row in range(1, 1 + chance.randint(0, 3)):
+                turned = [angle + chance.choice((0, 0, 5, -10, 15)) for angle in angles(table, row)]
+                rows = [*table["rows"]]
+                rows[row] = {**rows[row], "angles_deg": turned}
+                table = {**table, "rows": rows}
+                student.ask("edit", table=table, sequences=SEQUENCES, by="hand")
+                student.ask("trial", table=table, sequences=SEQUENCES, keys="2")
+            if number in (4, 9):
+                student.ask("hand", up=True)
+            if chance.random() < 0.6:
+                student.ask("phase", number=chance.randint(1, 4))
+        page = open_page(viewport={"width": 1280, "height": 720})
+        page.goto(f"{room.url}/class#key={room.key}")
+        look(page).sees(".students")
+        page.wait_for_timeout(2500)  # cards glide to their places
+        picture(page, "class", drawn=False)
+
+
+def angles(table: dict[str, Any], row: int) -> list[float]:
+    """Return the angles of a row [deg]."""
+    return list(table["rows"][row]["angles_deg"])
 
 
 def replay(folder: Path, open_page: Open) -> None:
