@@ -94,7 +94,7 @@ class Spectator:
             self._lacking_sheet.forget()
             self._read_sheet(mail.payload)
         if told is not None:
-            self._ask_for_what_lacks(told)
+            self._ask_for_what_is_missing(told)
         if newest is None or (frame := self._read(newest, Frame)) is None:
             return None
         self.frame_s = newest.arrived_s
@@ -173,7 +173,7 @@ class Spectator:
             )
         self.sheet = understand(payload, Sheet)
 
-    def _ask_for_what_lacks(self, told: Health) -> None:
+    def _ask_for_what_is_missing(self, told: Health) -> None:
         """Request messages that did not arrive, such as those lost on a slow link."""
         self._view.see_health(Told(told.match, told.beat, told.events, told.sheet))
         if self._view.lacks_events:

@@ -82,7 +82,7 @@ class Entries:
         unit: str = "",
         where: Sequence[Mapping[str, Any]] = (),
     ) -> tuple[float, ...]:
-        """Read a list of numbers; NaN for each that is wrong or missing.
+        """Read a list of numbers; NaN for each that is wrong, and for all if their count is wrong.
 
         Args:
             name: the entry.

@@ -200,7 +200,7 @@ def test_a_wrong_arena_is_told_in_one_sentence(race: Path, case: str) -> None:
         ("return State(seat + 1), (event,)", "return 1", "step returned 1. Expected the state"),
         ("return State(seat + 1), (event,)", "return state, (7,)", "events that are each a Game"),
         ("State(seat + 1), (event,)", "1, ()", "step returned 1. Expected a State"),
-        ('marker="line", points', 'marker="lime", points', "'lime' is none"),
+        ('marker="line", points', 'marker="lime", points', "'lime' is not one of them"),
         ("said=FIRST", "said=3", "an event with a Phrase in its field 'said'"),
         ("past.index(True)", "past.index(5)", r"step \(.*rules.py, line \d+\) raised ValueError"),
     ],

@@ -312,7 +312,7 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
 
 
 def test_the_commands_export_and_forget(tmp_path: Path) -> None:
-    """A class that is open can't be exported or forgotten; later both leave nothing behind."""
+    """An open class can't be exported or forgotten. Once it is closed, forget leaves no file."""
     room = ClassRoom(tmp_path)
     student = room.student("Kim")
     edit(student, edit(student, student.sample(), 1.0), 2.0)

@@ -23,7 +23,10 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """Return docs/protocol.md's configuration for a court; its part for keys needs a user."""
+    """Return the Zenoh configuration of docs/protocol.md for connecting to a court.
+
+    Without a user, the part for contests with keys is left out.
+    """
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),

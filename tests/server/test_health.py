@@ -298,7 +298,7 @@ def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
     assert isinstance(verdict, Verdict)
     assert verdict.kind is Kind.SAME
     said = CliRunner().invoke(app, ["info", str(path)]).output
-    assert "Rematch advised: the latest beat began 300 ms late" in said
+    assert "Rematch advised: the worst beat began 300 ms late" in said
     exported = json.loads(result_json(record))
     assert exported["health"]["worst_late_ms"] == 300.0
     assert exported["computed"] == "draw"

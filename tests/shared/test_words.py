@@ -328,5 +328,5 @@ def test_a_terminal_speaks_the_language_that_is_set(variables: dict[str, str], s
 def test_a_number_that_is_none_is_shown_as_unknown() -> None:
     """NaN is shown as "?"."""
     assert render(say("health.late-beat", late_ms=math.nan, most_ms=1), "en").startswith(
-        "the latest beat began ? ms late"
+        "the worst beat began ? ms late"
     )

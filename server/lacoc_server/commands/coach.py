@@ -219,7 +219,7 @@ def _stop_on_interrupt() -> Iterator[threading.Event]:
 
 
 def _place(task: Task, digit: int, index: int) -> Phrase:
-    """Name a cell as people find it."""
+    """Say where a number of the table stands: its key, posture, leg and joint."""
     cell = place(task.table, index)
     legs = len(task.robot.legs)
     return say(

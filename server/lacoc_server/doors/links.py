@@ -117,7 +117,7 @@ class Links:
             self._agree()
 
     def sent(self, now_s: float) -> None:
-        """Note that the beat's frame is sent; its delay is the same for all who see it."""
+        """Note that the beat's frame is sent, and the common delay for the keys that answer it."""
         self._frames.append(self._frame(now_s))
 
     def is_ahead(self, command: Command) -> bool:

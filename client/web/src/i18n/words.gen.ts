@@ -231,7 +231,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "practice.own-gait": ["Practice. The gait of your files is loaded. Press its keys and see where the robot goes.", "練習です。ファイルの歩容を読み込みました。キーを押して、ロボットの動きを見てみましょう。"],
   "health.real-time": ["the match ran at {factor:.3} times real time (at least {least} is required)", "試合が実時間の {factor:.3} 倍で進みました（{least} 倍以上が必要です）"],
   "health.slow-beats": ["{percent:.1} % of the 20 ms beats were slow (at most {most} % are allowed)", "20 ミリ秒ごとのビートの {percent:.1} % が遅れました（許容は {most} % までです）"],
-  "health.late-beat": ["the latest beat began {late_ms:.0} ms late (at most {most_ms} ms is allowed)", "ビートの開始が最大 {late_ms:.0} ミリ秒遅れました（許容は {most_ms} ミリ秒までです）"],
+  "health.late-beat": ["the worst beat began {late_ms:.0} ms late (at most {most_ms} ms is allowed)", "ビートの開始が最大 {late_ms:.0} ミリ秒遅れました（許容は {most_ms} ミリ秒までです）"],
   "health.silent-seat": ["the {seat:seat.*} seat was not connected for {seconds:.1} s (at most {most_s} s is allowed)", "{seat:seat.*}の席の通信が {seconds:.1} 秒途絶えました（許容は {most_s} 秒までです）"],
   "health.lost-commands": ["only {percent:.0} % of the commands of the {seat:seat.*} seat arrived (at least {least} % are required)", "{seat:seat.*}の席からの送信のうち {percent:.0} % しか届きませんでした（{least} % 以上が必要です）"],
   "health.faults": ["the physics simulation stopped {times} {times:plural time|times} (at most {most} {most:plural is|are} allowed)", "物理計算が {times} 回止まりました（許容は {most} 回までです）"],
