@@ -23,6 +23,13 @@ __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 LARGEST_FILE = 32 * 1024
 """Largest robot file [bytes], the same as for gait files (rules 2)."""
 
+BODY_MIN_M = 0.01
+"""Smallest size of a body in any direction."""
+ANG_MIN_LEAST_DEG_S = 1.0
+KP_LEAST = 1.0
+"""Softest servo [N m/rad]."""
+TORQUE_LEAST_N_M = 0.1
+
 _ROUNDING_KG = 1e-9  # rounding error of a sum of decimal masses
 _ROUNDING_M = 1e-6  # lets a foot stand exactly on the floor
 
@@ -71,7 +78,9 @@ def _robot(root: Entries, limits: Limits) -> RobotSpec:
     surface = root.table("surface", optional=True)
     name = root.text("name", 24)
     size = body.numbers(
-        "size_m", [(0.01, limits.width_m), (0.01, limits.length_m), (0.01, limits.height_m)], "m"
+        "size_m",
+        [(BODY_MIN_M, most_m) for most_m in (limits.width_m, limits.length_m, limits.height_m)],
+        "m",
     )
     body_mass_kg = body.number("mass_kg", limits.part_mass_min_kg, limits.part_mass_max_kg, "kg")
     legs = _legs(root, limits)
@@ -90,14 +99,20 @@ def _robot(root: Entries, limits: Limits) -> RobotSpec:
         start_posture=_posture(start, legs, limits),
         ang_min_rad_s=math.radians(
             drive.number(
-                "ang_min_deg_s", 1.0, limits.ang_min_deg_s, "degrees-per-second", default=120.0
+                "ang_min_deg_s",
+                ANG_MIN_LEAST_DEG_S,
+                limits.ang_min_deg_s,
+                "degrees-per-second",
+                default=120.0,
             )
         ),
         advance="time" if advance == "time" else "reached",
         hold_us=0 if math.isnan(hold_s) else round(hold_s * 1e6),
-        kp=servo.number("kp", 1.0, limits.kp_max, "N m/rad", default=20.0),
+        kp=servo.number("kp", KP_LEAST, limits.kp_max, "N m/rad", default=20.0),
         kv=servo.number("kv", 0.0, limits.kv_max, "N m s/rad", default=0.5),
-        torque_n_m=servo.number("torque_n_m", 0.1, limits.torque_n_m, "N m", default=2.0),
+        torque_n_m=servo.number(
+            "torque_n_m", TORQUE_LEAST_N_M, limits.torque_n_m, "N m", default=2.0
+        ),
         damping=servo.number("damping", 0.0, limits.damping_max, "N m s/rad", default=0.02),
         armature=servo.number(
             "armature", limits.armature_min, limits.armature_max, "kg m2", default=0.002

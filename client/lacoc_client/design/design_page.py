@@ -1,22 +1,26 @@
 """The connection of one /design page: it takes the page's requests and has them answered."""
 
 import asyncio
+from pathlib import PurePath
 from typing import Any
 
 import msgspec
 from starlette.websockets import WebSocket
 
 from lacoc_client.design import requests
-from lacoc_client.design.files import file_bytes, read_file
+from lacoc_client.design.files import FileContent, file_bytes, read_file
 from lacoc_client.design.folder import Folder
 from lacoc_client.design.host import Host
 from lacoc_client.design.learning.draft import Draft
 from lacoc_client.design.learning.learner import Learner
+from lacoc_client.design.saving.robot_edit import edit_robot
 from lacoc_client.design.studios.studio_desk import StudioDesk
 from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.evidence import Hand, Moved, Named
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
+from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
@@ -193,6 +197,8 @@ class DesignPage:
                 return self._host.sample()
             case requests.ParseAsk():
                 return parsed(asked)
+            case requests.SetRobotAsk():
+                return robot_with(asked)
             case requests.SaveAsk():
                 content = asked.robot if asked.table is None else asked.table
                 if content is None:
@@ -206,6 +212,18 @@ class DesignPage:
         if self._host.folder is None:
             raise UserError(say("class.no-folder"))
         return self._host.folder
+
+
+def robot_with(asked: requests.SetRobotAsk) -> FileContent:
+    """Return a robot file with one number changed; may block.
+
+    Raises:
+        UserError: if the file can't be read, or has no place for the number.
+    """
+    file = asked.robot or SentFile(*find_robot(WORKSHOPS_ROBOT))
+    text = read_file(f"{PurePath(file.name).stem}.toml", file.data).robot
+    assert text is not None  # a .toml is a robot file
+    return FileContent(robot=edit_robot(text, asked.entry, asked.value))
 
 
 def parsed(asked: requests.ParseAsk) -> Any:

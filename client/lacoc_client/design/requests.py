@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
+from lacoc_client.design.saving.robot_edit import RobotEntry
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway.wire import Ask, Unreadable, too_long
 from lacoc_client.phases.evidence import By
@@ -85,6 +86,15 @@ class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
     """Ask the studio what a robot file describes."""
 
     robot: SentFile | None = None
+
+
+class SetRobotAsk(Ask, frozen=True, kw_only=True, tag="set_robot"):
+    """Change one number in the text of a robot file."""
+
+    robot: SentFile | None = None
+    """None: the workshop's robot is the start."""
+    entry: RobotEntry
+    value: float
 
 
 class Foretold(msgspec.Struct, frozen=True, kw_only=True):
@@ -196,6 +206,7 @@ Asked = (
     | SaveAsk
     | WriteAsk
     | RobotAsk
+    | SetRobotAsk
     | TrialAsk
     | CoachAsk
     | CancelAsk

@@ -6,6 +6,7 @@ from typing import Any
 
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import ANG_MIN_LEAST_DEG_S, BODY_MIN_M, KP_LEAST, TORQUE_LEAST_N_M
 
 Bounds = tuple[float | None, float | None]
 """Lowest and highest value that the rules allow; None: no limit on this side."""
@@ -17,6 +18,8 @@ def facts(robot: RobotSpec) -> dict[str, Any]:
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     legs = robot.legs
     root_m, first_m, second_m = zip(*(leg.lengths_m for leg in legs), strict=True)
+    root_kg, first_kg, second_kg = zip(*(leg.masses_kg for leg in legs), strict=True)
+    low_deg, high_deg = zip(*(leg.range_deg for leg in legs), strict=True)
     return {
         "legs": len(legs),
         "joints": robot.joints,
@@ -28,12 +31,16 @@ def facts(robot: RobotSpec) -> dict[str, Any]:
         "body_height_m": robot.size_m[2],
         "mass_kg": _rounded(robot.mass_kg),
         "body_mass_kg": robot.body_mass_kg,
-        "link_mass_kg": _pair(mass for leg in legs for mass in leg.masses_kg),
+        "root_link_kg": _pair(root_kg),
+        "first_link_kg": _pair(first_kg),
+        "second_link_kg": _pair(second_kg),
         "root_link_m": _pair(root_m),
         "first_link_m": _pair(first_m),
         "second_link_m": _pair(second_m),
         "link_radius_m": _pair(leg.radius_m for leg in legs),
-        "range_deg": _pair(end for leg in legs for end in leg.range_deg),
+        "range_low_deg": _pair(low_deg),
+        "range_high_deg": _pair(high_deg),
+        "start_height_m": robot.start_height_m,
         "drop_m": _rounded(robot.bounds(robot.start_posture)[0].z + robot.start_z_m),
         "ang_min_deg_s": _rounded(math.degrees(robot.ang_min_rad_s)),
         "advance": robot.advance,
@@ -56,19 +63,25 @@ def bounds(limits: Limits) -> dict[str, Bounds]:
         "width_m": (None, limits.width_m),
         "length_m": (None, limits.length_m),
         "height_m": (None, limits.height_m),
+        "body_width_m": (BODY_MIN_M, limits.width_m),
+        "body_length_m": (BODY_MIN_M, limits.length_m),
+        "body_height_m": (BODY_MIN_M, limits.height_m),
         "mass_kg": (limits.mass_min_kg, limits.mass_max_kg),
         "body_mass_kg": part_kg,
-        "link_mass_kg": part_kg,
+        "root_link_kg": part_kg,
+        "first_link_kg": part_kg,
+        "second_link_kg": part_kg,
         "root_link_m": (limits.radius_min_m, limits.link_max_m),
         "first_link_m": link_m,
         "second_link_m": link_m,
         "link_radius_m": (limits.radius_min_m, limits.radius_max_m),
-        "range_deg": (-limits.range_deg, limits.range_deg),
+        "range_low_deg": (-limits.range_deg, limits.range_deg),
+        "range_high_deg": (-limits.range_deg, limits.range_deg),
         "drop_m": (0.0, limits.drop_m),
-        "ang_min_deg_s": (None, limits.ang_min_deg_s),
+        "ang_min_deg_s": (ANG_MIN_LEAST_DEG_S, limits.ang_min_deg_s),
         "hold_s": (0.0, limits.hold_s),
-        "torque_n_m": (None, limits.torque_n_m),
-        "kp": (None, limits.kp_max),
+        "torque_n_m": (TORQUE_LEAST_N_M, limits.torque_n_m),
+        "kp": (KP_LEAST, limits.kp_max),
         "kv": (0.0, limits.kv_max),
         "damping": (0.0, limits.damping_max),
         "armature": (limits.armature_min, limits.armature_max),

@@ -1,0 +1,136 @@
+"""Change one number in the text of a robot file; everything else stays as it was written."""
+
+import math
+import tomllib
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple, get_args
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+RobotEntry = Literal[
+    "body_width_m",
+    "body_length_m",
+    "body_height_m",
+    "body_mass_kg",
+    "root_link_m",
+    "first_link_m",
+    "second_link_m",
+    "link_radius_m",
+    "root_link_kg",
+    "first_link_kg",
+    "second_link_kg",
+    "range_low_deg",
+    "range_high_deg",
+    "start_height_m",
+    "ang_min_deg_s",
+    "hold_s",
+    "torque_n_m",
+    "kp",
+    "kv",
+    "damping",
+    "armature",
+    "friction",
+]
+"""A number of a robot, by the name that the studio's facts give it."""
+
+
+class _Place(NamedTuple):
+    """Where a number stands in a robot file."""
+
+    table: str
+    name: str
+    at: int | None = None
+    """Place in the list; None: the entry is no list."""
+
+
+_PLACES: Mapping[str, _Place] = {
+    "body_width_m": _Place("body", "size_m", 0),
+    "body_length_m": _Place("body", "size_m", 1),
+    "body_height_m": _Place("body", "size_m", 2),
+    "body_mass_kg": _Place("body", "mass_kg"),
+    "root_link_m": _Place("link", "lengths_m", 0),
+    "first_link_m": _Place("link", "lengths_m", 1),
+    "second_link_m": _Place("link", "lengths_m", 2),
+    "link_radius_m": _Place("link", "radius_m"),
+    "root_link_kg": _Place("link", "masses_kg", 0),
+    "first_link_kg": _Place("link", "masses_kg", 1),
+    "second_link_kg": _Place("link", "masses_kg", 2),
+    "range_low_deg": _Place("link", "range_deg", 0),
+    "range_high_deg": _Place("link", "range_deg", 1),
+    "start_height_m": _Place("start", "height_m"),
+    "ang_min_deg_s": _Place("drive", "ang_min_deg_s"),
+    "hold_s": _Place("drive", "hold_s"),
+    "torque_n_m": _Place("servo", "torque_n_m"),
+    "kp": _Place("servo", "kp"),
+    "kv": _Place("servo", "kv"),
+    "damping": _Place("servo", "damping"),
+    "armature": _Place("servo", "armature"),
+    "friction": _Place("surface", "friction"),
+}
+assert _PLACES.keys() == set(get_args(RobotEntry))
+
+_MAX_BYTES = 32 * 1024  # of a robot file
+
+
+def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
+    """Return the text of a robot file with one number changed.
+
+    A number of the links is changed for all legs, also for a leg that has its own.
+
+    Args:
+        text: the robot file (TOML).
+        entry: which number.
+        value: the number, in the file's unit. Whether a robot may have it is not checked here.
+
+    Raises:
+        UserError: if the text is no TOML, or has no place for the number.
+    """
+    place = _PLACES[entry]
+    if not math.isfinite(value):
+        raise UserError(say("design.no-place", entry=_shown(place)))
+    try:
+        wanted = read_toml(text, _MAX_BYTES, any_integers=True)  # refuses what is hostile
+    except BadToml as error:
+        raise UserError(error.phrase) from None
+    try:
+        _set(wanted, place, value)
+        document = tomlkit.parse(text)
+        _set(document, place, value)
+        edited = tomlkit.dumps(document)
+        is_right = tomllib.loads(edited) == wanted
+    except (TOMLKitError, tomllib.TOMLDecodeError, LookupError, TypeError, ValueError):
+        is_right = False
+    if not is_right:
+        raise UserError(say("design.no-place", entry=_shown(place)))
+    return edited
+
+
+def _set(robot: Any, place: _Place, value: float) -> None:
+    """Put the number into a parsed file: into its table, and into the legs that have their own."""
+    if place.table not in robot:
+        robot[place.table] = {}
+    tables = [robot[place.table]]
+    if place.table == "link":
+        tables += [leg for leg in robot.get("leg", ()) if place.name in leg]
+    for table in tables:
+        if place.at is None:
+            table[place.name] = _like(table.get(place.name), value)
+        else:
+            numbers = table[place.name]
+            numbers[place.at] = _like(numbers[place.at], value)
+
+
+def _like(old: Any, value: float) -> Any:
+    """Return a number as it is written in a file: whole where the old one was whole."""
+    if isinstance(old, int) and value == int(value):
+        return int(value)
+    return float(value)
+
+
+def _shown(place: _Place) -> str:
+    return f"{place.table}.{place.name}"

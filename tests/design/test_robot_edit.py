@@ -1,0 +1,105 @@
+"""Tests of changing one number in a robot file's text."""
+
+import copy
+import re
+import tomllib
+from typing import Any, get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.design.saving.robot_edit import RobotEntry, edit_robot
+from lacoc_robots.library import find_robot
+from lacoc_robots.limits import Limits
+from lacoc_robots.robot_file import read_robot
+from lacoc_server.studio.facts import bounds, facts
+from lacoc_shared.mistakes import UserError
+
+ENTRIES: tuple[RobotEntry, ...] = get_args(RobotEntry)
+SAMPLES = [
+    find_robot(name)[1].decode() for name in ("hexapod", "long-legs", "quadruped", "octopod")
+]
+OWN_LINK = SAMPLES[0].replace(
+    "\naccent = true", "\nlengths_m = [\n  0.015,\n  0.05, # short\n  0.07,\n]\naccent = true", 1
+)
+NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(\.\d+)?([eE][+-]?\d+)?(?![\w.])")
+
+
+def numbers(value: Any) -> list[float]:
+    """Return all numbers of a parsed file, in the order in which they stand in it."""
+    if isinstance(value, dict):
+        return [one for part in value.values() for one in numbers(part)]
+    if isinstance(value, list):
+        return [one for part in value for one in numbers(part)]
+    return [value] if isinstance(value, int | float) and not isinstance(value, bool) else []
+
+
+@given(
+    st.sampled_from([*SAMPLES, OWN_LINK]),
+    st.sampled_from(ENTRIES),
+    st.floats(-1000, 1000, allow_nan=False) | st.integers(-200, 200),
+    st.sampled_from(["\n", "\r\n"]),
+)
+def test_one_number_changes_and_the_rest_stays(
+    text: str, entry: RobotEntry, value: float, newline: str
+) -> None:
+    """Only numbers change in the text, and only those of one entry, all to the new value."""
+    text = text.replace("\n", newline)
+    edited = edit_robot(text, entry, value)
+    assert NUMBER.sub("#", edited) == NUMBER.sub("#", text)
+    before, after = numbers(tomllib.loads(text)), numbers(tomllib.loads(edited))
+    changed = [new for old, new in zip(before, after, strict=True) if old != new]
+    assert set(changed) <= {value}
+    assert edit_robot(edited, entry, value) == edited
+
+
+@pytest.mark.parametrize("entry", ENTRIES)
+@pytest.mark.parametrize("text", [SAMPLES[0], OWN_LINK])
+def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: RobotEntry) -> None:
+    """The facts of the robot, read from the changed text, have the value in all legs."""
+    old = facts(read_robot(text, "robot.toml"))[entry]
+    value = (old[0] if isinstance(old, tuple) else old) * (1.02 if entry == "root_link_m" else 0.98)
+    if entry in ("armature", "hold_s"):  # they stand at their lowest
+        value = 0.01
+    new = facts(read_robot(edit_robot(text, entry, value), "robot.toml"))[entry]
+    assert new == pytest.approx((value, value) if isinstance(old, tuple) else value, abs=1e-6)
+    assert entry == "start_height_m" or entry in bounds(Limits())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[body]\nmass_kg = 1\n[[leg]]\nlabel = 'A' # end",
+        "servo.kv = 1 # dotted\n[body]\nmass_kg = 1\n",
+        "servo = { kv = 1 } # inline\n",
+        "",
+    ],
+)
+def test_an_entry_that_was_left_out_is_added(text: str) -> None:
+    """A file without the entry gets it, in its table, and keeps all other lines."""
+    edited = edit_robot(text, "kp", 30.5)
+    wanted = copy.deepcopy(tomllib.loads(text))
+    wanted.setdefault("servo", {})["kp"] = 30.5
+    assert tomllib.loads(edited) == wanted
+    assert all(remark in edited for remark in re.findall("#.*", text))
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("[body", 1.0),
+        ("body = 3", 1.0),
+        ("[body]\nsize_m = [1]", 1.0),
+        ("[body]\nsize_m = 3", 1.0),
+        ("[body]", 1.0),
+        ("[[body]]\nsize_m = [1, 2, 3]", 1.0),
+        ("a" * 40_000, 1.0),
+        (SAMPLES[0], float("nan")),
+        (SAMPLES[0], float("inf")),
+    ],
+)
+def test_a_text_without_a_place_for_the_number_is_refused(text: str, value: float) -> None:
+    """A broken file, a wrong kind of entry, and no number at all are refused with a reason."""
+    with pytest.raises(UserError):
+        edit_robot(text, "body_length_m", value)
