@@ -133,7 +133,10 @@ class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
     file_version: _Name = ""
     """Version of that file that the table was made from."""
     saved: bool = False
-    """Whether the file has this table."""
+    """Whether the files have this table and this robot."""
+    robot_version: _Name | None = None
+    """Version of the file that the robot was made from, if that file lacks changes of the robot;
+    "": the robot has no file; None: nothing is lacking."""
 
 
 class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):

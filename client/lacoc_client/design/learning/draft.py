@@ -25,7 +25,10 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
     file_version: str = ""
     """Version of that file that the table was made from."""
     saved: bool = False
-    """Whether that file has this table."""
+    """Whether the files have this table and this robot."""
+    robot_version: str | None = None
+    """Version of the file that the robot was made from, if that file lacks changes of the robot;
+    "": the robot has no file; None: nothing is lacking."""
 
     def kept(self, student: str, version: str, at_s: float) -> KeptTable:
         """Return the draft as a class file keeps it."""

@@ -91,6 +91,7 @@ class Learner:
                 file=asked.file,
                 file_version=asked.file_version,
                 saved=asked.saved,
+                robot_version=asked.robot_version,
             )
             await self._diary.keep(draft, version)
         before, self._before = self._before, asked.table

@@ -435,6 +435,7 @@ export interface Draft {
   file: string;
   file_version: string;
   saved: boolean;
+  robot_version: string | null;
 }
 
 export interface Card {

@@ -205,6 +205,7 @@ type DesignRequest =
   | "save"
   | "write"
   | "robot"
+  | "set_robot"
   | "trial"
   | "coach"
   | "cancel"

@@ -426,6 +426,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "design.bad-name": ["{name:quoted} can't be a file here. The name of a gait file begins with Loco-data or LocoTra-data, and ends with .txt or .xlsx. The name of a robot file ends with .toml.", "{name:quoted}という名前は使えません。歩容ファイルは Loco-data または LocoTra-data で始まり、.txt か .xlsx で終わります。ロボットファイルは .toml で終わります。"],
   "design.cannot-read": ["{name} can't be read: {why}. Check whether another program has it open.", "{name} を読み込めません（{why}）。ほかのプログラムで開いていないか確かめてください。"],
   "design.cannot-write": ["{name} could not be saved: {why}. The file on the disk is as it was. If another program has it open, close it there, or download the table.", "{name} を保存できませんでした（{why}）。元のファイルはそのままです。ほかのプログラムで開いている場合は閉じるか、表をダウンロードしてください。"],
+  "design.no-place": ["{entry} can't be changed here. Change it in the robot file itself.", "{entry} はここでは変更できません。ロボットファイルを直接編集してください。"],
   "design.no-text": ["{name} is not a text in UTF-8. Save robot files in UTF-8.", "{name} は UTF-8 のテキストではありません。ロボットファイルは UTF-8 で保存してください。"],
   "design.sequences-in-workbook": ["{name} is a workbook, but sequences belong in a text file. Save them as LocoTra-data.txt.", "{name} はブックですが、レベル B の動作はテキストファイルに保存します。LocoTra-data.txt という名前で保存してください。"],
   "design.formulas": ["{count} {count:plural angle|angles} in {file} {count:plural is a formula|are formulas}. When you save here, they become the numbers that you see.", "{file} の角度のうち {count} 個は数式です。ここで保存すると、表示されている数値に置き換わります。"],

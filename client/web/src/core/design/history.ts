@@ -10,6 +10,8 @@ interface Step {
   readonly version: number;
   /** Name of a gesture, such as one drag of a slider; all its edits together are one step. */
   readonly gesture: string | null;
+  /** The robot that the table is for, as the page knows it. */
+  readonly robot: unknown;
 }
 
 export class History {
@@ -21,17 +23,20 @@ export class History {
   readonly redoName: ReadonlySignal<string>;
   /** Number of the table's content: equal contents have equal numbers. Trials belong to it. */
   readonly version: ReadonlySignal<number>;
+  /** The robot of the step; null: none was named. */
+  readonly robot: ReadonlySignal<unknown>;
   private readonly steps = signal<readonly Step[]>([]);
   private readonly at = signal(0);
   private readonly versions = new Map<string, number>();
   private readonly rows = new Map<string, number>();
   private readonly rowNumbers = new WeakMap<Row, number>();
 
-  constructor(table: Table) {
-    this.open(table);
+  constructor(table: Table, robot: unknown = null) {
+    this.open(table, robot);
     const now = computed(() => this.steps.value[this.at.value]!);
     this.table = computed(() => now.value.table);
     this.version = computed(() => now.value.version);
+    this.robot = computed(() => now.value.robot);
     this.canUndo = computed(() => this.at.value > 0);
     this.canRedo = computed(() => this.at.value < this.steps.value.length - 1);
     this.undoName = computed(() => (this.canUndo.value ? now.value.name : ""));
@@ -39,9 +44,10 @@ export class History {
   }
 
   /** Begin again with another table, such as that of another file; version numbers go on. */
-  open(table: Table): void {
+  open(table: Table, robot: unknown = null): void {
     batch(() => {
-      this.steps.value = [{ name: "", table, version: this.numberOf(table), gesture: null }];
+      const version = this.numberOf(table);
+      this.steps.value = [{ name: "", table, version, gesture: null, robot }];
       this.at.value = 0;
     });
   }
@@ -55,22 +61,30 @@ export class History {
   }
 
   /**
-   * Edit the table: one step, unless the edit changes nothing.
+   * Edit the table, or take it over to another robot: one step, unless nothing changes.
    *
    * @param name Name of the step, for the buttons.
    * @param edit Returns the changed table.
    * @param gesture Edits in a row with the same gesture, such as a drag of a slider, are one step.
+   * @param other The robot from this step on; left out: it stays.
    */
-  apply(name: string, edit: (table: Table) => Table, gesture: string | null = null): void {
+  apply(
+    name: string,
+    edit: (table: Table) => Table,
+    gesture: string | null = null,
+    other?: unknown,
+  ): void {
     const before = this.steps.peek()[this.at.peek()]!;
+    const robot = other === undefined ? before.robot : other;
     const table = edit(before.table);
     const version = this.numberOf(table);
-    if (version === before.version) return;
+    if (version === before.version && robot === before.robot) return;
     const goesOn = gesture !== null && before.gesture === gesture;
     const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
     // A drag that ends where it began leaves no step.
-    const isBack = goesOn && kept.at(-1)?.version === version;
-    const steps = isBack ? kept : [...kept, { name, table, version, gesture }];
+    const last = kept.at(-1);
+    const isBack = goesOn && last?.version === version && last.robot === robot;
+    const steps = isBack ? kept : [...kept, { name, table, version, gesture, robot }];
     batch(() => {
       this.steps.value = steps;
       this.at.value = steps.length - 1;

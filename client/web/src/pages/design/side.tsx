@@ -73,7 +73,9 @@ export function Side({ studio, tab }: Props) {
           />
         )}
         {tab.value === "coach" && <CoachPanel coach={studio.coach} sheet={sheet} can={can} />}
-        {tab.value === "robot" && <Robot robot={robot.robot.value} file={robot.name.value} />}
+        {tab.value === "robot" && (
+          <Robot robot={robot} numbers={studio.numbers} files={studio.files} can={can} />
+        )}
       </div>
     </aside>
   );

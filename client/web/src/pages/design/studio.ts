@@ -14,6 +14,7 @@ import { sentGait } from "./files/gait";
 import { Opening } from "./files/opening";
 import { Gateway } from "./gateway";
 import { Learning } from "./learning/learning";
+import { Numbers } from "./robot/numbers";
 import { RobotInUse } from "./robot/robot";
 import { Sheet } from "./table/sheet";
 import { Trials } from "./trials/trials";
@@ -33,13 +34,16 @@ export class Studio {
   );
   readonly robot = new RobotInUse(this.gateway);
   readonly showing = new Showing();
-  readonly sheet: Sheet = new Sheet({
-    before: (by) => this.learning.tell(by),
-    changed: (by, size) => this.learning.edited(by, size),
-    turned: (before, now) => this.files.shapes.turned(before, now),
-    legsChanged: () => this.trials.forget(),
-    worked: () => this.showing.rest(),
-  });
+  readonly sheet: Sheet = new Sheet(
+    {
+      before: (by) => this.learning.tell(by),
+      changed: (by, size) => this.learning.edited(by, size),
+      turned: (before, now) => this.files.shapes.turned(before, now),
+      legsChanged: () => this.trials.forget(),
+      worked: () => this.showing.rest(),
+    },
+    this.robot.used,
+  );
   readonly learning: Learning = new Learning(
     this.gateway,
     () => sentGait(this.sheet, this.robot),
@@ -54,6 +58,7 @@ export class Studio {
   );
   readonly coach = new Coach(this.gateway, this.sheet, this.robot, this.trials);
   readonly files: Files = new Files(this.gateway, this.sheet, this.robot, this.can);
+  readonly numbers = new Numbers(this.robot, this.files);
   readonly handed = new Handed(this.membership, this.files);
 
   /** What the picture shows. */

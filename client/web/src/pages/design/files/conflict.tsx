@@ -13,7 +13,9 @@ import type { Files } from "./files";
 export function ConflictDialog({ files }: { files: Files }) {
   const conflict = files.conflict.value;
   if (!conflict) return null;
-  const { name, when, table, mistakes } = conflict;
+  const { name, when, table, robot, mistakes, of } = conflict;
+  const isThere = table !== null || robot !== null;
+  const isRobot = of === "robot";
   const saving = when !== "open";
   // A browser says only with its next picture that a dialog has closed: there may be another by then.
   const close = () => {
@@ -25,22 +27,32 @@ export function ConflictDialog({ files }: { files: Files }) {
       title={t(when === "existing" ? "design.exists" : "design.conflict")}
       onClose={close}
     >
-      <p>{t(`design.conflict.${when}`, { name })}</p>
+      <p>
+        {t(isRobot && when === "open" ? "design.conflict.robot" : `design.conflict.${when}`, {
+          name,
+        })}
+      </p>
       {mistakes.length > 0 && <Mistakes mistakes={mistakes} />}
-      {!table && !mistakes.length && <p>{t("design.conflictGone", { name })}</p>}
+      {!isThere && !mistakes.length && <p>{t("design.conflictGone", { name })}</p>}
       <div class="row end">
-        <button class="button" type="button" disabled={!table} onClick={() => files.takeTheirs()}>
-          {t("design.takeTheirs")}
+        <button
+          class="button"
+          type="button"
+          disabled={!isThere}
+          onClick={() => void files.takeTheirs()}
+        >
+          {t(isRobot ? "design.takeTheirRobot" : "design.takeTheirs")}
         </button>
         <button
           class="button strong"
           type="button"
           onClick={() => {
-            if (saving) void files.save(name, true);
-            else files.keepMine();
+            if (!saving) files.keepMine();
+            else if (isRobot) void files.keepRobot(true);
+            else void files.save(name, true);
           }}
         >
-          {t(saving ? "design.overwrite" : "design.keepMine")}
+          {t(saving ? (isRobot ? "design.overwriteRobot" : "design.overwrite") : "design.keepMine")}
         </button>
       </div>
     </Dialog>

@@ -19,7 +19,11 @@ export interface Conflict {
   name: string;
   version: string;
   table: FileTable | null;
+  /** The text of a robot file; null: the file has or had a table, or it has gone. */
+  robot: string | null;
   mistakes: readonly Mistake[];
+  /** What of the page has that file. */
+  of: "table" | "robot";
   /** Saving over a file that was opened or over another one, or the file changed while it is open. */
   when: "saving" | "existing" | "open";
 }
@@ -35,6 +39,14 @@ export interface Parsed {
 export interface Read extends Parsed {
   version: string;
 }
+
+interface SaveReply {
+  version?: string;
+  conflict?: Partial<Conflict> & { version: string };
+}
+
+/** What a conflict has that says nothing of it. */
+export const NOTHING = { table: null, robot: null, mistakes: [] };
 
 const POSTURES = "Loco-data.txt";
 const LOCOMOTION = "LocoTra-data.txt";
@@ -73,8 +85,10 @@ export class Files {
     const slot = this.folder.peek().files.find((file) => file.name === name)?.slot;
     try {
       const read = await this.gateway.ask<Read>("read", { name });
-      if (read.robot !== null || slot === "robot") await this.useRobot(name, read.robot ?? "");
-      else if (read.table) this.show(read.table, { name, version: read.version });
+      if (read.robot !== null || slot === "robot") {
+        await this.useRobot(name, read.robot ?? "");
+        this.robot.learn(name, read.version, read.robot ?? "");
+      } else if (read.table) this.show(read.table, { name, version: read.version });
       this.gateway.tell(read.notes);
     } catch (error) {
       this.gateway.refuse(error);
@@ -168,31 +182,38 @@ export class Files {
   /** What a gateway that keeps the table is told of its file. */
   base(): Base {
     const { name, version } = this.file.peek();
-    if (!this.can.peek().save) return { file: "", file_version: "", saved: false };
-    return { file: name, file_version: version, saved: this.isSaved.peek() };
+    const robot = this.robot.isSaved.peek() ? null : this.robot.versionOf(this.robot.name.peek());
+    if (!this.can.peek().save) {
+      return { file: "", file_version: "", saved: false, robot_version: robot };
+    }
+    const saved = this.isSaved.peek() && robot === null;
+    return { file: name, file_version: version, saved, robot_version: robot };
   }
 
   /** Walk with the robot of a file, or, where its text is null, with the workshop's hexapod. */
   private async useRobot(name: string, text: string | null): Promise<void> {
-    const read = await this.robot.read(name, text);
+    this.takeRobot(t("design.step.otherRobot"), await this.robot.read(name, text));
+  }
+
+  /**
+   * Walk with another robot: one step.
+   *
+   * @param gesture Changes in a row with the same gesture are one step.
+   */
+  takeRobot(step: string, read: ReadRobot, gesture: string | null = null): void {
     batch(() => {
       const table = this.sheet.table.peek();
-      if (table && table.legs.length !== read.reply.legs.length) {
+      if (!table) this.robot.use(read);
+      else if (table.legs.length !== read.reply.legs.length) {
         // The student's own table comes back with undo, and its robot with it.
-        this.sheet.put(
-          t("design.step.robot", { name: read.reply.name }),
-          standing(read.reply),
-          null,
-        );
-        this.robot.use(read);
+        const name = t("design.step.robot", { name: read.reply.name });
+        this.sheet.put(name, standing(read.reply), null, null, read);
         this.file.value = { ...NO_FILE, saved: this.sheet.version.peek() };
-        return;
+      } else {
+        const isSaved = this.isSaved.peek();
+        this.sheet.refit(step, read, gesture);
+        if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.version.peek() };
       }
-      this.robot.use(read);
-      if (!table) return;
-      const isSaved = this.isSaved.peek();
-      this.sheet.refit(columnsOf(read.reply));
-      if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.version.peek() };
     });
   }
 
@@ -226,8 +247,32 @@ export class Files {
 
   /** Save the table where it belongs: in its file, or, without a folder, as a download. */
   async keep(): Promise<void> {
-    if (this.can.peek().save) await this.save(this.usualName());
-    else await this.download();
+    if (!this.can.peek().save) return await this.download();
+    await this.save(this.usualName());
+    if (!this.robot.isSaved.peek()) await this.keepRobot();
+  }
+
+  /** Save the robot's file, or, without a folder, hand it to the person. */
+  async keepRobot(force = false): Promise<void> {
+    const used = this.robot.used.peek();
+    if (used?.text == null) return;
+    const { name, text } = used;
+    if (!this.can.peek().save) return download(name, [text], "application/toml");
+    const known = this.robot.versionOf(name);
+    try {
+      const fields = { name, robot: text, version: known, force };
+      const reply = await this.gateway.ask<SaveReply>("save", fields);
+      if (reply.conflict) {
+        const when = known ? "saving" : "existing";
+        this.conflict.value = { ...NOTHING, ...reply.conflict, name, when, of: "robot" };
+        return;
+      }
+      this.robot.learn(name, reply.version ?? "", text);
+      this.conflict.value = null;
+      toast(t("design.saved", { name }), "yes");
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
   }
 
   /** Save the table under a name of the folder. */
@@ -239,13 +284,10 @@ export class Files {
     // Over a file that was not opened here nothing is saved unasked.
     const version = own.name === name ? own.version : "";
     try {
-      const reply = await this.gateway.ask<{
-        version?: string;
-        conflict?: { table: FileTable | null; version: string; mistakes?: Mistake[] };
-      }>("save", { name, table, version, force });
+      const reply = await this.gateway.ask<SaveReply>("save", { name, table, version, force });
       if (reply.conflict) {
         const when = own.name === name ? "saving" : "existing";
-        this.conflict.value = { mistakes: [], ...reply.conflict, name, when };
+        this.conflict.value = { ...NOTHING, ...reply.conflict, name, when, of: "table" };
         return;
       }
       this.file.value = { name, version: reply.version ?? "", saved };
@@ -270,8 +312,18 @@ export class Files {
   }
 
   /** Take what the file has now; what was on the page can be had back by undo. */
-  takeTheirs(): void {
+  async takeTheirs(): Promise<void> {
     const conflict = this.conflict.peek();
+    if (conflict?.of === "robot" && conflict.robot !== null) {
+      this.conflict.value = null;
+      try {
+        await this.useRobot(conflict.name, conflict.robot);
+        this.robot.learn(conflict.name, conflict.version, conflict.robot);
+      } catch (error) {
+        this.gateway.refuse(error);
+      }
+      return;
+    }
     const robot = this.robot.robot.peek();
     if (!conflict?.table || !robot) return;
     const { name, version } = conflict;
@@ -285,7 +337,8 @@ export class Files {
   keepMine(): void {
     const conflict = this.conflict.peek();
     if (!conflict) return;
-    this.file.value = { ...this.file.peek(), name: conflict.name, version: conflict.version };
+    if (conflict.of === "robot") this.robot.learn(conflict.name, conflict.version, conflict.robot);
+    else this.file.value = { ...this.file.peek(), name: conflict.name, version: conflict.version };
     this.conflict.value = null;
   }
 

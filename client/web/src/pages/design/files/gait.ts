@@ -21,6 +21,11 @@ export interface Base {
   file_version: string;
   /** Whether it has this table. */
   saved: boolean;
+  /**
+   * Version of the file that the robot was made from, where that file lacks the robot's changes;
+   * "": it has no file; null: nothing is lacking.
+   */
+  robot_version: string | null;
 }
 
 /** The table as it is now; null while a cell has no angle. */

@@ -9,7 +9,7 @@ import type { Greeting } from "../class/membership";
 import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
 import type { Sheet } from "../table/sheet";
-import type { Files, Parsed, Read } from "./files";
+import { type Files, NOTHING, type Parsed, type Read } from "./files";
 
 export class Opening {
   /** How far the first things to see are opened. */
@@ -73,11 +73,11 @@ export class Opening {
 
   /** Take in that another program saved a file of the folder. */
   async changed(name: string): Promise<void> {
+    const { files } = this;
     if (name === this.robot.name.peek()) {
-      await this.files.open(name);
+      await this.robotChanged(name);
       return;
     }
-    const { files } = this;
     const own = files.file.peek();
     const now = this.find((file) => file.name === name)?.version;
     // The first gait of the folder, or one whose mistakes were corrected.
@@ -92,12 +92,30 @@ export class Opening {
     try {
       const { table, version } = await this.gateway.ask<Read>("read", { name });
       if (!table || version === files.file.peek().version) return;
-      files.conflict.value = { name, version, table, mistakes: [], when: "open" };
+      files.conflict.value = { ...NOTHING, name, version, table, when: "open", of: "table" };
       // Nothing of one's own would be lost.
       if (files.isSaved.peek()) {
-        files.takeTheirs();
+        await files.takeTheirs();
         toast(t("design.reread", { name }));
       }
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Take in that another program saved the robot's file. */
+  private async robotChanged(name: string): Promise<void> {
+    const now = this.find((file) => file.name === name)?.version;
+    if (now === this.robot.versionOf(name)) return; // this page saved it
+    if (this.robot.isSaved.peek() || !now) {
+      await this.files.open(name);
+      return;
+    }
+    try {
+      const { robot, version } = await this.gateway.ask<Read>("read", { name });
+      if (version === this.robot.versionOf(name)) return;
+      const found = { name, version, robot };
+      this.files.conflict.value = { ...NOTHING, ...found, when: "open", of: "robot" };
     } catch (error) {
       this.gateway.refuse(error);
     }
@@ -116,7 +134,14 @@ export class Opening {
     else if (name && read?.table && version !== base.version) {
       files.file.value = { name, version, saved: 0 };
       const { table, version: now } = read;
-      files.conflict.value = { name, version: now, table, mistakes: [], when: "open" };
+      files.conflict.value = {
+        ...NOTHING,
+        name,
+        version: now,
+        table,
+        when: "open",
+        of: "table",
+      };
       return;
     }
     toast(t("design.draft"));
@@ -127,6 +152,10 @@ export class Opening {
     try {
       if (draft) {
         const robot = draft.robot as SentFile | null;
+        if (robot && draft.robot_version !== null) {
+          if (draft.robot_version) this.robot.learn(robot.name, draft.robot_version, null);
+          return { ...(await this.robotIn(robot)), isEdited: true };
+        }
         const name = this.find((file) => file.slot === "robot" && file.name === robot?.name)?.name;
         return await (name ? this.robotOf(name) : this.robotIn(robot));
       }
@@ -141,7 +170,9 @@ export class Opening {
 
   /** The robot of a file of the folder. */
   private async robotOf(name: string): Promise<ReadRobot> {
-    return await this.robot.read(name, (await this.gateway.ask<Read>("read", { name })).robot);
+    const { robot, version } = await this.gateway.ask<Read>("read", { name });
+    if (robot !== null) this.robot.learn(name, version, robot);
+    return await this.robot.read(name, robot);
   }
 
   private robotIn(file: SentFile | null): Promise<ReadRobot> {

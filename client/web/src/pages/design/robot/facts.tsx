@@ -2,44 +2,46 @@
 
 import type { RobotReply } from "../../../core/wire";
 import { type MessageName, t } from "../../../i18n";
-
-const FACTS = [
-  "legs",
-  "width_m",
-  "length_m",
-  "height_m",
-  "mass_kg",
-  "body_mass_kg",
-  "link_mass_kg",
-  "root_link_m",
-  "first_link_m",
-  "second_link_m",
-  "link_radius_m",
-  "range_deg",
-  "drop_m",
-  "ang_min_deg_s",
-  "hold_s",
-  "torque_n_m",
-  "kp",
-  "kv",
-  "damping",
-  "armature",
-  "friction",
-] as const;
+import type { Can } from "../can";
+import type { Files } from "../files/files";
+import { Field } from "./field";
+import type { Numbers } from "./numbers";
+import type { RobotInUse } from "./robot";
+import { limitText, NUMBERS, pairOf, textOf, unitOf } from "./units";
 
 interface Props {
-  robot: RobotReply | null;
-  /** Name of its file; "": the workshop's hexapod. */
-  file: string;
+  robot: RobotInUse;
+  numbers: Numbers;
+  files: Files;
+  can: Can;
 }
 
-export function Robot({ robot, file }: Props) {
-  if (!robot) return null;
+export function Robot({ robot, numbers, files, can }: Props) {
+  const used = robot.used.value;
+  if (!used) return null;
+  const { reply, name } = used;
   return (
     <section class="robot" aria-label={t("design.robot")}>
       <p>
-        <b>{robot.name}</b> <span class="muted">{file || t("design.workshopRobot")}</span>
+        <b>{reply.name}</b> <span class="muted">{name || t("design.workshopRobot")}</span>
       </p>
+      {used.text !== null && (
+        <p class="robot-file">
+          <button
+            class="button small"
+            type="button"
+            disabled={can.save && robot.isSaved.value}
+            onClick={() => void files.keepRobot()}
+          >
+            {t(can.save ? "design.saveRobot" : "design.downloadRobot")}
+          </button>
+          {can.save && (
+            <small class={robot.isSaved.value ? "muted" : "unsaved"}>
+              {t(robot.isSaved.value ? "design.isSaved" : "design.unsaved")}
+            </small>
+          )}
+        </p>
+      )}
       <p class="muted">{t("design.robotHint")}</p>
       <table class="facts">
         <thead>
@@ -50,8 +52,8 @@ export function Robot({ robot, file }: Props) {
           </tr>
         </thead>
         <tbody>
-          {FACTS.filter((name) => name in robot.facts).map((name) => (
-            <Fact key={name} robot={robot} name={name} />
+          {NUMBERS.filter(([fact]) => fact in reply.facts).map(([fact, isFree]) => (
+            <Fact key={fact} robot={reply} name={fact} numbers={isFree ? numbers : null} />
           ))}
         </tbody>
       </table>
@@ -59,40 +61,36 @@ export function Robot({ robot, file }: Props) {
   );
 }
 
-function Fact({ robot, name }: { robot: RobotReply; name: (typeof FACTS)[number] }) {
-  const [of, shown] = UNITS.find(([end]) => name.endsWith(end)) ?? ["", { unit: "", times: 1 }];
-  const text = (value: unknown) =>
-    typeof value === "number" ? String(Number((value * shown.times).toPrecision(4))) : "–";
-  const value = robot.facts[name];
-  const [low, high] = Array.isArray(value) ? value : [value, value];
-  const limit = robot.limits[name] as [number | null, number | null] | undefined;
+interface FactProps {
+  robot: RobotReply;
+  name: string;
+  /** null: the number follows from others. */
+  numbers: Numbers | null;
+}
+
+function Fact({ robot, name, numbers }: FactProps) {
+  const unit = unitOf(name);
+  const [low, high] = pairOf(robot, name);
+  const limits = robot.limits[name] as [number | null, number | null] | undefined;
   const isOut =
-    limit &&
-    ((typeof low === "number" && limit[0] !== null && low < limit[0] - 1e-9) ||
-      (typeof high === "number" && limit[1] !== null && high > limit[1] + 1e-9));
+    limits &&
+    ((limits[0] !== null && low < limits[0] - 1e-9) ||
+      (limits[1] !== null && high > limits[1] + 1e-9));
+  const label = t(`design.fact.${name}` as MessageName);
+  const shown = low === high ? textOf(low, unit) : `${textOf(low, unit)} – ${textOf(high, unit)}`;
   return (
-    <tr class={isOut ? "out" : ""} data-fact={name} data-unit={of}>
+    <tr class={isOut ? "out" : ""} data-fact={name} data-unit={unit.of}>
       <th scope="row">
-        {t(`design.fact.${name}` as MessageName)} {shown.unit && <small>{shown.unit}</small>}
+        {label} {unit.shown && <small>{unit.shown}</small>}
       </th>
-      <td>{low === high ? text(low) : `${text(low)} – ${text(high)}`}</td>
-      <td>{limit ? limitText(limit.map((one) => (one === null ? null : text(one)))) : "–"}</td>
+      <td>
+        {numbers ? (
+          <Field numbers={numbers} name={name} label={label} shown={shown} robot={robot} />
+        ) : (
+          shown
+        )}
+      </td>
+      <td>{limitText(limits, unit)}</td>
     </tr>
   );
 }
-
-function limitText([low, high]: (string | null)[]): string {
-  if (low == null && high == null) return "–";
-  if (low == null) return `≤ ${high}`;
-  return high == null ? `≥ ${low}` : `${low} – ${high}`;
-}
-
-/** How numbers are shown, by the end of their names. */
-const UNITS: readonly [string, { unit: string; times: number }][] = [
-  ["_n_m", { unit: "N m", times: 1 }],
-  ["_deg_s", { unit: "°/s", times: 1 }],
-  ["_m", { unit: "mm", times: 1000 }],
-  ["_kg", { unit: "g", times: 1000 }],
-  ["_deg", { unit: "°", times: 1 }],
-  ["_s", { unit: "s", times: 1 }],
-];

@@ -4,6 +4,9 @@ import { computed, signal } from "@preact/signals";
 import type { RobotReply, SentFile } from "../../../core/wire";
 import type { Gateway } from "../gateway";
 
+/** Name of the file that a change of the workshop's hexapod begins. */
+const NEW_FILE = "robot.toml";
+
 /** A robot that was read. */
 export interface ReadRobot {
   /** Name of its file; "": the workshop's hexapod. */
@@ -11,6 +14,15 @@ export interface ReadRobot {
   /** What stands in the file; null: the workshop's hexapod. */
   text: string | null;
   reply: RobotReply;
+  /** Whether numbers were changed on this page. */
+  isEdited: boolean;
+}
+
+/** What a file of the folder has, as far as the page knows. */
+interface Known {
+  version: string;
+  /** null: the page never saw it. */
+  text: string | null;
 }
 
 export class RobotInUse {
@@ -20,13 +32,47 @@ export class RobotInUse {
   /** Name of the robot's file; "": the workshop's hexapod. */
   readonly name = computed(() => this.used.value?.name ?? "");
 
+  private readonly known = signal<ReadonlyMap<string, Known>>(new Map());
+  /** Whether nothing would be lost without this page. */
+  readonly isSaved = computed(() => {
+    const used = this.used.value;
+    if (!used || used.text === null) return true;
+    const known = this.known.value.get(used.name);
+    return known ? known.text === used.text : !used.isEdited;
+  });
+
   constructor(private readonly gateway: Gateway) {}
 
   /** Read a robot file; the text null is the workshop's hexapod. */
   async read(name: string, text: string | null): Promise<ReadRobot> {
     const robot = text === null ? null : { name, data: new TextEncoder().encode(text) };
     const reply = await this.gateway.ask<RobotReply>("robot", { robot });
-    return { name: text === null ? "" : name, text, reply };
+    return { name: text === null ? "" : name, text, reply, isEdited: false };
+  }
+
+  /**
+   * The robot with other numbers; rejects with `Refused` if no robot may have them.
+   *
+   * @param numbers Their values by name, in the units of the names.
+   */
+  async changed(used: ReadRobot, numbers: Record<string, number>): Promise<ReadRobot> {
+    const name = used.name || NEW_FILE;
+    let { text } = used;
+    for (const [entry, value] of Object.entries(numbers)) {
+      const fields = { robot: fileOf({ name, text }), entry, value };
+      text = (await this.gateway.ask<{ robot: string }>("set_robot", fields)).robot;
+    }
+    return { ...(await this.read(name, text)), isEdited: true };
+  }
+
+  /** Take in what a file of the folder has. */
+  learn(name: string, version: string, text: string | null): void {
+    this.known.value = new Map(this.known.peek()).set(name, { version, text });
+  }
+
+  /** The version of the robot's file that the page knows; "": it knows none. */
+  versionOf(name: string): string {
+    return this.known.peek().get(name)?.version ?? "";
   }
 
   use(robot: ReadRobot): void {
@@ -35,8 +81,11 @@ export class RobotInUse {
 
   /** The robot as a request sends it; null: the workshop's hexapod. */
   sent(): SentFile | null {
-    const text = this.used.peek()?.text ?? null;
-    if (text === null) return null;
-    return { name: this.name.peek(), data: new TextEncoder().encode(text) };
+    const used = this.used.peek();
+    return used && fileOf(used);
   }
+}
+
+function fileOf({ name, text }: Pick<ReadRobot, "name" | "text">): SentFile | null {
+  return text === null ? null : { name, data: new TextEncoder().encode(text) };
 }

@@ -1,6 +1,6 @@
 /** The table that is edited: its steps, the place in it, and the key whose rows are worked on. */
 
-import { batch, computed, signal } from "@preact/signals";
+import { batch, computed, type Signal, signal } from "@preact/signals";
 import { History } from "../../../core/design/history";
 import { sequenceOf } from "../../../core/design/rows";
 import {
@@ -8,11 +8,12 @@ import {
   areaOf,
   badCells,
   type Cell,
-  type Columns,
+  columnsOf,
   type Table,
 } from "../../../core/design/table";
 import { follow, halvesOf } from "../../../core/design/tools";
 import { sequences } from "../../../core/files";
+import type { ReadRobot } from "../robot/robot";
 
 /** A place in the table. */
 export interface Place {
@@ -80,15 +81,20 @@ export class Sheet {
   /** Steps that changed the keys' sequences too. */
   private readonly keySteps: KeyStep[] = [];
 
-  constructor(private readonly followers: Followers) {}
+  /** @param robot The robot on the page; each step brings back its own. */
+  constructor(
+    private readonly followers: Followers,
+    private readonly robot: Signal<ReadRobot | null>,
+  ) {}
 
   /** Begin with another table. Versions go on, so that trials stay with their tables. */
   open(table: Table): void {
     const before = this.table.peek();
     if (before) this.followers.before();
     batch(() => {
-      if (before) this.history.peek()!.open(table);
-      else this.history.value = new History(table);
+      const robot = this.robot.peek();
+      if (before) this.history.peek()!.open(table, robot);
+      else this.history.value = new History(table, robot);
       if (before?.legs.length !== table.legs.length) this.followers.legsChanged();
       this.key.value = sequenceOf(table, FORWARD, sequences.peek()) ? FORWARD : 0;
       this.select({ row: this.sequence.peek()?.[0] ?? 0, col: 0 });
@@ -96,10 +102,18 @@ export class Sheet {
     this.followers.changed(null, null);
   }
 
-  /** Take the table over to another robot of as many legs. */
-  refit(columns: Columns): void {
+  /**
+   * Take the table over to another robot of as many legs: one step.
+   *
+   * @param gesture Changes in a row with the same gesture are one step.
+   */
+  refit(name: string, robot: ReadRobot, gesture: string | null = null): void {
     this.followers.before();
-    this.history.peek()?.refit(columns);
+    batch(() => {
+      this.history.peek()?.apply(name, (table) => table, gesture, robot);
+      this.takeRobot();
+      this.followers.worked();
+    });
     this.followers.changed("tool", null);
   }
 
@@ -139,9 +153,16 @@ export class Sheet {
    * Put another table in place of this one: one step, whatever its kind and legs.
    *
    * @param keys The digits of each key of level B; null: they stay as they are.
+   * @param robot The robot from this step on; left out: it stays.
    * @returns Whether anything has changed.
    */
-  put(name: string, table: Table, by: By, keys: readonly string[] | null = null): boolean {
+  put(
+    name: string,
+    table: Table,
+    by: By,
+    keys: readonly string[] | null = null,
+    robot?: ReadRobot,
+  ): boolean {
     const history = this.history.peek();
     const from = this.table.peek();
     if (!history || !from) return false;
@@ -149,11 +170,12 @@ export class Sheet {
     const fromKeys = sequences.peek();
     batch(() => {
       this.unpasted.value = [];
-      history.apply(name, () => table);
+      history.apply(name, () => table, null, robot);
       const to = this.table.peek()!;
       if (keys) sequences.value = keys;
       if (keys && to !== from) this.keySteps.push({ from, to, fromKeys, toKeys: keys });
       this.turn(from);
+      this.takeRobot();
     });
     const isChanged = this.table.peek() !== from || keys !== null;
     if (isChanged) this.followers.changed(by, null);
@@ -212,8 +234,18 @@ export class Sheet {
         else if (one.from === from && one.to === to) sequences.value = one.toKeys;
       }
       this.turn(from);
+      this.takeRobot();
     });
     this.followers.changed(null, null);
+  }
+
+  /** Take in that a step may have led to another robot. */
+  private takeRobot(): void {
+    const history = this.history.peek();
+    const robot = history?.robot.peek() as ReadRobot | null;
+    if (!robot || robot === this.robot.peek()) return;
+    this.robot.value = robot;
+    history?.refit(columnsOf(robot.reply));
   }
 
   /** Take in that a step may have led to a table of another shape. */
