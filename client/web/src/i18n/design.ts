@@ -477,6 +477,7 @@ export const design = {
   "design.conflictGone": ["{name} is not there any more.", "{name} はなくなっています。"],
   "design.takeTheirs": ["Take the file's table", "ファイルの表を使う"],
   "design.takeTheirRobot": ["Take the file's robot", "ファイルのロボットを使う"],
+  "design.keepMineRobot": ["Keep mine", "今のロボットを使い続ける"],
   "design.overwriteRobot": ["Save mine over it", "今のロボットで上書きする"],
   "design.conflict.robot": [
     "{name} was saved by another program. Your robot has changes that are not saved.",

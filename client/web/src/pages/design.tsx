@@ -139,9 +139,9 @@ function useKeys({ sheet, files, trials, membership }: Studio): void {
       if (event.isComposing || !(event.ctrlKey || event.metaKey) || event.altKey) return;
       if (document.querySelector("dialog[open]")) return;
       const key = event.key.toLowerCase();
-      // A field other than the grid's has an undo of its own.
+      // A field other than the grid's has an undo of its own while something is typed there.
       const isField = (event.target as HTMLElement).matches(
-        "input:not(.cell-input):not([type=range])",
+        "input:not(.cell-input):not([type=range]):not([data-kept])",
       );
       if (key === "enter") void trials.tryIt();
       else if (key === "s" && membership.name.peek()) toast(t("design.class.kept"));

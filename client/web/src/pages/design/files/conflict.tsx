@@ -52,7 +52,7 @@ export function ConflictDialog({ files }: { files: Files }) {
             else void files.save(name, true);
           }}
         >
-          {t(saving ? (isRobot ? "design.overwriteRobot" : "design.overwrite") : "design.keepMine")}
+          {t(`design.${saving ? "overwrite" : "keepMine"}${isRobot ? "Robot" : ""}`)}
         </button>
       </div>
     </Dialog>

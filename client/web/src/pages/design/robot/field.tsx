@@ -48,6 +48,7 @@ export function Field({ numbers, robot, name, label, shown }: Props) {
     <>
       <input
         class="robot-number"
+        data-kept={typed.value === null || undefined}
         inputMode="decimal"
         autoComplete="off"
         spellcheck={false}
