@@ -137,3 +137,21 @@ test("another file begins without steps to undo", () => {
   assert.equal(history.table.value, walking);
   assert.ok(!history.canUndo.value && history.version.value !== version);
 });
+
+test("another robot is a step, and each step brings back its own robot", () => {
+  const [first, longer, longest] = [{ leg: 70 }, { leg: 80 }, { leg: 90 }];
+  const history = new History(sample, first);
+  const version = history.version.value;
+  const keep = (table) => table;
+  history.apply("longer", keep, "leg 1", longer);
+  history.apply("longest", keep, "leg 1", longest); // the same gesture
+  history.apply("type", (table) => t.setCell(table, 0, 0, "17"));
+  assert.equal(history.robot.value, longest);
+  history.undo();
+  assert.deepEqual([history.robot.value, history.undoName.value], [longest, "longest"]);
+  history.undo();
+  assert.deepEqual([history.robot.value, history.version.value], [first, version]);
+  assert.equal(history.canUndo.value, false);
+  history.redo();
+  assert.equal(history.robot.value, longest);
+});
