@@ -249,11 +249,13 @@ export class Files {
   async keep(): Promise<void> {
     if (!this.can.peek().save) return await this.download();
     await this.save(this.usualName());
+    await this.robot.settled;
     if (!this.robot.isSaved.peek()) await this.keepRobot();
   }
 
   /** Save the robot's file, or, without a folder, hand it to the person. */
   async keepRobot(force = false): Promise<void> {
+    await this.robot.settled;
     const used = this.robot.used.peek();
     if (used?.text == null) return;
     const { name, text } = used;

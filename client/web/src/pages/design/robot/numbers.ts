@@ -15,8 +15,6 @@ const DECIMALS = 1e6;
 const BAD_START = "robot.start-height";
 
 export class Numbers {
-  private last: Promise<unknown> = Promise.resolve();
-
   constructor(
     private readonly robot: RobotInUse,
     private readonly files: Files,
@@ -30,8 +28,8 @@ export class Numbers {
    * @returns Why the robot stays as it is; null: it has the number.
    */
   set(name: string, text: string, gesture: string): Promise<string | null> {
-    const done = this.last.then(() => this.change(name, text, gesture));
-    this.last = done.catch(() => null);
+    const done = this.robot.settled.then(() => this.change(name, text, gesture));
+    this.robot.settled = done.catch(() => null);
     return done;
   }
 

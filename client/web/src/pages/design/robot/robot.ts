@@ -32,6 +32,8 @@ export class RobotInUse {
   /** Name of the robot's file; "": the workshop's hexapod. */
   readonly name = computed(() => this.used.value?.name ?? "");
 
+  /** Settles when no change of a number is under way. */
+  settled: Promise<unknown> = Promise.resolve();
   private readonly known = signal<ReadonlyMap<string, Known>>(new Map());
   /** Whether nothing would be lost without this page. */
   readonly isSaved = computed(() => {
