@@ -207,9 +207,12 @@ type DesignRequest =
   | "robot"
   | "trial"
   | "coach"
+  | "map"
+  | "variants"
   | "cancel"
   | "edit"
   | "check"
+  | "play"
   | "phase"
   | "name"
   | "vote"
@@ -225,7 +228,6 @@ type ClassRequest =
   | "new_code"
   | "show"
   | "export"
-  | "play"
   | "stop_play";
 
 /** A file on its way to the court. */
