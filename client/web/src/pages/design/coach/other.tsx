@@ -3,6 +3,7 @@
 import { figure } from "../../../core/design/trial";
 import type { OtherGait } from "../../../core/wire";
 import { type MessageName, t } from "../../../i18n";
+import { isNarrow } from "../../../ui/screen";
 import { FIGURES, titleOf, unit, written } from "../trials/figures";
 import type { Others } from "./others";
 
@@ -73,7 +74,11 @@ export function Acts({ others, gait, name }: Omit<Props, "before">) {
         class="button"
         type="button"
         aria-label={t("design.other.watchName", { name })}
-        onClick={() => others.watch(gait, name)}
+        onClick={() => {
+          others.watch(gait, name);
+          // Where all stands below one another, the picture would be out of sight.
+          if (isNarrow.peek()) document.querySelector(".stage")?.scrollIntoView({ block: "end" });
+        }}
       >
         {t("design.other.watch")}
       </button>

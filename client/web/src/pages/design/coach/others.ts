@@ -126,10 +126,11 @@ export class Others {
   /** Put a gait that was found into the table, in one step, and let it walk. */
   take(gait: OtherGait, name: string): void {
     const base = this.base.peek();
-    if (!base || !this.isCurrent.peek()) return;
-    const step = t("design.step.other", { name });
-    const edit = (now: Table) => changed(now, base.rows, gait.changes);
-    this.sheet.edit(step, edit, null, "coach", "table");
+    const now = this.sheet.table.peek();
+    if (!base || !now || !this.isCurrent.peek()) return;
+    const table = changed(now, base.rows, gait.changes);
+    // Put, not edited: halves that mirror each other would make another gait of it.
+    this.sheet.put(t("design.step.other", { name }), table, "coach", null, "table");
     void this.trials.tryIt();
   }
 

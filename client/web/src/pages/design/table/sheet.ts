@@ -139,9 +139,16 @@ export class Sheet {
    * Put another table in place of this one: one step, whatever its kind and legs.
    *
    * @param keys The digits of each key of level B; null: they stay as they are.
+   * @param size How much the coach was allowed to change.
    * @returns Whether anything has changed.
    */
-  put(name: string, table: Table, by: By, keys: readonly string[] | null = null): boolean {
+  put(
+    name: string,
+    table: Table,
+    by: By,
+    keys: readonly string[] | null = null,
+    size: string | null = null,
+  ): boolean {
     const history = this.history.peek();
     const from = this.table.peek();
     if (!history || !from) return false;
@@ -156,7 +163,7 @@ export class Sheet {
       this.turn(from);
     });
     const isChanged = this.table.peek() !== from || keys !== null;
-    if (isChanged) this.followers.changed(by, null);
+    if (isChanged) this.followers.changed(by, size);
     return isChanged;
   }
 
