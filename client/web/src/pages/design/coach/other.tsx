@@ -85,6 +85,7 @@ export function Acts({ others, gait, name }: Omit<Props, "before">) {
       <button
         class="button strong"
         type="button"
+        disabled={!gait.changes.length}
         aria-label={t("design.other.takeName", { name })}
         onClick={() => others.take(gait, name)}
       >
