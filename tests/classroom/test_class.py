@@ -149,9 +149,14 @@ def test_the_teacher_closes_phases_and_the_coach(
     with pytest.raises(Refused) as refusal:
         student.ask("phase", number=4)
     assert code_of(refusal) == "class.phase-closed"
-    with pytest.raises(Refused) as refusal:
-        student.ask("coach", job="a", table=table, size="cell", seconds=1)
-    assert code_of(refusal) == "class.coach-closed"
+    for do, fields in (
+        ("coach", {"size": "cell", "seconds": 1.0}),
+        ("map", {"seconds": 1.0}),
+        ("variants", {}),
+    ):
+        with pytest.raises(Refused) as refusal:
+            student.ask(do, job="a", table=table, **fields)
+        assert code_of(refusal) == "class.coach-closed"
     assert teacher.group["rules"] == rules
 
     teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})

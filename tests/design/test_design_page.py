@@ -201,6 +201,20 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -
     assert {one["job"] for one in page.progress} == {"search"}
 
 
+def test_other_gaits_are_found(page: DesignClient) -> None:
+    """A map has the own gait at least; variants are bred only from tables that fit the robot."""
+    fields = {"table": sample(page), "sequences": [[0], [8, 7, 6, 5], [1, 2, 3, 4]]}
+    found = page.ask("map", job="map", **fields, seconds=0.0)
+    own = next(cell for cell in found["cells"] if [cell["speed"], cell["arousal"]] == found["own"])
+    assert own["gait"]["figures"]["speed_mm_s"] == pytest.approx(60, abs=3)
+    kept = own["gait"]["table"]
+    refusal = refused(page, "variants", job="six", **fields, keep=[kept[1:]])
+    assert refusal["error"]["code"] == "studio.wrong-tables"
+    variants = page.ask("variants", job="six", **fields, keep=[kept], round=1)["variants"]
+    assert all(len(one["table"]) == len(kept) for one in variants)
+    assert {one["job"] for one in page.progress} == {"map", "six"}
+
+
 def test_a_page_that_goes_ends_its_search(opens: Opens) -> None:
     """A search of two minutes whose page has gone does not keep the next one waiting."""
     gone, other = opens(), opens()

@@ -129,6 +129,7 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     page.ask("edit", table=slow, sequences=SEQUENCES, by="tool")
     guesses = [{"about": "pace", "said": "slower"}, {"about": "way", "said": "left"}]
     page.ask("trial", table=slow, sequences=SEQUENCES, keys="2", guesses=guesses)
+    page.ask("trial", table=own, sequences=SEQUENCES, keys="2", watched=True)  # no evidence
     page.ask("name", word="calm")
     page.ask("vote", choice="B")
     page.ask("vote", choice="A")

@@ -119,7 +119,7 @@ def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoo
         page.sees(".coach", "has closed the other searches")
         page.misses(".coach .sizes button")
         teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})
-        expect(page.find(".coach .sizes button")).to_have_count(3, timeout=TIMEOUT_MS)
+        expect(page.find(".coach .sizes button")).to_have_count(5, timeout=TIMEOUT_MS)
 
         page.changes("31")
         teacher.ask("hand_out", title="Step 1", sample=True)

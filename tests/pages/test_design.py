@@ -1,6 +1,7 @@
 """Tests of /design, the page that `lacoc design` opens (workshop 3-2, 4-1, 4-2)."""
 
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -225,6 +226,65 @@ def test_the_coach_works_and_can_be_stopped(
     page.page.click("text=Stop")
     page.misses(".coach .working")
     page.sees(".coach >> text=Which numbers matter?")
+
+
+def test_other_gaits_are_watched_and_taken(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """A gait of the map is chosen by keyboard and watched; a variant is bred from, and taken."""
+    page = designer(open_page, address)
+    page.page.click("#tab-coach")
+    page.page.click(".coach >> text=Map of gaits")
+    page.until("(window.__studio.search.progress.value?.filled ?? 0) > 0")
+    page.page.click(".coach .working >> text=Stop")
+    page.sees(".gait-map", "Stopped early")
+    page.find(".map-grid .has-gait").first.click()
+    page.sees(".other-gait .words", "mm/s")
+    page.press("ArrowDown")
+    chosen = page.find(".map-grid [aria-selected=true] button")
+    expect(chosen).to_be_focused()
+    assert violations(page.page) == []
+    page.find(".map-grid .has-gait").first.click()
+    name = page.find(".other-gait").get_attribute("aria-label")
+    page.page.click(".other-gait >> text=Watch")
+    page.sees(".result h2", name)
+    assert page.page.evaluate("window.__studio.trials.all.value.length") == 0
+    page.page.click(".coach >> text=Six variants")
+    cards = page.find(".variants li")
+    expect(cards).to_have_count(6, timeout=TIMEOUT_MS)
+    first = cards.first.inner_text()
+    page.find(".variants .keep input").nth(0).check()
+    page.find(".variants .keep input").nth(3).check()
+    assert violations(page.page) == []
+    page.page.click("button:text-is('Next six')")
+    page.sees(".variants", "Round 2")
+    page.page.click(".variants button:text-is('Back')")
+    page.sees(".variants", "Round 1")
+    assert cards.first.inner_text() == first
+    page.page.click("[aria-label='Take it: Variant 1.1']")
+    page.sees(".result h2", "Trial 1")
+    page.sees(".coach", "The table has changed")
+    page.page.click("[aria-label*='Variant 1.1'][title*='Ctrl+Z']")  # one step
+    page.sees(".bar .name small", "saved")
+    page.sees(".variants", "Round 1")  # they are of this table
+
+
+def test_a_table_goes_to_practice(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """The button opens practice in a new tab; without a free tab there is a link."""
+    page = designer(open_page, address)
+    page.page.click(".bar .name")
+    with page.page.context.expect_page() as coming:
+        page.page.click("dialog >> text=Practise with it")
+    practice = coming.value
+    practice.wait_for_url("**/practice*", timeout=TIMEOUT_MS)
+    expect(practice.locator(".pad, .key").first).to_be_visible(timeout=TIMEOUT_MS)
+    practice.close()
+    page.page.evaluate("window.open = () => null")
+    page.page.click("dialog >> text=Practise with it")
+    expect(page.find("dialog a")).to_have_attribute("href", re.compile("/practice#key="))
+    assert violations(page.page) == []
 
 
 def test_predict_compare_and_the_way_back(

@@ -106,9 +106,14 @@ class DesignPage:
             case requests.TrialAsk():
                 answers.later(asked.id, self._trial(asked, learner))
             case requests.CoachAsk():
-                if not learner.student.rules.allows(asked.size):
-                    raise UserError(say("class.coach-closed"))
+                _must_allow(learner, asked.size)
                 answers.later(asked.id, self._studio.coach(asked))
+            case requests.MapAsk():
+                _must_allow(learner, "table")
+                answers.later(asked.id, self._studio.map(asked))
+            case requests.VariantsAsk():
+                _must_allow(learner, "table")
+                answers.later(asked.id, self._studio.variants(asked))
             case requests.CancelAsk():
                 answers.later(asked.id, self._studio.cancel(asked.job))
             case requests.PlayAsk():
@@ -126,8 +131,10 @@ class DesignPage:
                 answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
 
     async def _trial(self, asked: requests.TrialAsk, learner: Learner) -> msgspec.Raw:
-        """Let the robot walk, and keep what the trial shows as evidence."""
+        """Let the robot walk; keep what the trial shows as evidence, unless it is only watched."""
         reply, payload = await self._studio.trial(asked)
+        if asked.watched:
+            return msgspec.Raw(payload)
         await learner.tried(asked, reply)
         self._host.learned(learner.student, reply)
         task = asyncio.get_running_loop().create_task(self._compare(asked, learner))
@@ -237,6 +244,16 @@ def parsed(asked: requests.ParseAsk) -> Any:
     if not isinstance(data, bytes):
         raise UserError(say("gateway.bad-message", error=type(data).__name__))
     return read_file(asked.name, data)
+
+
+def _must_allow(learner: Learner, size: str | None) -> None:
+    """Check that the coach may search for a change of this size.
+
+    Raises:
+        UserError: if the teacher has closed it.
+    """
+    if not learner.student.rules.allows(size):
+        raise UserError(say("class.coach-closed"))
 
 
 def _court(host: Host) -> str | None:

@@ -114,6 +114,8 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
     keys: _Name = ""
     seconds: float | None = None
     guesses: tuple[Foretold, ...] = ()
+    watched: bool = False
+    """Whether the table is the coach's and is only watched; then the trial is no evidence."""
 
 
 class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
@@ -194,6 +196,37 @@ class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
     seed: int = 0
 
 
+class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
+    """Ask the coach for a map of gaits: one for each speed and arousal."""
+
+    job: _Job
+    """As in `CoachAsk`."""
+    table: FileTable | None = None
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+    key: int | None = None
+    seconds: float = 30.0
+    seed: int = 0
+
+
+class VariantsAsk(Ask, frozen=True, kw_only=True, tag="variants"):
+    """Ask the coach for six gaits that look different."""
+
+    job: _Job
+    """As in `CoachAsk`."""
+    table: FileTable | None = None
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+    key: int | None = None
+    keep: tuple[tuple[int, ...], ...] = ()
+    """Tables of one or two gaits to breed from; empty: from `table`."""
+    before: tuple[tuple[int, ...], ...] = ()
+    """Tables of gaits that were shown before: new ones differ from them."""
+    round: int = 0
+    """How many rounds were before."""
+    seed: int = 0
+
+
 class CancelAsk(Ask, frozen=True, kw_only=True, tag="cancel"):
     """End a search of this page early."""
 
@@ -212,6 +245,8 @@ Asked = (
     | SetRobotAsk
     | TrialAsk
     | CoachAsk
+    | MapAsk
+    | VariantsAsk
     | CancelAsk
     | EditAsk
     | CheckAsk

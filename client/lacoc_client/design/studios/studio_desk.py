@@ -23,11 +23,15 @@ from lacoc_shared.studio import (
     CoachReply,
     CoachRequest,
     GaitFiles,
+    MapReply,
+    MapRequest,
     Progress,
     RobotReply,
     RobotRequest,
     TrialReply,
     TrialRequest,
+    VariantsReply,
+    VariantsRequest,
 )
 
 _ROBOT_S = 20.0
@@ -35,8 +39,8 @@ _TRIAL_S = 120.0
 _CANCEL_S = 5.0
 _COACH_MOST_S = 3600.0
 _COACH_MORE_S = 300.0
-"""How much longer than its search time a coach's reply may take [s]: the search may have to wait
-for others, and after it the coach undoes changes that hardly help."""
+"""How much longer than its search time a reply may take [s]: the search may have to wait for
+others, and after it the coach undoes changes that hardly help."""
 
 
 class StudioDesk:
@@ -78,10 +82,9 @@ class StudioDesk:
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
         """Search for better numbers, and tell the page several times a second how far this is."""
-        job = self._job(asked.job)
         request = CoachRequest(
             protocol=PROTOCOL,
-            job=job,
+            job=self._job(asked.job),
             files=_files(asked.table, asked.robot, asked.sequences),
             key=asked.key,
             goal=asked.goal,
@@ -89,10 +92,55 @@ class StudioDesk:
             seconds=asked.seconds,
             seed=asked.seed,
         )
-        loop = asyncio.get_running_loop()
+        return await self._search("coach", asked.job, request, CoachReply, asked.seconds)
+
+    async def map(self, asked: requests.MapAsk) -> msgspec.Raw:
+        """Search for a map of gaits; the page is told as in `coach`."""
+        request = MapRequest(
+            protocol=PROTOCOL,
+            job=self._job(asked.job),
+            files=_files(asked.table, asked.robot, asked.sequences),
+            key=asked.key,
+            seconds=asked.seconds,
+            seed=asked.seed,
+        )
+        return await self._search("map", asked.job, request, MapReply, asked.seconds)
+
+    async def variants(self, asked: requests.VariantsAsk) -> msgspec.Raw:
+        """Search for six gaits that look different; the page is told as in `coach`."""
+        request = VariantsRequest(
+            protocol=PROTOCOL,
+            job=self._job(asked.job),
+            files=_files(asked.table, asked.robot, asked.sequences),
+            key=asked.key,
+            keep=asked.keep,
+            before=asked.before,
+            round=asked.round,
+            seed=asked.seed,
+        )
+        return await self._search("variants", asked.job, request, VariantsReply, 0.0)
+
+    async def _search(
+        self,
+        what: str,
+        name: str,
+        request: CoachRequest | MapRequest | VariantsRequest,
+        reply: type[CoachReply | MapReply | VariantsReply],
+        seconds: float,
+    ) -> msgspec.Raw:
+        """Have a studio search, and tell the page how far it is.
+
+        Args:
+            what: name of the request.
+            name: the page's own name of the search.
+            request: the request.
+            reply: type of the answer.
+            seconds: how long the page asks to search [s].
+        """
+        job, loop = request.job, asyncio.get_running_loop()
 
         def tell(progress: Progress) -> None:
-            body = {"job": asked.job, **msgspec.structs.asdict(progress)}
+            body = {"job": name, **msgspec.structs.asdict(progress)}
             in_loop(loop, lambda: self._send(wire.map_message(Kind.PROGRESS, body)))
 
         asker = self._studios.free()
@@ -100,9 +148,9 @@ class StudioDesk:
         self._jobs[job] = asker
         try:
             # The studio refuses a time that is too long, or no number; its refusal must come.
-            search_s = asked.seconds if 0 <= asked.seconds <= _COACH_MOST_S else 0.0
+            search_s = seconds if 0 <= seconds <= _COACH_MOST_S else 0.0
             timeout_s = search_s + _COACH_MORE_S
-            return msgspec.Raw((await asker.ask("coach", request, CoachReply, timeout_s))[1])
+            return msgspec.Raw((await asker.ask(what, request, reply, timeout_s))[1])
         except asyncio.CancelledError:  # the page has gone, so nobody waits for the search
             with suppress(UserError):
                 await self._cancel(job)
@@ -112,7 +160,7 @@ class StudioDesk:
             await asyncio.shield(asyncio.to_thread(listening.close))
 
     async def cancel(self, job: str) -> dict[str, Any]:
-        """End a search of this page early; the reply to `coach` has the best table so far."""
+        """End a search of this page early; its own reply has the best so far."""
         await self._cancel(self._job(job))
         return {}
 

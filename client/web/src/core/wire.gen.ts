@@ -383,6 +383,42 @@ export interface CoachReply {
   cancelled: boolean;
 }
 
+export interface Difference {
+  way: string;
+  steps: number;
+}
+
+export interface OtherGait {
+  table: number[];
+  changes: Change[];
+  differences: Difference[];
+  figures: Record<string, unknown>;
+}
+
+export interface MapCell {
+  speed: number;
+  arousal: number;
+  gait: OtherGait;
+}
+
+export interface MapReply {
+  key: number;
+  speeds_mm_s: number[];
+  arousals_mm_s: number[];
+  cells: MapCell[];
+  own: [number, number] | null;
+  before: Record<string, unknown>;
+  trials: number;
+  cancelled: boolean;
+}
+
+export interface VariantsReply {
+  key: number;
+  variants: OtherGait[];
+  trials: number;
+  cancelled: boolean;
+}
+
 export interface FileRow {
   key: number;
   posture: number;

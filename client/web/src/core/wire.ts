@@ -208,9 +208,12 @@ type DesignRequest =
   | "set_robot"
   | "trial"
   | "coach"
+  | "map"
+  | "variants"
   | "cancel"
   | "edit"
   | "check"
+  | "play"
   | "phase"
   | "name"
   | "vote"
@@ -226,7 +229,6 @@ type ClassRequest =
   | "new_code"
   | "show"
   | "export"
-  | "play"
   | "stop_play";
 
 /** A file on its way to the court. */

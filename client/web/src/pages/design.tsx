@@ -108,6 +108,7 @@ export default function Design() {
           can={studio.can.value}
           membership={membership}
           handed={studio.handed}
+          court={studio.court}
           onClose={close}
         />
       )}

@@ -70,9 +70,22 @@ export function Side({ studio, tab }: Props) {
             trials={trials}
             can={can}
             canTry={studio.present.value === true}
+            court={studio.court}
+            onVariants={() => {
+              tab.value = "coach";
+              void studio.coach.others.askVariants();
+            }}
           />
         )}
-        {tab.value === "coach" && <CoachPanel coach={studio.coach} sheet={sheet} can={can} />}
+        {tab.value === "coach" && (
+          <CoachPanel
+            coach={studio.coach}
+            sheet={sheet}
+            can={can}
+            word={studio.learning.phases.value?.word ?? ""}
+            trials={trials}
+          />
+        )}
         {tab.value === "robot" && (
           <Robot robot={robot} numbers={studio.numbers} files={studio.files} can={can} />
         )}

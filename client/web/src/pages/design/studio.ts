@@ -9,6 +9,9 @@ import { ALL, type Can } from "./can";
 import { Handed } from "./class/handed";
 import { type Greeting, Membership } from "./class/membership";
 import { Coach } from "./coach/coach";
+import { Others } from "./coach/others";
+import { Search } from "./coach/search";
+import { Court } from "./files/court";
 import { Files } from "./files/files";
 import { sentGait } from "./files/gait";
 import { Opening } from "./files/opening";
@@ -56,9 +59,17 @@ export class Studio {
     this.learning,
     this.showing,
   );
-  readonly coach = new Coach(this.gateway, this.sheet, this.robot, this.trials);
+  readonly search = new Search(this.gateway);
+  readonly coach = new Coach(
+    this.search,
+    new Others(this.search, this.sheet, this.robot, this.trials),
+    this.sheet,
+    this.robot,
+    this.trials,
+  );
   readonly files: Files = new Files(this.gateway, this.sheet, this.robot, this.can);
   readonly numbers = new Numbers(this.robot, this.files);
+  readonly court = new Court(this.gateway, this.sheet, this.robot);
   readonly handed = new Handed(this.membership, this.files);
 
   /** What the picture shows. */
@@ -107,6 +118,7 @@ export class Studio {
     // What is on the page is somebody else's.
     if (before !== undefined && before !== greeting.student) location.reload();
     const { student, draft } = greeting;
+    this.court.leads.value = greeting.court;
     this.greeting = greeting;
     this.can.value = { ...this.can.peek(), save: student === null };
     if (this.opening.isOpen) {
@@ -124,7 +136,7 @@ export class Studio {
       this.learning.phases.value = body;
       this.can.value = { ...this.can.peek(), rules: body.rules };
     } else if (kind === "progress") {
-      this.coach.progress.value = body;
+      this.search.progress.value = body;
     } else if (kind === "handed") {
       this.handed.newest.value = body;
     } else if (kind === "elsewhere") {

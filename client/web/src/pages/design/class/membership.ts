@@ -17,6 +17,8 @@ export interface Greeting {
   token: string | null;
   /** The newest table that the gateway got; null: none. */
   draft: Draft | null;
+  /** Where a table can be taken; null: nowhere. */
+  court: "practice" | "contest" | null;
 }
 
 /** What somebody must do at the door of a class. */

@@ -1,14 +1,14 @@
 /** The coach: what was asked, what was found, and what of it is to be seen. */
 
 import { computed, signal } from "@preact/signals";
-import { change } from "../../../core/design/table";
-import type { CoachReply, Progress } from "../../../core/wire";
+import type { CoachReply } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { sentGait } from "../files/gait";
-import type { Gateway } from "../gateway";
 import type { RobotInUse } from "../robot/robot";
 import type { Sheet } from "../table/sheet";
 import type { Trials } from "../trials/trials";
+import { changed, type Others } from "./others";
+import type { Search } from "./search";
 
 export const GOALS = ["forward", "left", "right"] as const;
 export type Goal = (typeof GOALS)[number];
@@ -44,18 +44,15 @@ const KEY_OF: Record<Goal, number> = { forward: 2, left: 1, right: 3 };
 
 export class Coach {
   readonly goal = signal<Goal>("forward");
-  /** The job that the coach works on; null: none. */
-  readonly job = signal<string | null>(null);
-  readonly progress = signal<(Progress & { job: string }) | null>(null);
   readonly found = signal<Found | null>(null);
   /** Whether the student has guessed, so that what was found may be seen. */
   readonly revealed = signal(false);
   /** The marks of the cells by row and joint; null while none are to be seen. */
   readonly marks = computed(() => this.marksSeen());
-  private jobs = 0;
 
   constructor(
-    private readonly gateway: Gateway,
+    readonly search: Search,
+    readonly others: Others,
     private readonly sheet: Sheet,
     private readonly robot: RobotInUse,
     private readonly trials: Trials,
@@ -69,52 +66,33 @@ export class Coach {
 
   /** Ask for a better gait; null: which numbers matter. */
   async ask(size: Size | null): Promise<void> {
-    const { gateway, sheet } = this;
+    const { sheet } = this;
     const gait = sentGait(sheet, this.robot);
     const rows = sheet.sequence.peek();
     if (!gait || !rows) {
       void this.trials.tryIt(); // says what is missing
       return;
     }
-    const job = `p${Date.now().toString(36)}-${++this.jobs}`;
     const version = sheet.version.peek();
+    this.others.looks.value = null;
     this.found.value = null;
     this.revealed.value = false;
-    this.job.value = job;
-    this.progress.value = null;
-    try {
-      const reply = await gateway.ask<CoachReply>("coach", {
-        job,
-        ...gait,
-        key: sheet.key.peek(),
-        goal: this.goal.peek(),
-        size,
-        seconds: SECONDS,
-        seed: 0,
-      });
-      if (this.job.peek() === job) this.found.value = { reply, version, rows, size };
-    } catch (error) {
-      gateway.refuse(error);
-    } finally {
-      if (this.job.peek() === job) this.job.value = null;
-    }
-  }
-
-  /** Stop searching; what was found so far comes as the reply. */
-  stop(): void {
-    void this.gateway.ask("cancel", { job: this.job.peek() }).catch(() => undefined);
+    const fields = {
+      key: sheet.key.peek(),
+      goal: this.goal.peek(),
+      size,
+      seconds: SECONDS,
+      seed: 0,
+    };
+    const reply = await this.search.ask<CoachReply>("coach", { ...gait, ...fields });
+    if (reply) this.found.value = { reply, version, rows, size };
   }
 
   /** Put the better gait into the table, in one step, and let it walk. */
   apply({ reply, rows, size }: Found): void {
     this.sheet.edit(
       t("design.step.coach"),
-      (now) =>
-        reply.changes.reduce((made, { cell, to_deg }) => {
-          const row = rows[cell.posture] ?? 0;
-          const area = { top: row, bottom: row, left: cell.joint, right: cell.joint };
-          return change(made, area, () => to_deg);
-        }, now),
+      (now) => changed(now, rows, reply.changes),
       null,
       "coach",
       size,

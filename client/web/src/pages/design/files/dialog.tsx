@@ -11,6 +11,8 @@ import type { Handed } from "../class/handed";
 import type { Membership } from "../class/membership";
 import type { RobotInUse } from "../robot/robot";
 import type { Sheet } from "../table/sheet";
+import type { Court } from "./court";
+import { CourtButton } from "./court_button";
 import type { Files } from "./files";
 import "./files.css";
 
@@ -37,10 +39,12 @@ interface Props {
   can: Can;
   membership: Membership;
   handed: Handed;
+  court: Court;
   onClose: () => void;
 }
 
-export function FilesDialog({ files, robot, sheet, can, membership, handed, onClose }: Props) {
+export function FilesDialog(props: Props) {
+  const { files, robot, sheet, can, membership, handed, court, onClose } = props;
   const newest = handed.newest.value;
   const inFolder = can.save ? files.folder.value.files : [];
   const gaits = inFolder.filter(({ slot }) => slot !== "robot");
@@ -100,6 +104,7 @@ export function FilesDialog({ files, robot, sheet, can, membership, handed, onCl
               </button>
             )}
           </div>
+          <CourtButton court={court} />
           <h3>{t("design.robots")}</h3>
           <ul>
             {robots.map(({ name }) => (

@@ -174,7 +174,7 @@ export class Files {
     const robot = this.robot.robot.peek();
     if (!robot) return false;
     const table = fromWire(wire, columnsOf(robot));
-    const isChanged = this.sheet.put(name, table, by, keysFrom(table, sent));
+    const isChanged = this.sheet.put(name, table, by, { keys: keysFrom(table, sent) });
     this.checkLegs();
     return isChanged;
   }
@@ -207,7 +207,7 @@ export class Files {
       else if (table.legs.length !== read.reply.legs.length) {
         // The student's own table comes back with undo, and its robot with it.
         const name = t("design.step.robot", { name: read.reply.name });
-        this.sheet.put(name, standing(read.reply), null, null, read);
+        this.sheet.put(name, standing(read.reply), null, { robot: read });
         this.file.value = { ...NO_FILE, saved: this.sheet.version.peek() };
       } else {
         const isSaved = this.isSaved.peek();

@@ -1,7 +1,9 @@
 /** The task of the phase that the student is at (workshop 4-2). */
 
 import { said, t } from "../../../i18n";
-import { type Can, isClosed } from "../can";
+import { allows, type Can, isClosed } from "../can";
+import type { Court } from "../files/court";
+import { CourtButton } from "../files/court_button";
 import { classes } from "../names";
 import type { Sheet } from "../table/sheet";
 import type { Pose, Trials } from "../trials/trials";
@@ -22,9 +24,12 @@ interface Props {
   trials: Trials;
   can: Can;
   canTry: boolean;
+  court: Court;
+  /** Shows six variants of the gait. */
+  onVariants: () => void;
 }
 
-export function PhasePanel({ learning, sheet, trials, can, canTry }: Props) {
+export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVariants }: Props) {
   const now = learning.phases.value;
   const phase = now?.phases[now.phase - 1];
   if (!now || !phase) return <p class="muted">{t("design.loading")}</p>;
@@ -68,7 +73,17 @@ export function PhasePanel({ learning, sheet, trials, can, canTry }: Props) {
         </button>
       )}
       {number === CONCEPT && <Concept learning={learning} word={now.word} />}
-      {number === CREATIVE && <Check learning={learning} sheet={sheet} />}
+      {number === CONCEPT && now.word && allows(can, "table") && (
+        <button class="button" type="button" disabled={!canTry} onClick={onVariants}>
+          {t("design.phase.variants", { word: now.word })}
+        </button>
+      )}
+      {number === CREATIVE && (
+        <>
+          <Check learning={learning} sheet={sheet} />
+          <CourtButton court={court} />
+        </>
+      )}
       <progress max={100} value={percent} aria-label={t("design.phase.share")}>
         {percent} %
       </progress>

@@ -48,6 +48,16 @@ interface KeyStep {
 
 const FORWARD = 2;
 
+/** What a step may change besides the table. */
+interface Others {
+  /** The digits of each key of level B. */
+  keys?: readonly string[] | null;
+  /** The robot from this step on. */
+  robot?: ReadRobot;
+  /** How much the coach was allowed to change. */
+  size?: string | null;
+}
+
 export class Sheet {
   readonly history = signal<History | null>(null);
   readonly table = computed<Table | null>(() => this.history.value?.table.value ?? null);
@@ -152,16 +162,14 @@ export class Sheet {
   /**
    * Put another table in place of this one: one step, whatever its kind and legs.
    *
-   * @param keys The digits of each key of level B; null: they stay as they are.
-   * @param robot The robot from this step on; left out: it stays.
+   * @param others What else the step changes; what is left out stays as it is.
    * @returns Whether anything has changed.
    */
   put(
     name: string,
     table: Table,
     by: By,
-    keys: readonly string[] | null = null,
-    robot?: ReadRobot,
+    { keys = null, robot, size = null }: Others = {},
   ): boolean {
     const history = this.history.peek();
     const from = this.table.peek();
@@ -178,7 +186,7 @@ export class Sheet {
       this.takeRobot();
     });
     const isChanged = this.table.peek() !== from || keys !== null;
-    if (isChanged) this.followers.changed(by, null);
+    if (isChanged) this.followers.changed(by, size);
     return isChanged;
   }
 

@@ -10,7 +10,7 @@ import type { Sheet } from "../table/sheet";
 import type { Showing } from "../walk/showing";
 import { difference, FIGURES, TILES, titleOf, written } from "./figures";
 import type { Trials } from "./trials";
-import type { Tried } from "./tried";
+import { type Tried, triedName } from "./tried";
 import "./result.css";
 
 interface ResultProps {
@@ -25,11 +25,11 @@ export function Result({ sheet, trials, showing }: ResultProps) {
   const before = other ?? trials.beforeShown();
   if (!tried) return <First onTry={() => void trials.tryIt()} />;
   const { figures, notes = [], fault } = tried.trial.reply;
-  const isOld = tried.version !== sheet.version.value;
+  const isOld = !tried.name && tried.version !== sheet.version.value;
   return (
     <section class="result" aria-label={t("design.result")}>
       <header>
-        <h2>{t("design.trialOf", { number: tried.number, key: tried.key })}</h2>
+        <h2>{tried.name || t("design.trialOf", { number: tried.number, key: tried.key })}</h2>
         {isOld && <span class="badge old">{t("design.oldTable")}</span>}
       </header>
       <Verdicts tried={tried} />
@@ -131,12 +131,12 @@ function Differences({ tried, other }: { tried: Tried; other: Tried }) {
   const [now, was] = [tried.trial.reply.figures, other.trial.reply.figures];
   return (
     <table class="differences">
-      <caption>{t("design.compared", { one: tried.number, other: other.number })}</caption>
+      <caption>{t("design.compared", { one: triedName(tried), other: triedName(other) })}</caption>
       <thead>
         <tr>
           <th scope="col">{t("design.figure")}</th>
-          <th scope="col">{t("design.trial", { number: tried.number })}</th>
-          <th scope="col">{t("design.trial", { number: other.number })}</th>
+          <th scope="col">{triedName(tried)}</th>
+          <th scope="col">{triedName(other)}</th>
           <th scope="col">{t("design.difference")}</th>
         </tr>
       </thead>

@@ -2,7 +2,7 @@
 
 import { batch, computed, signal } from "@preact/signals";
 import { type Guess, verdict } from "../../../core/design/predict";
-import type { Table } from "../../../core/design/table";
+import { type Table, toWire } from "../../../core/design/table";
 import { readTrial } from "../../../core/design/trial";
 import type { TrialReply } from "../../../core/wire";
 import { t } from "../../../i18n";
@@ -25,6 +25,8 @@ const PRESSED: Record<Pose, { keys: string; seconds: number; measured: number }>
   "A1, A2": { keys: "A1:1, A2", seconds: 1.5, measured: 2 },
 };
 const MOST_TRIALS = 40;
+/** No table that was on the page has this version. */
+const NO_VERSION = -1;
 
 export class Trials {
   /** In the order in which they were made. */
@@ -94,7 +96,7 @@ export class Trials {
       const trial = readTrial(reply, robot.legs.length);
       const number = (this.all.peek().at(-1)?.number ?? 0) + 1;
       const verdicts = this.judge(key, reply.figures);
-      this.add({ number, version, table, key, rows, robot, trial, verdicts });
+      this.add({ number, name: "", version, table, key, rows, robot, trial, verdicts });
     } catch (error) {
       gateway.refuse(error);
     } finally {
@@ -103,6 +105,33 @@ export class Trials {
         this.again = false;
         void this.tryIt();
       }
+    }
+  }
+
+  /** Show how a table of the coach walks, beside the last trial of the key; it is no trial. */
+  async watch(table: Table, rows: readonly number[], key: number, name: string): Promise<void> {
+    const robot = this.robot.robot.peek();
+    const [gait, wire] = [sentGait(this.sheet, this.robot), toWire(table)];
+    if (!robot || !gait || !wire || this.trying.peek()) return;
+    this.trying.value = true;
+    try {
+      const reply = await this.gateway.ask<TrialReply>("trial", {
+        ...gait,
+        table: wire,
+        keys: String(key),
+        watched: true,
+      });
+      const trial = readTrial(reply, robot.legs.length);
+      const number = (this.all.peek().at(-1)?.number ?? 0) + 1;
+      const tried = { number, name, version: NO_VERSION, table, key, rows, robot, trial };
+      batch(() => {
+        this.showing.look({ ...tried, verdicts: [] });
+        this.showing.other.value = this.lastOf(key);
+      });
+    } catch (error) {
+      this.gateway.refuse(error);
+    } finally {
+      this.trying.value = false;
     }
   }
 
@@ -132,6 +161,8 @@ export class Trials {
   private add(tried: Tried): void {
     batch(() => {
       this.guesses.value = [];
+      // What was compared with a gait of the coach is compared no longer.
+      if (this.showing.shown.peek()?.name) this.showing.other.value = null;
       this.all.value = [...this.all.peek(), tried].slice(-MOST_TRIALS);
       this.showing.look(tried);
     });

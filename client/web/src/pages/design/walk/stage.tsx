@@ -84,7 +84,7 @@ function ShownName({ sheet, showing }: Pick<Props, "sheet" | "showing">) {
   const tried = showing.shown.value;
   if (showing.watching.value && tried) {
     const other = showing.other.value;
-    const name = t("design.trialOf", { number: tried.number, key: tried.key });
+    const name = tried.name || t("design.trialOf", { number: tried.number, key: tried.key });
     return <>{other ? t("design.withGhost", { name, number: other.number }) : name}</>;
   }
   const table = sheet.table.value;

@@ -1,0 +1,50 @@
+/** The way of the table to a court: to practice, or to the seat of an invitation. */
+
+import { signal } from "@preact/signals";
+import { t } from "../../../i18n";
+import { toast } from "../../../ui/toasts";
+import type { Gateway } from "../gateway";
+import type { RobotInUse } from "../robot/robot";
+import type { Sheet } from "../table/sheet";
+import { sentGait } from "./gait";
+
+export class Court {
+  /** Where it leads; null: nowhere, as in a class. */
+  readonly leads = signal<"practice" | "contest" | null>(null);
+  readonly isGoing = signal(false);
+  /** Address of the court's page where the browser has let no tab be opened; "": it has. */
+  readonly blocked = signal("");
+
+  constructor(
+    private readonly gateway: Gateway,
+    private readonly sheet: Sheet,
+    private readonly robot: RobotInUse,
+  ) {}
+
+  /** Take the table there, and open its page in a new tab. Only a click may call this. */
+  async go(): Promise<void> {
+    const { gateway, sheet } = this;
+    if (this.isGoing.peek()) return;
+    const gait = sentGait(sheet, this.robot);
+    if (!gait) {
+      sheet.select(sheet.bad.peek()[0]!);
+      toast(t("design.badCells", { count: sheet.bad.peek().length }), "no");
+      return;
+    }
+    this.isGoing.value = true;
+    this.blocked.value = "";
+    gateway.trouble.value = null;
+    // A browser opens a tab only at once after a click, not when the reply comes.
+    const tab = window.open("about:blank");
+    try {
+      const { url } = await gateway.ask<{ url: string }>("play", gait);
+      if (tab) tab.location.replace(url);
+      else this.blocked.value = url;
+    } catch (error) {
+      tab?.close();
+      gateway.refuse(error);
+    } finally {
+      this.isGoing.value = false;
+    }
+  }
+}
