@@ -114,7 +114,7 @@ def _pages(url: str, number: int) -> Iterator[list[subprocess.Popen[str]]]:
 
 @contextmanager
 def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subprocess.Popen[str]]]:
-    """Start a crowd and give its process once all are connected; give none if none is wanted."""
+    """Give a crowd's process once all its spectators are connected; give [] if `wanted` is 0."""
     if not wanted:
         yield []
         return

@@ -16,7 +16,7 @@ from lacoc_shared.studio import GaitFiles, RobotRequest, TrialRequest
 
 
 def replies(name: str) -> list[bytes]:
-    """Ask about a robot, and for a trial of its sample gait."""
+    """Return a studio's answers: what it says of a robot, and a trial of the robot's sample gait."""
     courses: dict[str, Course] = {}
 
     def course_of(robot: RobotSpec) -> Course:
