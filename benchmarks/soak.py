@@ -79,7 +79,7 @@ class Figures:
     warm_s: float
 
     def growth(self, process: str) -> float:
-        """Return how much a process's memory grew after the warm-up, as a share of its memory at that time.
+        """Return how much a process's memory grew after the warm-up, as a share of the first memory.
 
         The growth follows from the median of the slopes between all pairs of looks, so that a
         single look has little effect.
@@ -221,8 +221,8 @@ class _Run:
     def _decide(self, decision: Decision, phase: Phase) -> None:
         """Make the decision that ends a phase.
 
-        On a busy machine the court may not answer, or not show the new phase in time. Then the court is
-        asked again, and refuses the decision if it has already made it.
+        On a busy machine the court may not answer, or not show the new phase in time. Then the
+        court is asked again, and refuses the decision if it has already made it.
         """
         refused: UserError | None = None
         for _ in range(_TRIES):

@@ -76,7 +76,7 @@ async def _direct(address: str, door: _Door) -> int:
 
 
 async def _page(url: str, door: _Door) -> int:
-    """Visit as a page, and return its number of frames; half of the visits end without a goodbye."""
+    """Visit as a page, and return its number of frames; half of the pages go without a goodbye."""
     parts = urlsplit(url)
     loop = asyncio.get_running_loop()
     transport, page = await loop.create_connection(

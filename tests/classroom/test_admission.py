@@ -63,7 +63,7 @@ def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
     ["\u3164", "\u2800", "\ufe0f", "\u115f \u1160", "An\u202ena", "An\u200bna", "\x07", "\u00ad"],
 )
 def test_a_name_that_nobody_sees_is_refused(name: str) -> None:
-    """A nickname is refused if nothing of it can be seen, or if it has control characters."""
+    """A nickname is refused if nothing of it can be seen, or if it has unprintable characters."""
     with pytest.raises(UserError):
         read_name(name)
 

@@ -69,7 +69,7 @@ def edit(page: StudentPage, table: dict[str, Any], angle_deg: float) -> dict[str
 
 
 def test_students_come_in_with_code_and_name(room: ClassRoom, closing: ExitStack) -> None:
-    """A wrong code, a bad name and a taken name are refused; a student's token lets the student in again."""
+    """A wrong code and a bad or taken name are refused; a token lets its student in again."""
     stranger = StudentPage(room.url)
     closing.callback(stranger.close)
     for fields, code in (
@@ -271,7 +271,7 @@ def test_only_the_teacher_opens_the_teachers_page(room: ClassRoom, closing: Exit
 def test_a_new_code_keeps_everybody_in(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """After a new class code, tokens still let students in; a new student enters with the new code."""
+    """After a new class code, tokens still let students in; new students use the new code."""
     student = comes(closing, room, "Hal")
     old = room.code
     teacher.ask("new_code")

@@ -46,7 +46,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script presses at most one key for the robot in a tick; times count from the previous key."""
+    """A script presses at most one robot's key in a tick; a time counts from the key before."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 

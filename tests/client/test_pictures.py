@@ -109,7 +109,7 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 
 @pytest.mark.parametrize("changes", [{"poses": b""}, {"scene": bytes(8)}, {"markers": b""}])
 def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes]) -> None:
-    """A frame that lacks poses or markers, or has another scene, is put into words without these parts."""
+    """A frame with another scene, or without poses or markers, is put into words without them."""
     sheet = make_sheet("othello")
     poses = pose(0.0, 0.0, 0.0) * 2
     plain = frame_dict(make_frame(sheet, **({"poses": poses} | changes)), sheet)
@@ -159,7 +159,7 @@ def test_the_lobby_says_who_is_missing() -> None:
 
 
 def test_before_ready_no_robot_does_anything() -> None:
-    """Without robots on the field no key is shown; with robots, the key that moves each is shown."""
+    """Without robots on the field no key is shown; with robots, each seat's key is shown."""
     sheet = make_sheet("othello")
     assert words.standing_key(make_frame(sheet), sheet, 0) == ""
     on_field = make_frame(sheet, poses=pose(0.0, 0.0, 0.0) * 2)

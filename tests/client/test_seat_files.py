@@ -170,7 +170,7 @@ def test_level_b_is_made_of_postures_that_come_alone() -> None:
 
 
 def test_level_b_is_never_made_against_what_there_is() -> None:
-    """Level B is not made beside a locomotion file or from too few postures; bad keys are refused."""
+    """Level B is not made if there is a locomotion file or a posture is missing."""
     both = SeatFiles(postures=SAMPLE.postures, locomotion=SAMPLE.locomotion)
     few = PostureTable({0: (0.0,) * 18, 1: (0.1,) * 18})
     short = SeatFiles(postures=SentFile("few.txt", write_gait(few, leg_labels(6))))
@@ -187,7 +187,7 @@ def test_level_b_is_never_made_against_what_there_is() -> None:
 
 
 def test_files_that_are_saved_again_are_read_again(tmp_path: Path) -> None:
-    """A gait file that is saved again is read again; if it is wrong, the earlier one stays in use."""
+    """A gait file that is saved again is read again; if it is wrong, the old one stays in use."""
     write(tmp_path / "LocoTra-data.txt", LOCOMOTION)
     own = OwnFiles(folder=tmp_path)
     assert not own.look()

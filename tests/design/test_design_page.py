@@ -192,7 +192,7 @@ def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
 
 
 def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -> None:
-    """A page is told a search's progress by the page's own name of the search; a cancelled search still gets a reply."""
+    """Progress has the name that the page gave to the search; a cancelled search gets a reply."""
     search = page.send("coach", job="search", table=sample(page), size="cell", seconds=60.0)
     page.until(lambda: page.progress)
     page.ask("cancel", job="search")

@@ -203,7 +203,7 @@ def test_projector_mode_hides_names_everywhere(
 def test_the_page_goes_on_after_the_gateways_end(
     open_page: OpenPage, built_pages: Path, tmp_path: Path, closing: ExitStack, console: Any
 ) -> None:
-    """The teacher's page reconnects to a restarted gateway, and asks before it deletes a student."""
+    """The teacher's page finds a restarted gateway again, and asks before it deletes a student."""
     console.expect("WebSocket")
     room = ClassRoom(tmp_path)
     for name in ("Kim", "Lea"):

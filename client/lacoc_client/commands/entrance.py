@@ -73,7 +73,7 @@ def referee(
 def spectator(
     invitation: Path | None, contest: Path | None, court: str | None, connect: str | None
 ) -> Access:
-    """Find the way to a court for a spectator; any invitation will do.
+    """Find the way to a court for a spectator; every person's invitation is accepted.
 
     Raises:
         UserError: if the contest file or the invitation is wrong.
@@ -86,7 +86,7 @@ def spectator(
 def gateway(
     invitation: Path | None, contest: Contest | None, court: str | None, connect: str | None
 ) -> Access:
-    """Find the way to a court for a gateway; with a person's invitation it only watches.
+    """Find the way to a court for a gateway, which only watches with a person's invitation.
 
     Raises:
         UserError: if the invitation or the contest's keys can't be read.

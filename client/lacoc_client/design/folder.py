@@ -95,7 +95,7 @@ class Folder:
         self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Look at the folder; return the names of files that came, went or changed meanwhile."""
+        """Look at the folder; return the names of files that came, went or changed since then."""
         with self._lock:
             self._look()
             changed, self._changed = self._changed, set()

@@ -114,7 +114,7 @@ class Diary:
             store.keep(draft.kept(self._student, version, time.time()))
 
     async def write(self, table: KeptTable) -> None:
-        """Write something else of the student; it is on the disk when this returns."""
+        """Write data such as the student's token; if that fails, `Phases.trouble` says why."""
         store = await self._opened()
         if store is not None and not self._is_forgotten:
             await _kept(asyncio.wrap_future(store.write(table)))
