@@ -79,7 +79,7 @@ class Figures:
     warm_s: float
 
     def growth(self, process: str) -> float:
-        """Return how much a process's memory grew after the warm-up, as a share of the first memory.
+        """Return how much a process's memory grew after the warm-up, as a share of the first value.
 
         The growth follows from the median of the slopes between all pairs of looks, so that a
         single look has little effect.

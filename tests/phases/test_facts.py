@@ -64,7 +64,7 @@ def test_two_postures_go_forward_on_the_same_feet(
 
 
 def test_a_jump_at_the_seam_is_told_in_degrees(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """A root that turns by 26 degrees a posture jumps back by 78 degrees at the end."""
+    """A Root joint that turns by 26 degrees a posture jumps back by 78 degrees at the end."""
     turned = {
         key: tuple(
             math.radians(-40 + 26 * (key - 1)) if joint == 0 else angle

@@ -69,7 +69,7 @@ class DesignPage:
         return True
 
     async def _enter(self, hello: requests.Hello) -> None:
-        """Let the page in if it shows the right page key, class code or token; else it may try again.
+        """Let the page in if its page key, class code or token is right; else it may try again.
 
         Raises:
             UserError: if it is not let in.
