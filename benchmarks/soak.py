@@ -317,7 +317,7 @@ def _print(figures: Figures) -> None:
 
 
 def main() -> None:
-    """Soak and print."""
+    """Run the soak, print the figures, and exit with 1 if a process grew or a record is wrong."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--warm-minutes", type=float, help="by default a sixth of the time")

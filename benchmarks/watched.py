@@ -125,7 +125,7 @@ def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subpro
 
 
 def main() -> None:
-    """Measure and print."""
+    """Run the benchmark and print its results."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.watched", description=__doc__)
     parser.add_argument("--direct", type=int, default=0, help="spectators of the court itself")
     parser.add_argument("--pages", type=int, default=0, help="spectators through a gateway")

@@ -1,4 +1,4 @@
-"""Who may come into a class."""
+"""Tests of who may come into a class: class codes, nicknames and guesses."""
 
 import pytest
 from hypothesis import given

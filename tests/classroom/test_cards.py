@@ -1,4 +1,4 @@
-"""A student's card: who needs help, how fast, and when each foot was down."""
+"""Tests of a student's card: who needs help, how fast, and when each foot was down."""
 
 from typing import Any
 
@@ -59,7 +59,7 @@ def tried(**changes: Any) -> Tried:
     ],
 )
 def test_a_failure_has_a_reason(changes: dict[str, Any], code: str | None) -> None:
-    """A failed trial has its worst fault as reason; only what its key should do can fail."""
+    """A failed trial is explained by its worst fault; only key 2 must walk fast and straight."""
     said = failure(facts(**changes))
     assert (said and said.code) == code
 

@@ -1,4 +1,4 @@
-"""A forgotten student is gone, whatever happens at the same moment."""
+"""Tests that nothing of a forgotten student stays, whatever happens at the same moment."""
 
 import asyncio
 import subprocess

@@ -46,7 +46,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script presses at most one robot's key in a tick; a time counts from the key before."""
+    """In a tick a script presses at most one key that moves the robot; times count between keys."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 

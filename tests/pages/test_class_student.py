@@ -1,4 +1,4 @@
-"""A student of a class on /design, and what comes back of a table that nobody saved."""
+"""Tests of /design for a student of a class, and of unsaved tables that come back."""
 
 import json
 import os

@@ -230,7 +230,7 @@ def test_the_coach_works_and_can_be_stopped(
 def test_predict_compare_and_the_way_back(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """Predictions get a verdict, Compare shows two trials at once, and a trial gives its table back."""
+    """Predictions get a verdict, Compare shows two trials, and a trial gives its table back."""
     page = designer(open_page, address)
     page.tries()
     page.go(1, 0)

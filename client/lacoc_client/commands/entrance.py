@@ -73,7 +73,7 @@ def referee(
 def spectator(
     invitation: Path | None, contest: Path | None, court: str | None, connect: str | None
 ) -> Access:
-    """Find the way to a court for a spectator; every person's invitation is accepted.
+    """Find the way to a court for a spectator; any invitation is accepted.
 
     Raises:
         UserError: if the contest file or the invitation is wrong.

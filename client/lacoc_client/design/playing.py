@@ -24,12 +24,12 @@ class Playing:
         self._lock = threading.Lock()
 
     def open(self, files: SeatFiles) -> str:
-        """Hand files to the court's page; start its command if that does not run. May block.
+        """Hand files to the page of `lacoc practice` or `lacoc play`; first start it if needed.
 
         A page that is open already notices the new files, and asks whether to use them.
 
         Returns:
-            The address of the page, with the page key.
+            The address of the page, with the page key; starting the command takes some seconds.
 
         Raises:
             UserError: if the command does not become ready.

@@ -102,7 +102,7 @@ class Diary:
             await _kept(asyncio.wrap_future(vote))
 
     async def keep(self, draft: Draft, version: str) -> None:
-        """Keep the newest table; it is on the disk about a second later.
+        """Keep the newest table; it is on the disk with the next evidence, or after about a second.
 
         Args:
             draft: the table.
