@@ -47,7 +47,7 @@ class Class:
 
 @pytest.mark.slow
 def test_a_tournament_of_a_class(tmp_path: Path) -> None:
-    """Good gaits play under nicknames, with a record of each match; other gaits are left out."""
+    """Gaits play under nicknames, each match has a record, and gaits with mistakes are left out."""
 
     async def play() -> None:
         room = Class(tmp_path)

@@ -109,7 +109,7 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 
 @pytest.mark.parametrize("changes", [{"poses": b""}, {"scene": bytes(8)}, {"markers": b""}])
 def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes]) -> None:
-    """Missing markers, and poses that are missing or of another scene, are left out in words."""
+    """A frame in words lacks markers and poses that are missing or of another scene."""
     sheet = make_sheet("othello")
     poses = pose(0.0, 0.0, 0.0) * 2
     plain = frame_dict(make_frame(sheet, **({"poses": poses} | changes)), sheet)

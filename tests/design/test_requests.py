@@ -34,6 +34,6 @@ def test_a_table_is_read() -> None:
     ],
 )
 def test_a_table_that_no_robot_has_is_refused(table: dict[str, Any]) -> None:
-    """A table with more or fewer legs, angles or rows than any robot's is refused at once."""
+    """A table that is too large for any robot, or has no legs, is refused at once."""
     with pytest.raises(Unreadable):
         read(ask(**table))

@@ -72,7 +72,7 @@ class DesignPage:
         """Let the page in if its page key, class code or token is right; else it may try again.
 
         Raises:
-            UserError: if it is not let in.
+            UserError: if the page is not let in.
         """
         client = self._websocket.client
         entered = await self._host.enter(hello, self._viewer, client.host if client else "")

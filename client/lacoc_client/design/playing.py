@@ -26,10 +26,11 @@ class Playing:
     def open(self, files: SeatFiles) -> str:
         """Hand files to the page of `lacoc practice` or `lacoc play`; first start it if needed.
 
-        A page that is open already notices the new files, and asks whether to use them.
+        The start takes some seconds. A page that is open already notices the new files, and asks
+        whether to use them.
 
         Returns:
-            The address of the page, with the page key; starting the command takes some seconds.
+            The address of the page, with the page key.
 
         Raises:
             UserError: if the command does not become ready.
