@@ -104,10 +104,10 @@ class Classroom:
             await asyncio.to_thread(self.studios.close)
 
     async def open(self) -> None:
-        """Read what was kept of the class.
+        """Read the settings, the students and their evidence from the class file.
 
         Raises:
-            UserError: if its file can't be opened.
+            UserError: if the class file can't be opened.
         """
         store = await self._store()
         kept = {(table.student, table.name): table for table in store.tables()}
@@ -139,7 +139,7 @@ class Classroom:
         return Entered(student, token)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page what it must know, and stop the student's other pages (`Host.greet`)."""
+        """Send a page all that it shows first, and stop the student's other pages (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
         self._send_away(student, forgotten=False)
         student.viewers[viewer] = None

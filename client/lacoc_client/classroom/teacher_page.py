@@ -42,7 +42,7 @@ class TeacherPage:
         self._studio = StudioDesk(classroom.studios, self._viewer.send_if_fast)
 
     async def serve(self) -> None:
-        """Answer the page until it goes."""
+        """Answer the page's requests until the page goes."""
         try:
             await serve_requests(
                 self._websocket, self._answers, requests.read, self._take, _ASKS_HZ, _ASKS_BURST

@@ -94,7 +94,7 @@ class Tournament:
     async def play(
         self, players: Mapping[str, SeatFiles], arena: str, rounds: int, seconds: float
     ) -> None:
-        """Start a tournament; `state` says how it goes.
+        """Start a tournament; `state` has its matches and standings.
 
         Args:
             players: robot and gait of each player, by nickname; whoever has no level B is left out.

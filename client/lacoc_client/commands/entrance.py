@@ -36,7 +36,7 @@ def perhaps_seat(
     seat: str | None,
     token: str | None,
 ) -> Access:
-    """Find the way to a court, and what is known of a seat; a page asks for the rest.
+    """Find the way to a court, with seat and token if they are known; a page asks for the rest.
 
     Raises:
         UserError: if the contest file or the invitation is wrong.

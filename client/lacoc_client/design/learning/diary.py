@@ -185,7 +185,7 @@ class Diary:
         )
 
     async def _opened(self) -> ClassStore | None:
-        """Open the file, read what it has of this student, and return it; None if this fails."""
+        """Open the file and read this student's evidence and draft; None if it can't be opened."""
         store = await self._keeper.opened()
         async with self._reading:
             if store is not None and not self._is_read:
