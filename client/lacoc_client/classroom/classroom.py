@@ -139,7 +139,7 @@ class Classroom:
         return Entered(student, token)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Send a page all that it shows first, and stop the student's other pages (`Host.greet`)."""
+        """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
         self._send_away(student, forgotten=False)
         student.viewers[viewer] = None
