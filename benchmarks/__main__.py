@@ -21,7 +21,7 @@ ARENAS = ("othello", "flag-strike")
 
 
 def main() -> None:
-    """Measure and print."""
+    """Run the benchmark and print its results."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--rounds", type=int, default=11, help="interleaved rounds of each ratio")
     parser.add_argument("--json", action="store_true", help="print JSON for a program to read")

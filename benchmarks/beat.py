@@ -24,7 +24,7 @@ ROUND_TICKS = 250
 
 
 def beat(arena: str, rounds: int) -> dict[str, Any]:
-    """Time the beat of a court against bare physics of the same path, in interleaved rounds.
+    """Time a court's beat against MuJoCo alone with the same movements, in interleaved rounds.
 
     A beat is drive, physics, rules, frame, encoding and record, as the court does it.
 
@@ -82,7 +82,7 @@ def _clocked_steps() -> Iterator[list[float]]:
 
 
 def whole_match(arena: str, rounds: int) -> dict[str, Any]:
-    """Time a headless match with its record against bare physics of its path.
+    """Time a headless match with its record against MuJoCo alone with the same movements.
 
     Returns:
         The median times of the match and of bare physics [s]; their ratio, bare to match; how
@@ -113,7 +113,7 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
 
 
 def _bare_path_s(record: Record) -> float:
-    """Return how long bare physics takes for the path of a record [s]."""
+    """Return how long MuJoCo alone takes for the movements of a record [s]."""
     match = Match(record.header.setup, World)
     controls: list[npt.NDArray[np.float64]] = []
     bare: BarePath | None = None

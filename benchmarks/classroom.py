@@ -55,7 +55,7 @@ class Page:
 
         Raises:
             ConnectionClosed: if the gateway has gone.
-            RuntimeError: if it refuses.
+            RuntimeError: if the gateway refuses.
         """
         self._last += 1
         answer = self._asked[self._last] = asyncio.get_running_loop().create_future()
@@ -66,7 +66,7 @@ class Page:
         return reply["value"]
 
     async def read(self, told: Any = None) -> None:
-        """Take in messages until the gateway has gone; `told` gets what is no reply."""
+        """Take in messages until the gateway has gone; `told` gets all except replies."""
         try:
             async for message in self._socket:
                 assert isinstance(message, bytes)
@@ -103,11 +103,11 @@ class Lesson:
 
     @property
     def is_on(self) -> bool:
-        """Whether the lesson lasts."""
+        """Whether the lesson still goes on."""
         return time.monotonic() < self.ends_s
 
     async def page(self, path: str, work: Any, told: Any = None) -> None:
-        """Keep a connection until the lesson ends, and do its work; connect again after a kill."""
+        """Call `work` with a connection until the lesson ends; connect again after a kill."""
         address = f"{self.url.replace('http', 'ws', 1)}{path}"
         while self.is_on:
             try:
@@ -140,7 +140,7 @@ class Student:
         """When each edit was acknowledged, and the angle that it made."""
 
     async def work(self, page: Page) -> None:
-        """Come in, check what is left of one's table, then edit and try."""
+        """Enter the class, count the edits that a kill has lost, then edit and try."""
         lesson = self._lesson
         opens = {"token": self._token} if self._token else {"code": lesson.code}
         hello = await page.ask("hello", name=self.name, **opens)
@@ -170,7 +170,7 @@ class Student:
         self._lesson.edits[self.name] += 1
 
     def _compare(self, draft: dict[str, Any] | None) -> None:
-        """Count the edits that a kill has cost, but for those that were just made."""
+        """Count the lost edits that were acknowledged more than 2 s before the last kill."""
         angle_deg = draft["table"]["rows"][0]["angles_deg"][0] if draft else None
         killed_s = self._lesson.killed_s[-1] if self._lesson.killed_s else 0.0
         for at_s, made_deg in reversed(self._acknowledged):
@@ -204,7 +204,7 @@ class Clock:
         self._used_s: dict[tuple[int, float], float] = {}
 
     def look(self, pid: int) -> None:
-        """Take in what has been used."""
+        """Take in the processor time that was used so far."""
         try:
             parent = psutil.Process(pid)
             for process in (parent, *parent.children(recursive=True)):
@@ -215,7 +215,7 @@ class Clock:
 
     @property
     def used_s(self) -> float:
-        """Processor time of all [s]."""
+        """Processor time of all these processes [s]."""
         return sum(self._used_s.values())
 
 

@@ -107,7 +107,7 @@ def _sample(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
 
 
 def _map(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
-    """Fill the map of the sample's gaits."""
+    """Search for gaits of all speeds and arousals (how excited a gait looks) from the sample."""
     mapped = map_gaits(_sample_trials(workers), seconds, 0, lambda _: None)
     grid, elites = mapped.archive.grid, mapped.archive.elites.values()
     speeds = [one.figures.speed_mm_s for one in elites]

@@ -99,7 +99,7 @@ def _sleep() -> None:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Run the benchmark and print its results."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.courts", description=__doc__)
     parser.add_argument("--courts", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=120.0)

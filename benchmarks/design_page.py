@@ -69,7 +69,7 @@ def _opened(page: Page, url: str) -> None:
 
 
 def _cells_ms(page: Page, count: int) -> list[float]:
-    """Type numbers into a cell; return how long each took to the robot's new posture [ms]."""
+    """Type numbers into a cell; return the time from each to the robot's new posture [ms]."""
     page.click("#cell-1-0")
     page.evaluate(_WATCH, "solo/leg0_1")
     for number in range(count):
@@ -84,7 +84,7 @@ def _cells_ms(page: Page, count: int) -> list[float]:
 
 
 def _tries_s(page: Page, count: int) -> list[float]:
-    """Try another table each time; return how long each took to its figures [s]."""
+    """Let the robot walk with several tables; return the time until the figures of each [s]."""
     times = []
     for number in range(count + 1):
         page.click("#cell-1-0")

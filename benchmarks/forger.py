@@ -96,7 +96,7 @@ class _Copy:
         return decode(self.record.frames[at][1], Frame)
 
     def change(self, at: int, **changes: Any) -> None:
-        """Change a frame."""
+        """Change fields of a frame."""
         beat, _ = self.record.frames[at]
         self.record.frames[at] = beat, encode(structs.replace(self[at], **changes))
 
@@ -121,7 +121,7 @@ class _Copy:
         return self.chance.randrange(len(self.record.events))
 
     def moved(self, poses: bytes, by: tuple[int, float]) -> bytes:
-        """Return poses in which one number is moved."""
+        """Return poses in which the number with the index `by[0]` has grown by `by[1]`."""
         numbers = list(struct.unpack(f"<{len(poses) // 4}f", poses))
         numbers[by[0]] += by[1]
         return struct.pack(f"<{len(numbers)}f", *numbers)

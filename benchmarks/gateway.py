@@ -138,7 +138,7 @@ def _beat(view: Spectator) -> int:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Run the benchmark and print its results."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.gateway")
     parser.add_argument("--pages", type=int, default=300)
     parser.add_argument("--hz", type=float, default=25.0)

@@ -17,7 +17,7 @@ from chromium import FLAGS, find_chromium
 
 @contextlib.contextmanager
 def own_page(*words: str) -> Iterator[str]:
-    """Run a `lacoc` command in an empty folder; give the address of its page, with the key."""
+    """Run a `lacoc` command in an empty folder; give the address of its page, with the page key."""
     with (
         tempfile.TemporaryDirectory() as folder,
         subprocess.Popen(

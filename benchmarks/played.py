@@ -46,7 +46,7 @@ def wrestler(sheet: Sheet, seat: int) -> Brain:
 
 
 def play(folder: Path, number: int, seconds: float) -> Path:
-    """Play one of the matches and pack its record.
+    """Play one of the matches, and return the path of its record.
 
     Args:
         folder: where the record goes.

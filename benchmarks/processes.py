@@ -45,7 +45,7 @@ def read_line(process: subprocess.Popen[str]) -> Any:
     """Return the next line of JSON that a process prints.
 
     Raises:
-        RuntimeError: if it has ended.
+        RuntimeError: if the process has ended.
     """
     assert process.stdout is not None
     line = process.stdout.readline()

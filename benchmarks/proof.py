@@ -110,7 +110,7 @@ def forge(paths: Sequence[Path], count: int, seed: int) -> Forged:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Do what the command line says; exit with 1 if a verdict is wrong."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.proof", description=__doc__)
     parser.add_argument("what", choices=_WHAT)
     parser.add_argument("records", nargs="*", type=Path)
@@ -179,7 +179,7 @@ def _verdict(path: Path) -> dict[str, Any]:
 
 
 def _forged(count: int, seed: int) -> bool:
-    """Verify forgeries under both arithmetics; return whether each was found."""
+    """Verify forgeries under both arithmetics; return whether none of them passed."""
     with tempfile.TemporaryDirectory() as name:
         # Two pairs of matches; a pair has the same robots, so that sections can be swapped.
         paths = [play(Path(name), number, _FORGED_S) for number in (0, 30, 1, 31)]

@@ -44,7 +44,7 @@ _GOES_ON: dict[str, Decision] = {
 
 
 def main() -> None:
-    """Kill, count and verify."""
+    """Kill processes, print the counts, and exit with 1 if something went wrong."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.random_kills", description=__doc__)
     parser.add_argument("--seconds", type=float, default=600.0)
     parser.add_argument("--seed", type=int, default=1)
@@ -185,7 +185,7 @@ def _referee(contest: Path) -> None:
 
 
 def _verify(folder: Path) -> tuple[int, list[str]]:
-    """Verify each match, from its packed record or, if there is none yet, from its segments."""
+    """Verify every record; return how many are right, and what is wrong with the others."""
     segments = {
         name[0]: path for path in folder.glob("*.live.mcap") if (name := segment_name(path))
     }

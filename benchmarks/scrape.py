@@ -108,7 +108,7 @@ def _seen(url: str) -> _Seen:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Run the benchmark and print its results."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.scrape", description=__doc__)
     parser.add_argument("--rounds", type=int, default=7, help="of each kind")
     found = scrape(parser.parse_args().rounds)

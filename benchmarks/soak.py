@@ -79,7 +79,7 @@ class Figures:
     warm_s: float
 
     def growth(self, process: str) -> float:
-        """Return how much a process's memory grew after the warm-up, as a share of its memory then.
+        """Return how much a process's memory grew after the warm-up, as a share of the first value.
 
         The growth follows from the median of the slopes between all pairs of looks, so that a
         single look has little effect.
@@ -221,8 +221,8 @@ class _Run:
     def _decide(self, decision: Decision, phase: Phase) -> None:
         """Make the decision that ends a phase.
 
-        On a busy machine the court may not answer, or not show the new phase in time. Then it is
-        asked again, and refuses the decision if it has already made it.
+        On a busy machine the court may not answer, or not show the new phase in time. Then the
+        court is asked again, and refuses the decision if it has already made it.
         """
         refused: UserError | None = None
         for _ in range(_TRIES):
@@ -317,7 +317,7 @@ def _print(figures: Figures) -> None:
 
 
 def main() -> None:
-    """Soak and print."""
+    """Run the soak, print the figures, and exit with 1 if a process grew or a record is wrong."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--warm-minutes", type=float, help="by default a sixth of the time")

@@ -73,7 +73,7 @@ class Page(asyncio.Protocol):
 
 
 async def main() -> None:
-    """Open the pages. At each line of the input, print what each has received since the last."""
+    """Open the pages. At each line of the input, print what each page got since the last line."""
     parser = argparse.ArgumentParser()
     parser.add_argument("url")
     parser.add_argument("pages", type=int)

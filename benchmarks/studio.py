@@ -106,7 +106,7 @@ def _request(rng: random.Random) -> bytes:
 
 
 def bare_s(rng: random.Random) -> float:
-    """Measure how long such a trial takes in this process, with a floor that is compiled."""
+    """Return the median time of a trial in this process, on a floor that is already compiled."""
     course = course_of(_ROBOT)
     times = []
     for _ in range(10):

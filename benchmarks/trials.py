@@ -57,7 +57,7 @@ class Compared(NamedTuple):
 
 
 def main() -> None:
-    """Compare, print, and exit with 1 if a state hash differs."""
+    """Compare trials with matches, print, and exit with 1 if a state hash differs."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.trials", description=__doc__)
     parser.add_argument("--tables", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
@@ -119,7 +119,7 @@ def _walks(figures: Figures) -> bool:
 
 
 def _agrees(walk: Walk) -> float:
-    """Return the share of ticks and feet in which a foot is both down and low, or neither."""
+    """Return in which share of ticks and feet load and height agree on whether the foot is down."""
     part = slice(walk.span.first, walk.span.end)
     down = walk.down[part]
     return float(((walk.tip_m[part] < _LOW_M) == down).mean()) if len(down) else 1.0
@@ -196,7 +196,7 @@ def entry_of(robot: str) -> Entry:
 
 @cache
 def course_of(robot: str) -> Course:
-    """Make the course for a sample robot's trials."""
+    """Build the floor and the robot for trials of a sample robot."""
     return make_course(entry_of(robot).robot)
 
 

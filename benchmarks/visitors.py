@@ -41,7 +41,7 @@ class _Door:
         self.unanswered = 0
 
     async def stay(self) -> None:
-        """Wait for as long as this visitor stays, or until all are sent away."""
+        """Wait until this visitor's time is over, or until all visitors are sent away."""
         loop = asyncio.get_running_loop()
         end_s = loop.time() + self.chance.expovariate(1 / self.stay_s)
         while self.open.is_set() and loop.time() < end_s:
@@ -76,7 +76,7 @@ async def _direct(address: str, door: _Door) -> int:
 
 
 async def _page(url: str, door: _Door) -> int:
-    """Visit as a page, which half of the time ends without a goodbye; return its frames."""
+    """Visit as a page, and return its number of frames; half of the pages go without a goodbye."""
     parts = urlsplit(url)
     loop = asyncio.get_running_loop()
     transport, page = await loop.create_connection(
@@ -91,7 +91,7 @@ async def _page(url: str, door: _Door) -> int:
 
 
 async def main() -> None:
-    """Visit until the input ends."""
+    """Let visitors come and go until the standard input ends."""
     parser = argparse.ArgumentParser()
     parser.add_argument("way", choices=("direct", "pages"))
     parser.add_argument("address")

@@ -114,7 +114,7 @@ def _pages(url: str, number: int) -> Iterator[list[subprocess.Popen[str]]]:
 
 @contextmanager
 def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subprocess.Popen[str]]]:
-    """Start a crowd and give its process once all are connected; give none if none is wanted."""
+    """Give a crowd's process once all its spectators are connected; give [] if `wanted` is 0."""
     if not wanted:
         yield []
         return
@@ -125,7 +125,7 @@ def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subpro
 
 
 def main() -> None:
-    """Measure and print."""
+    """Run the benchmark and print its results."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.watched", description=__doc__)
     parser.add_argument("--direct", type=int, default=0, help="spectators of the court itself")
     parser.add_argument("--pages", type=int, default=0, help="spectators through a gateway")

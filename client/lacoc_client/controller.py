@@ -233,7 +233,7 @@ class Controller:
         return said
 
     def press(self, level: int, key: int, upon: Frame | None = None) -> int:
-        """Send a new command; it stands, and is repeated, until the next one.
+        """Send a new command, which is repeated until the next one.
 
         Args:
             level: a `Level`.

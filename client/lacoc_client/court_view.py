@@ -69,17 +69,17 @@ class CourtView(Generic[T]):
 
     @property
     def lacks_scene(self) -> bool:
-        """True if the newest frame belongs to another scene."""
+        """True if the scene here is not the newest frame's scene."""
         return self._frame_scene != self._scene_hash
 
     @property
     def lacks_sheet(self) -> bool:
-        """True if the court has, or may have, another sheet."""
+        """True if the sheet here is not, or may not be, the court's newest one."""
         return self._doubt or self.has_older_sheet or not self.fits
 
     @property
     def has_older_sheet(self) -> bool:
-        """True if the court said that its newest sheet is another one."""
+        """True if the court said that its newest sheet is not the one here."""
         return self._told.sheet not in (b"", self._sheet_hash)
 
     @property

@@ -23,7 +23,7 @@ class RefereeClient:
         self._token = token
 
     def enter(self) -> None:
-        """Show the token; decide nothing.
+        """Show the court the token, without a decision.
 
         Raises:
             UserError: if it is not a referee's token of the court, or no court answers.

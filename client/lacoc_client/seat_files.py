@@ -57,7 +57,7 @@ def gather(
 def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
     """Turn workbooks into text, which is what a court reads.
 
-    Each keeps its file name, so that mistakes name the contestant's own file.
+    Each file keeps its name, so that mistakes name the contestant's own file.
 
     Args:
         files: the files of a join.

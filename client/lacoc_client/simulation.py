@@ -103,9 +103,9 @@ class Simulation:
         )
 
     async def lines(self) -> AsyncIterator[Line]:
-        """Yield what it prints, until it ends.
+        """Yield the lines that the command prints, until the command ends.
 
-        If it is killed, its worker processes keep its output open until their matches have ended.
+        If it is killed, its worker processes keep the output open until their matches have ended.
         So the end of the output is not awaited then.
         """
         reading = asyncio.create_task(self._out.readline())
@@ -123,7 +123,7 @@ class Simulation:
             reading.cancel()
 
     async def complaint(self) -> str | None:
-        """Wait until it has ended; return what went wrong, or None."""
+        """Wait until the command has ended; return what went wrong, or None if nothing did."""
         while self._process.returncode is None:
             await asyncio.sleep(_LOOK_S / 10)
         if self._process.returncode == 0:
@@ -134,12 +134,12 @@ class Simulation:
         return complaint(last_line, self._process.returncode)
 
     def end(self) -> None:
-        """Ask it to end, as Ctrl-C does."""
+        """Ask the command to end, as Ctrl-C does."""
         with contextlib.suppress(ProcessLookupError):
             self._process.terminate()
 
     def close(self) -> None:
-        """End it at once."""
+        """End the command at once."""
         self._complaining.cancel()
         with contextlib.suppress(ProcessLookupError):
             self._process.kill()

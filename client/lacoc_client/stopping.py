@@ -9,7 +9,7 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, kill, a closed window
 
 @contextmanager
 def stop_signals() -> Iterator[Callable[[], bool]]:
-    """Catch signals until the block ends; give a function that says whether one has come.
+    """Catch signals until the block ends; give a function that says whether a signal has come.
 
     A second signal has its usual effect.
     """

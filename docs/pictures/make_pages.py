@@ -72,7 +72,7 @@ def pages(browser: Browser) -> Iterator[Open]:
 
 
 def practice(folder: Path, open_page: Open) -> None:
-    """Take the picture of a student's first minutes."""
+    """Take the picture of /practice while the robot walks."""
     with own_page(folder, "practice") as (url, key):
         page = Contestant(open_page, url, viewport=LAPTOP)
         page.page.goto(f"{url}/practice#key={key}")
@@ -163,7 +163,7 @@ def replay(folder: Path, open_page: Open) -> None:
 
 
 def contest(folder: Path, open_page: Open) -> None:
-    """Take the pictures of a contestant and of the referee, in one match."""
+    """Take the pictures of a contestant's page and of the referee's page, in one match."""
     with venue(folder, "flag-strike") as (place, bot):
         court = place.court("--seconds", "180")
         place.web()
@@ -194,7 +194,7 @@ def contest(folder: Path, open_page: Open) -> None:
 
 
 def broadcast(folder: Path, open_page: Open) -> None:
-    """Take the pictures of spectators and of the stream, while something happens."""
+    """Take the pictures of /overlay before a match, and of /watch and /overlay in the match."""
     with venue(folder, "othello") as (place, bot):
         court = place.court("--seconds", "180")
         place.web()
@@ -225,7 +225,7 @@ def broadcast(folder: Path, open_page: Open) -> None:
 def venue(
     folder: Path, arena: str = "othello"
 ) -> Iterator[tuple[Venue, Callable[[str, str, str, str], None]]]:
-    """Give a contest, and a function that seats a bot: (address, seat, bot, team)."""
+    """Give a contest, and a function that starts a bot: (court's address, seat, bot, team)."""
     with ExitStack() as stack:
         place = Venue(folder, stack)
         place.contest.write_text(place.contest.read_text("utf-8").replace("othello", arena))

@@ -31,11 +31,11 @@ class ClassRoom:
 
     @property
     def listen(self) -> str:
-        """Where it listens, to start it again there."""
+        """The class's address, at which a test can start the class again."""
         return str(self.url).removeprefix("http://")
 
     def student(self, name: str, token: str | None = None) -> "StudentPage":
-        """Come in as a student, with the token or the class code."""
+        """Let a student enter, with the token or, without one, with the class code."""
         page = StudentPage(self.url)
         page.enter(name=name, **({"token": token} if token else {"code": self.code}))
         return page
@@ -61,7 +61,7 @@ class StudentPage(PageConnection):
         """The reply to hello."""
 
     def enter(self, **fields: str) -> None:
-        """Come in, and wait for what a page is told first."""
+        """Enter the class, and wait until the page is told the six phases."""
         self.hello = self.ask("hello", **fields)
         self.until(lambda: self.told[Kind.PHASES])
 
@@ -102,7 +102,7 @@ class TeacherPage(PageConnection):
 
 
 def until_kept(folder: Path, angle_deg: float) -> None:
-    """Wait until a table with an angle is on the disk, which is about a second after it came."""
+    """Wait until a table with this angle is on the disk, about a second after the edit."""
     wanted = struct.pack(">d", angle_deg)  # as in a table that is kept
     deadline_s = time.monotonic() + 60
     while not any(wanted in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*")):

@@ -1,4 +1,4 @@
-"""Who may come into a class."""
+"""Tests of who may come into a class: class codes, nicknames and guesses."""
 
 import pytest
 from hypothesis import given
@@ -17,7 +17,7 @@ from lacoc_shared.mistakes import UserError
 
 @pytest.mark.parametrize("code", [new_code() for _ in range(20)], ids=range(20))
 def test_a_code_is_read_as_it_was_meant(code: str) -> None:
-    """Small letters, spaces, hyphens and full-width letters make no difference."""
+    """A class code may be typed with small letters, spaces, hyphens or full-width letters."""
     assert len(code) == 6
     assert read_code(code) == code
     wide = "".join(chr(ord(letter) + 0xFEE0) for letter in code.lower())
@@ -27,7 +27,7 @@ def test_a_code_is_read_as_it_was_meant(code: str) -> None:
 
 @given(st.text())
 def test_a_name_is_short_text_that_can_be_seen(text: str) -> None:
-    """A nickname has 1 to 20 letters without needless spaces, or it is refused."""
+    """Any text is refused as a nickname, or becomes 1 to 20 characters without needless spaces."""
     try:
         name = read_name(text)
     except UserError:
@@ -54,7 +54,7 @@ def test_a_name_is_short_text_that_can_be_seen(text: str) -> None:
     ],
 )
 def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
-    """Two students can't have names that people take for the same one."""
+    """Nicknames that look alike on the screen count as the same nickname."""
     assert same_name(read_name(one)) == same_name(read_name(other))
 
 
@@ -63,13 +63,13 @@ def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
     ["\u3164", "\u2800", "\ufe0f", "\u115f \u1160", "An\u202ena", "An\u200bna", "\x07", "\u00ad"],
 )
 def test_a_name_that_nobody_sees_is_refused(name: str) -> None:
-    """A name can't be empty on the screen, and can't turn round the text beside it."""
+    """A nickname is refused if nothing of it can be seen, or if it has unprintable characters."""
     with pytest.raises(UserError):
         read_name(name)
 
 
 def test_a_thousand_guesses_disturb_nobody_else() -> None:
-    """After 20 quick guesses a machine waits 1 s for each answer; no other machine waits."""
+    """After 20 quick guesses of a class code, a machine waits 1 s for each answer; others don't."""
     guesses = Guesses()
     waits_s = [guesses.wait_s("10.0.0.9", 100 + guess / 1000) for guess in range(1000)]
     assert waits_s == [0.0] * 20 + [1.0] * 980
@@ -78,7 +78,7 @@ def test_a_thousand_guesses_disturb_nobody_else() -> None:
 
 
 def test_guesses_of_many_machines_need_no_more_room() -> None:
-    """Only the machines that guessed last are known."""
+    """Guesses are remembered for only the 1000 machines that guessed last."""
     guesses = Guesses()
     for number in range(3000):
         assert guesses.wait_s(str(number), 1.0) == 0.0

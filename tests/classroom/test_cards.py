@@ -1,4 +1,4 @@
-"""A student's card: who needs help, how fast, and when each foot was down."""
+"""Tests of a student's card: who needs help, how fast, and when each foot was down."""
 
 from typing import Any
 
@@ -59,13 +59,13 @@ def tried(**changes: Any) -> Tried:
     ],
 )
 def test_a_failure_has_a_reason(changes: dict[str, Any], code: str | None) -> None:
-    """The worst comes first; what the key does not ask for is no failure."""
+    """A failed trial is explained by its worst fault; only key 2 must walk fast and straight."""
     said = failure(facts(**changes))
     assert (said and said.code) == code
 
 
 def test_three_equal_failures_in_a_row_are_flagged() -> None:
-    """Two are not enough, another failure or a success between them ends the row."""
+    """A student is stuck if the last three trials failed for the same reason."""
     slow, belly, good = facts(speed_mm_s=0.0), facts(belly_share=0.5), facts()
     for tries, code in (
         ([], None),
@@ -82,7 +82,7 @@ def test_three_equal_failures_in_a_row_are_flagged() -> None:
 
 
 def test_a_card_says_who_needs_help() -> None:
-    """A raised hand comes before equal failures, and these before a student who does nothing."""
+    """A card shows a raised hand before equal failures, and equal failures before inactivity."""
     slow = [tried(speed_mm_s=0.0)] * 3
 
     def need(evidence: list[Evidence], online: bool = True, after_s: float = 1.0) -> str:
@@ -98,7 +98,7 @@ def test_a_card_says_who_needs_help() -> None:
 
 
 def test_a_card_counts_only_walks_as_fast() -> None:
-    """The best speed is of key 2, upright and off the floor; the last one is of any trial."""
+    """The best speed is of a trial of key 2 without a fall; the last speed is of any trial."""
     evidence: list[Evidence] = [
         Moved(phase=4),
         tried(speed_mm_s=70.0),
@@ -114,7 +114,7 @@ def test_a_card_counts_only_walks_as_fast() -> None:
 
 
 def test_a_hand_has_the_time_when_it_went_up() -> None:
-    """A hand that was taken down, and raised again, is up since the second time."""
+    """A hand that is raised again has the time of its last raise; a lowered hand has no time."""
     assert hand_times([]) is None
     assert hand_times([(1.0, Hand(up=True)), (2.0, Hand(up=False))]) is None
     assert hand_times([(1.0, Hand(up=True)), (2.0, Hand(up=False)), (3.0, Hand(up=True))]) == 3.0
@@ -122,7 +122,7 @@ def test_a_hand_has_the_time_when_it_went_up() -> None:
 
 @given(st.lists(st.integers(0, 63), min_size=1, max_size=60), st.integers(0, 5))
 def test_runs_say_when_a_foot_was_down(down: list[int], skip: int) -> None:
-    """Painting the runs gives back in which ticks each foot was down."""
+    """The runs on a card say in which ticks of a trial each foot was down."""
     trial = TrialReply(
         level=1,
         key=2,

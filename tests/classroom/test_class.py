@@ -60,7 +60,7 @@ def code_of(refusal: pytest.ExceptionInfo[Refused]) -> str:
 
 
 def edit(page: StudentPage, table: dict[str, Any], angle_deg: float) -> dict[str, Any]:
-    """Change the first number of a table by hand, and tell the gateway."""
+    """Tell the gateway that a student changed a table's first number by hand; return the table."""
     first, *others = table["rows"]
     row = {**first, "angles_deg": [angle_deg, *first["angles_deg"][1:]]}
     changed = {**table, "rows": [row, *others]}
@@ -69,7 +69,7 @@ def edit(page: StudentPage, table: dict[str, Any], angle_deg: float) -> dict[str
 
 
 def test_students_come_in_with_code_and_name(room: ClassRoom, closing: ExitStack) -> None:
-    """A wrong code, a bad name and a taken name are refused; the token opens the class again."""
+    """A wrong code and a bad or taken name are refused; a token lets its student in again."""
     stranger = StudentPage(room.url)
     closing.callback(stranger.close)
     for fields, code in (
@@ -96,7 +96,7 @@ def test_students_come_in_with_code_and_name(room: ClassRoom, closing: ExitStack
 
 
 def test_whoever_guesses_codes_disturbs_nobody(room: ClassRoom, closing: ExitStack) -> None:
-    """Wrong codes get a clear answer; others work on, and come in from the same machine."""
+    """Wrong class codes are refused; other students of the same machine still enter and work."""
     student = comes(closing, room, "Bea")
     guesser = StudentPage(room.url)
     closing.callback(guesser.close)
@@ -113,7 +113,7 @@ def test_whoever_guesses_codes_disturbs_nobody(room: ClassRoom, closing: ExitSta
 def test_the_teacher_sees_what_students_do(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """A trial, a raised hand and a page that goes change the card; the hand comes first."""
+    """A student's trial, raised hand, phase and closed page change the student's card."""
     student = comes(closing, room, "Cem")
     teacher.until(lambda: teacher.card("Cem").get("online"))
     assert (teacher.card("Cem")["feet"], teacher.card("Cem")["tries"]) == (None, 0)
@@ -140,7 +140,7 @@ def test_the_teacher_sees_what_students_do(
 def test_the_teacher_closes_phases_and_the_coach(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """What is closed is refused, and students are told; it opens again at once."""
+    """Students are told that a phase or the coach is closed, and are refused until it is open."""
     student = comes(closing, room, "Dan")
     table = student.sample()
     rules = {"closed": [4, 5, 6], "coach": "matters", "explain_first": True}
@@ -171,7 +171,7 @@ def test_the_teacher_closes_phases_and_the_coach(
 def test_the_teacher_hands_out_a_table(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """A table of the sample, of a file or of a student reaches everybody, also who comes later."""
+    """The sample table or a student's table reaches all students, also one who enters later."""
     student = comes(closing, room, "Eva")
     with pytest.raises(Refused) as refusal:
         teacher.ask("hand_out", title="Eva's", student="Eva")
@@ -193,7 +193,7 @@ def test_the_teacher_hands_out_a_table(
 def test_the_big_screen_and_the_exports(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """The newest table walks for the big screen; evidence and tables come as files."""
+    """The big screen gets a trial of a student's newest table; evidence and tables are exported."""
     student = comes(closing, room, "=Finn/..")
     table = edit(student, student.sample(), 3.0)
     table = edit(student, table, 4.0)
@@ -219,7 +219,7 @@ def test_the_big_screen_and_the_exports(
 def test_the_class_plays_a_tournament(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """The gaits of the class meet; a table for another robot is left out."""
+    """The gaits of the class play matches; a gait that does not fit its robot is left out."""
     for name in ("Uma", "りく"):
         page = comes(closing, room, name)
         edit(page, page.sample(), 3.0)
@@ -242,7 +242,7 @@ def test_the_class_plays_a_tournament(
 def test_a_student_is_let_in_again_and_forgotten(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """Another device needs the teacher's leave; a forgotten student is gone from everywhere."""
+    """A student's second device needs the teacher's permission; a forgotten student is deleted."""
     student = comes(closing, room, "Gil")
     teacher.ask("admit", student="Gil")
     tablet = comes(closing, room, "Gil")
@@ -276,7 +276,7 @@ def test_only_the_teacher_opens_the_teachers_page(room: ClassRoom, closing: Exit
 def test_a_new_code_keeps_everybody_in(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
-    """The old code opens nothing any more; whoever is in has a token."""
+    """After a new class code, tokens still let students in; new students use the new code."""
     student = comes(closing, room, "Hal")
     old = room.code
     teacher.ask("new_code")

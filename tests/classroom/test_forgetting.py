@@ -1,4 +1,4 @@
-"""A forgotten student is gone, whatever happens at the same moment."""
+"""Tests that nothing of a forgotten student stays, whatever happens at the same moment."""
 
 import asyncio
 import subprocess
@@ -27,7 +27,7 @@ DRAFT = Draft(table=FileTable(kind="postures", legs=6, rows=()), file=WORD)
 
 
 def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
-    """A trial that ends after its student was forgotten brings nothing back, nor does an edit."""
+    """Evidence, votes and tables that come after their student was forgotten are not kept."""
     path = tmp_path / CLASS_FILE
 
     async def forget() -> None:
@@ -55,7 +55,7 @@ def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
 
 
 def test_whoever_is_forgotten_while_coming_in_is_not_in(tmp_path: Path) -> None:
-    """A nickname that is deleted while it comes in leaves no evidence and no token."""
+    """A student who is forgotten while entering the class leaves no evidence and no token."""
     room = Classroom(tmp_path, Studios([Asker("tcp/127.0.0.1:1")]))
 
     async def forget() -> None:
@@ -81,7 +81,7 @@ def test_whoever_is_forgotten_while_coming_in_is_not_in(tmp_path: Path) -> None:
 
 
 def test_what_counts_is_kept_though_the_page_goes(tmp_path: Path) -> None:
-    """A page that goes at once takes nothing back, nor does it leave the file unused."""
+    """If a page closes while its evidence is being written, the evidence is kept."""
     path = tmp_path / CLASS_FILE
 
     async def go() -> None:
@@ -105,7 +105,7 @@ def test_what_counts_is_kept_though_the_page_goes(tmp_path: Path) -> None:
 
 
 def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
-    """Whoever fills the class with nicknames only replaces these; work is never deleted."""
+    """In a full class a new nickname replaces one without work; students with work stay."""
     room = Classroom(tmp_path, Studios([Asker("tcp/127.0.0.1:1")]))
 
     async def fill() -> None:
@@ -169,7 +169,7 @@ asyncio.run(forget(Path(sys.argv[1])))
 
 @pytest.mark.slow
 def test_a_full_disk_forgets_later(tmp_path: Path) -> None:
-    """If the disk refuses it, the student stays as before, and can be forgotten later."""
+    """If the disk is full, a student is not forgotten, goes on, and can be forgotten later."""
     words = [sys.executable, "-c", FULL, str(tmp_path / CLASS_FILE)]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["class.no-room", "3", "0"]

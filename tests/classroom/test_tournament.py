@@ -39,7 +39,7 @@ class Class:
         return self.tournament.state
 
     async def until(self, done: int) -> None:
-        """Wait until so many matches have ended, or the tournament is over."""
+        """Wait until `done` matches have ended, or the tournament is over."""
         while self.state.state == "running" and self.state.done < done:
             self.news.clear()
             await asyncio.wait_for(self.news.wait(), 60)
@@ -47,7 +47,7 @@ class Class:
 
 @pytest.mark.slow
 def test_a_tournament_of_a_class(tmp_path: Path) -> None:
-    """Everybody plays, is called by the nickname, has a record, and sees who was left out."""
+    """Gaits play under nicknames, each match has a record, and gaits with mistakes are left out."""
 
     async def play() -> None:
         room = Class(tmp_path)
@@ -139,7 +139,7 @@ def test_a_tournament_of_broken_gaits_says_who_was_left_out(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("players", [{}, {"Ada": HEXAPOD}, {"Ada": HEXAPOD, "Bo": WITHOUT}])
 def test_fewer_than_two_can_not_play(tmp_path: Path, players: Mapping[str, SeatFiles]) -> None:
-    """A tournament of fewer than two gaits does not begin."""
+    """A tournament of fewer than two gaits that walk does not begin."""
 
     async def play() -> None:
         room = Class(tmp_path)
@@ -152,7 +152,7 @@ def test_fewer_than_two_can_not_play(tmp_path: Path, players: Mapping[str, SeatF
 
 
 def test_names_of_folders() -> None:
-    """Each nickname gives a name that every system accepts and that no other folder has."""
+    """Each nickname gives a folder name that every system accepts and no other student has."""
     taken: list[str] = []
     for name in (
         "Ana",

@@ -237,7 +237,7 @@ def test_the_link_to_a_court(
 
 
 def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:
-    """With an invitation, doctor recognises a court with keys at its port and checks its link."""
+    """With an invitation, doctor recognises a court with keys at its port and checks the link."""
     with KeyedCourt(keyed_file(tmp_path)) as court:
         port = int(court.address.rpartition(":")[2])
         credentials = court.people["spectators"].credentials

@@ -46,12 +46,12 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script presses at most one robot key in a tick; a time counts from the previous key."""
+    """In a tick a script presses at most one key that moves the robot; times count between keys."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 
 def test_keys_that_move_the_robot_wait_for_play() -> None:
-    """A script holds back the keys that move the robot until play begins (rules 4)."""
+    """A key that moves the robot, and every key after it, waits until play begins (rules 4)."""
     script = script_of("r", "2", "q")
 
     assert script.due(0.0, False) == ["r"]

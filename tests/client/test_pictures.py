@@ -109,7 +109,7 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 
 @pytest.mark.parametrize("changes", [{"poses": b""}, {"scene": bytes(8)}, {"markers": b""}])
 def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes]) -> None:
-    """A frame that lacks poses or markers, or has another scene, is put into words without them."""
+    """A frame in words lacks markers and poses that are missing or of another scene."""
     sheet = make_sheet("othello")
     poses = pose(0.0, 0.0, 0.0) * 2
     plain = frame_dict(make_frame(sheet, **({"poses": poses} | changes)), sheet)
@@ -137,7 +137,7 @@ def test_an_event_in_words() -> None:
     ("ticks", "expected"), [(0, "3:00"), (1, "3:00"), (50, "2:59"), (9000, "0:00"), (9001, "0:00")]
 )
 def test_the_clock_counts_down(ticks: int, expected: str) -> None:
-    """The clock shows the second that has begun, so 0:00 is shown only at the end."""
+    """The clock rounds the time left up to whole seconds, so 0:00 is shown only at the end."""
     sheet = make_sheet("othello")
     assert words.match_clock(make_frame(sheet, clock_ticks=ticks), sheet) == expected
 
@@ -159,7 +159,7 @@ def test_the_lobby_says_who_is_missing() -> None:
 
 
 def test_before_ready_no_robot_does_anything() -> None:
-    """Without robots on the field there is no key to show; with them it is the drive's."""
+    """Without robots on the field no key is shown; with robots, each seat's key is shown."""
     sheet = make_sheet("othello")
     assert words.standing_key(make_frame(sheet), sheet, 0) == ""
     on_field = make_frame(sheet, poses=pose(0.0, 0.0, 0.0) * 2)

@@ -67,7 +67,7 @@ def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
 
 
 def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -> None:
-    """A player whose LocoTra-data.txt is older than the table is told so (workshop 4-1)."""
+    """A player whose LocoTra-data.txt is older than the posture table is told so (workshop 4-1)."""
     table = write(tmp_path / "Loco-data.xlsx", b"", 1000)
     sequences = write(tmp_path / "LocoTra-data.txt", b"", 1000)
     assert remarks(tmp_path, [table, sequences]) == []
@@ -170,7 +170,7 @@ def test_level_b_is_made_of_postures_that_come_alone() -> None:
 
 
 def test_level_b_is_never_made_against_what_there_is() -> None:
-    """Level B is not made if a locomotion file is there, or if the postures don't suffice."""
+    """Level B is not made if there is a locomotion file or a posture is missing."""
     both = SeatFiles(postures=SAMPLE.postures, locomotion=SAMPLE.locomotion)
     few = PostureTable({0: (0.0,) * 18, 1: (0.1,) * 18})
     short = SeatFiles(postures=SentFile("few.txt", write_gait(few, leg_labels(6))))
@@ -187,7 +187,7 @@ def test_level_b_is_never_made_against_what_there_is() -> None:
 
 
 def test_files_that_are_saved_again_are_read_again(tmp_path: Path) -> None:
-    """A gait file that is saved again is read again; a wrong file changes nothing."""
+    """A gait file that is saved again is read again; if it is wrong, the old one stays in use."""
     write(tmp_path / "LocoTra-data.txt", LOCOMOTION)
     own = OwnFiles(folder=tmp_path)
     assert not own.look()

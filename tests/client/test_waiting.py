@@ -40,7 +40,7 @@ def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
     ids=["a person", "the time is over", "for good"],
 )
 def test_it_does_not_wait_in_vain(wait_s: float | None, error: UserError) -> None:
-    """A service does not wait without --wait, beyond its time, or if the token is wrong."""
+    """A service does not wait without --wait, after the time of --wait, or with a wrong token."""
     with pytest.raises(type(error), match=str(error)):
         Patience(wait_s).until(coming(error))
 
@@ -84,7 +84,7 @@ def test_a_court_that_is_opened_later_is_found() -> None:
 def test_services_take_the_option(
     words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With --wait, `bot` and `referee` try for this time, and then fail with the usual error."""
+    """With --wait 2.5, `bot` and `referee` try for 2.5 s, and then fail with the usual error."""
     begin_s = time.monotonic()
     where = ("--connect", f"tcp/127.0.0.1:{free_port()}", "--wait", "2.5")
     assert cli.main([*words, *where]) == 2

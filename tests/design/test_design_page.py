@@ -192,7 +192,7 @@ def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
 
 
 def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -> None:
-    """Progress has the page's own name of the search; a cancelled search still gets a reply."""
+    """Progress has the name that the page gave to the search; a cancelled search gets a reply."""
     search = page.send("coach", job="search", table=sample(page), size="cell", seconds=60.0)
     page.until(lambda: page.progress)
     page.ask("cancel", job="search")
@@ -245,7 +245,7 @@ def test_garbage_closes_the_connection(opens: Opens, garbage: bytes) -> None:
 
 
 def test_a_table_is_taken_to_practice(page: DesignClient) -> None:
-    """Practice has the table of the page, and later its newer one; a table with mistakes stays."""
+    """Practice gets a page's table, and later the newer one; a table with mistakes is refused."""
     table = sample(page)
     sequences = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
     bad = {**table, "rows": [{**table["rows"][0], "angles_deg": [999.0] * 18}, *table["rows"][1:]]}

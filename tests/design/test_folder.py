@@ -110,7 +110,7 @@ def test_a_table_is_saved_and_read_back(folder: Folder, name: str) -> None:
 
 
 def test_a_change_meanwhile_is_a_conflict(folder: Folder) -> None:
-    """If another program changed the file, a save writes nothing and returns the new table."""
+    """If another program changed the file, a save writes nothing and returns the file's table."""
     version = folder.read("Loco-data.xlsx").version
     path = folder.path / "Loco-data.xlsx"
     book = openpyxl.load_workbook(path)

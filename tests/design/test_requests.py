@@ -34,6 +34,6 @@ def test_a_table_is_read() -> None:
     ],
 )
 def test_a_table_that_no_robot_has_is_refused(table: dict[str, Any]) -> None:
-    """Checking a table of a million legs would take minutes, in which the whole class waits."""
+    """A table that is too large for any robot, or has no legs, is refused at once."""
     with pytest.raises(Unreadable):
         read(ask(**table))

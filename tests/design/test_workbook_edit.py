@@ -139,7 +139,7 @@ def test_one_number_changes_one_cell(name: str) -> None:
 
 
 def test_the_mirror_shows_the_new_numbers() -> None:
-    """The mirror sheet stores the new angle, and Excel must calculate all formulas again."""
+    """The mirror sheet, a copy by formulas, stores the new angle; Excel recalculates formulas."""
     after = edit_workbook(ours(), "x.xlsx", with_angle(sample(), 0, 0, 33))
     assert values(after, MIRROR_SHEET)["B2"] == 33
     assert values(after, MIRROR_SHEET)["C2"] == values(ours(), MIRROR_SHEET)["C2"]
@@ -159,7 +159,7 @@ def test_old_results_of_formulas_are_forgotten() -> None:
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_posture_is_added_below_the_others(name: str) -> None:
-    """A new key gets a row with the last row's format; the legend moves down with its format."""
+    """A new key gets a row with the last row's format; the legend below moves down unchanged."""
     table = sample()
     wanted = PostureTable({**table.postures, 9: table.postures[1]})
     before, after = FILES[name], edit_workbook(FILES[name], "x.xlsx", wanted)

@@ -61,7 +61,7 @@ def stack() -> Iterator[ExitStack]:
 
 
 def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
-    """The page of `lacoc play` gets the command's seat, name and files, and joins by its token."""
+    """The page of `lacoc play` gets the command's seat, name and files, and needs no token."""
     court = CourtProcess(tmp_path, "--arena", "othello")
     stack.callback(court.close)
     gait = sample_gait_files("hexapod").locomotion

@@ -218,7 +218,7 @@ def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
 
 
 def test_a_log_that_begins_again() -> None:
-    """A repeated event changes nothing; another event of a known number replaces all from it on."""
+    """A repeated event changes nothing; a different one replaces the log from its number on."""
     log: EventLog[str] = EventLog()
     assert [log.add(event(n, "old"), f"old {n}") for n in (1, 2, 3)] == [True] * 3
     assert [log.add(event(n, "old"), "again") for n in (1, 2, 3)] == [False] * 3
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from a court's report if its events differ, except those after the report."""
+    """A log differs from a court's report if their events up to the time of the report differ."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)

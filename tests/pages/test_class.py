@@ -71,7 +71,7 @@ def comes(closing: ExitStack, room: ClassRoom, name: str) -> StudentPage:
 
 
 def edits(student: StudentPage) -> dict[str, Any]:
-    """Change the first number of the sample, so that the student has a table."""
+    """Let a student change the first number of the sample table; return the student's table."""
     table = student.sample()
     for angle_deg in (0.0, 3.0):
         first, *others = table["rows"]
@@ -89,7 +89,7 @@ def tries(student: StudentPage) -> None:
 def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:
-    """A trial fills the card; cards keep their places under the pointer, then the hand is first."""
+    """A raised hand puts a card first when the pointer leaves the cards; Enter lowers the hand."""
     ada, bob = comes(closing, room, "Ada"), comes(closing, room, "Bob")
     desk = Desk(open_page, room.url, viewport={"width": 1280, "height": 720})
     desk.begin(room.key)
@@ -126,7 +126,7 @@ def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
 def test_the_teacher_sets_rules_hands_out_and_takes_home(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack, tmp_path: Path
 ) -> None:
-    """Phases and coach close for students, a file's table reaches them, evidence downloads."""
+    """The teacher closes a phase and the coach, hands out a file, and downloads the evidence."""
     cem = comes(closing, room, "Cem")
     desk = Desk(open_page, room.url, viewport={"width": 1280, "height": 720})
     desk.begin(room.key)
@@ -163,7 +163,7 @@ def test_the_teacher_sets_rules_hands_out_and_takes_home(
 def test_projector_mode_hides_names_everywhere(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:
-    """No name is on cards, in details or on the big screen, also after a reload; on a phone too."""
+    """Projector mode shows no student's name on cards, details or big screen, even on a reload."""
     dan, eva = comes(closing, room, "Danilo"), comes(closing, room, "Evangeline")
     tries(dan)
     tries(eva)
@@ -203,7 +203,7 @@ def test_projector_mode_hides_names_everywhere(
 def test_the_page_goes_on_after_the_gateways_end(
     open_page: OpenPage, built_pages: Path, tmp_path: Path, closing: ExitStack, console: Any
 ) -> None:
-    """The teacher's page comes back by itself; a student is deleted only after a question."""
+    """The teacher's page finds a restarted gateway again, and asks before it deletes a student."""
     console.expect("WebSocket")
     room = ClassRoom(tmp_path)
     for name in ("Kim", "Lea"):
@@ -228,7 +228,7 @@ def test_the_page_goes_on_after_the_gateways_end(
 def test_a_tournament_ends_in_large_standings(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:
-    """Gaits of the class play; matches lead to their replays; projector mode shows the result."""
+    """Projector mode shows a tournament's standings without names; each match has its replay."""
     for name in ("Mia", "Nils"):
         edits(comes(closing, room, name))
     desk = Desk(open_page, room.url, viewport={"width": 1280, "height": 720})

@@ -1,4 +1,4 @@
-"""A student of a class on /design, and what comes back of a table that nobody saved."""
+"""Tests of /design for a student of a class, and of unsaved tables that come back."""
 
 import json
 import os
@@ -41,7 +41,7 @@ class Pupil(Designer):
     """A student of a class, in a browser of its own."""
 
     def joins(self, room: ClassRoom, name: str) -> None:
-        """Come in with the class code by keyboard alone, and wait for the table."""
+        """Enter the class by keyboard alone, and wait for the table."""
         self.open("/design")
         self.sees(".join form")
         self.page.keyboard.type(room.code.lower())
@@ -56,7 +56,7 @@ class Pupil(Designer):
         expect(self.find(".try")).to_be_enabled(timeout=TIMEOUT_MS)
 
     def changes(self, text: str) -> None:
-        """Change the first number, and wait until the gateway has it."""
+        """Change the table's first number, and wait until the gateway has the change."""
         self.go(0, 0)
         self.type(text)
         self.cell_is(0, 0, text)
@@ -64,7 +64,7 @@ class Pupil(Designer):
 
 
 def test_joins_by_keyboard_and_the_table_stays(open_page: OpenPage, room: ClassRoom) -> None:
-    """A phone refuses a wrong code in words and keeps the focus; a reload keeps the table."""
+    """A phone's page explains that a class code is wrong; a reload keeps the student's table."""
     page = Pupil(open_page, room.url, **PHONE)
     page.open("/design")
     page.sees(".join form")
@@ -98,7 +98,7 @@ def test_joins_by_keyboard_and_the_table_stays(open_page: OpenPage, room: ClassR
 
 
 def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoom) -> None:
-    """The teacher sees the hand, closes a phase and the coach, and hands out a table."""
+    """The teacher's rules, tables and deletions reach a student; only the newest page works."""
     with ExitStack() as closing:
         teacher = room.teacher()
         closing.callback(teacher.close)
@@ -156,7 +156,7 @@ def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoo
 def test_goes_on_after_the_gateway_was_killed(
     open_page: OpenPage, room: ClassRoom, folder: Path, console: Any
 ) -> None:
-    """After kill -9 the page goes on by itself, and what was typed meanwhile is told."""
+    """When a killed gateway is back, a student's page sends it what was typed meanwhile."""
     console.expect("ERR_CONNECTION|WebSocket")
     page = Pupil(open_page, room.url)
     page.joins(room, "Zoe")
@@ -190,7 +190,7 @@ def kill(process: Any) -> None:
 def test_alone_changes_come_back_after_a_kill(
     open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
 ) -> None:
-    """After kill -9 of `lacoc design` the unsaved table is one step from the file's."""
+    """After kill -9 of `lacoc design` the unsaved table is back; undo gives the file's table."""
     console.expect("ERR_CONNECTION|WebSocket")
     write_sample(tmp_path)
     process, url, key = start_own_page(tmp_path, "design")

@@ -123,7 +123,7 @@ def sample(folder: Path) -> Path:
 
 
 def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> Designer:
-    """Open the page in its own browser profile, and leave what another test has not saved."""
+    """Open the page in its own browser profile, and drop what another test has not saved."""
     settings = {"viewport": {"width": 1280, "height": 800}} | options
     page = Designer(open_page, address[0], **settings)
     page.begin(address[1])
@@ -139,7 +139,7 @@ def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> D
 def test_a_number_moves_the_leg_and_a_trial_explains_it(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """With the keyboard alone a number moves the leg, Try shows figures, and undo takes it back."""
+    """With the keyboard alone a number moves the leg, Try shows figures, and undo works."""
     page = designer(open_page, address)
     page.sees(".task", "Click a number")
     page.tries()
@@ -290,7 +290,7 @@ def test_a_table_goes_to_practice(
 def test_predict_compare_and_the_way_back(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """Predictions get a verdict, Compare shows a ghost, and a trial gives its table back."""
+    """Predictions get a verdict, Compare shows two trials, and a trial gives its table back."""
     page = designer(open_page, address)
     page.tries()
     page.go(1, 0)
@@ -311,7 +311,7 @@ def test_predict_compare_and_the_way_back(
 def test_what_is_pasted_dropped_and_composed(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """A block is pasted whole or not at all, a whole sheet is read, and an IME types digits."""
+    """Pasted cells are all taken or none is; a robot file can be dropped; a Japanese IME works."""
     page = designer(open_page, address)
     page.go(1, 0)
     page.paste("1\t２\r\n−3\t4,5\r\n")
@@ -359,7 +359,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
 ) -> None:
     """If another program has saved the file, the page asks first; both tables can be kept.
 
-    Where the page can save nothing, it hands the table out as a file.
+    Where the page can't save, Ctrl-S downloads the table as a file.
     """
     page = designer(open_page, address)
     file = sample / "Loco-data.txt"
@@ -414,7 +414,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
 def test_a_phone_in_japanese_tries_and_compares(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """On a phone the strip changes a number, two trials are compared, and nothing is too wide."""
+    """On a phone a button changes a number, two trials are compared, and nothing is too wide."""
     page = designer(
         open_page,
         address,

@@ -19,7 +19,7 @@ class Student(Designer):
     """Somebody who has no mouse."""
 
     def focuses(self, selector: str) -> None:
-        """Put the focus on a control; a test of the page's tab stops is elsewhere."""
+        """Put the keyboard focus on a control of the page."""
         self.find(selector).first.focus()
 
     def goes_to(self, phase: int) -> None:
@@ -28,7 +28,7 @@ class Student(Designer):
         expect(self.find(".learn h3")).to_contain_text(str(phase), timeout=TIMEOUT_MS)
 
     def changes(self, text: str, *, guess: str = "") -> None:
-        """Change the selected number; before it, perhaps, guess where the foot goes."""
+        """Change the selected number; with `guess`, first guess where the foot goes."""
         if guess:
             self.focuses(f".foot-guess button:text-is('{guess}')")
             self.press("Enter")

@@ -282,7 +282,7 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.mark.long
 def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
-    """With equal links (rules 3), the page shows its own round trip and both seats' delay."""
+    """With equal links (rules 3), the page shows its round trip and the common delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     page = seated(venue, sit)

@@ -71,7 +71,7 @@ class Recorded:
         return unpack_states(frame.markers, len(self.sheet.markers))
 
     def change(self) -> tuple[Frame, Frame, int]:
-        """Return the frames before and after a seat first takes a marker, and its index."""
+        """Return the frames just before and after a seat takes a marker, and the marker's index."""
         for before, after in zip(self.frames, self.frames[1:], strict=False):
             was, now = self.states(before), self.states(after)
             for marker, (one, other) in enumerate(zip(was, now, strict=True)):

@@ -64,7 +64,7 @@ def test_two_postures_go_forward_on_the_same_feet(
 
 
 def test_a_jump_at_the_seam_is_told_in_degrees(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """A root that turns by 26 degrees a posture jumps back by 78 degrees at the end."""
+    """A Root joint that turns by 26 degrees a posture jumps back by 78 degrees at the end."""
     turned = {
         key: tuple(
             math.radians(-40 + 26 * (key - 1)) if joint == 0 else angle
@@ -80,7 +80,7 @@ def test_a_jump_at_the_seam_is_told_in_degrees(try_gait: Tries, sample: dict[int
 def test_faults_of_physics_are_facts(
     ask_trial: Callable[..., TrialReply], sample: dict[int, Posture]
 ) -> None:
-    """A trial that physics stopped, also in its first tick, has facts."""
+    """A trial in which physics failed, even in the first tick, has facts."""
     reply = ask_trial(sample, "A1", 0.2)
     stopped = msgspec.structs.replace(reply, fault=Phrase("fault.numbers"))
     empty = msgspec.structs.replace(

@@ -166,7 +166,7 @@ HAND, VOTE = Hand(up=True), Voted(poll="x")
 
 
 def test_a_count_says_how_much_is_left() -> None:
-    """If one of two is there, the share is a half, and one is reported as missing."""
+    """If one of two raised hands is there, the share is a half, and one is reported missing."""
     assert IS_HAND.look([HAND, VOTE]) == Outcome(0.5, (lacks(1),))
     assert IS_HAND.look([HAND, VOTE, HAND]) == MET
 

@@ -121,7 +121,7 @@ def test_a_killed_program_loses_nothing_that_was_acknowledged(path: Path) -> Non
 
 
 def test_one_program_at_a_time_has_a_class(path: Path) -> None:
-    """While a store has a file open, a second store can't open it, and it can't be deleted."""
+    """While a store has a file open, no other store can open it and `forget` can't delete it."""
     with ClassStore(path) as store:
         for again in (ClassStore, forget):
             with pytest.raises(UserError) as refused:

@@ -42,7 +42,7 @@ def read_name(text: str) -> str:
     """Return a nickname without spaces at its ends and double spaces in it.
 
     Raises:
-        UserError: if it is empty, too long, or has signs that can't be seen.
+        UserError: if nothing of it can be seen, it is too long, or it has unprintable signs.
     """
     name = " ".join(unicodedata.normalize("NFC", text).split())
     if not _UNSEEN.sub("", name).strip() or len(name) > _LONGEST_NAME or not name.isprintable():
@@ -66,7 +66,7 @@ class Guesses:
         """Count a wrong code; return how long its answer must wait [s].
 
         Args:
-            machine: address of the machine that showed it.
+            machine: address of the machine that sent the code.
             now_s: time on a clock that never goes back [s].
         """
         allowance = self._machines.setdefault(machine, Allowance(_GUESSES_HZ, _GUESSES_BURST))

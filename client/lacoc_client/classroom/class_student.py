@@ -49,7 +49,7 @@ class ClassStudent(Student):
         self.hand_moved()
 
     def hand_moved(self) -> None:
-        """Note when the hand went up, or that it is down."""
+        """Note when the student's hand went up, or that it is down."""
         if not self.diary.progress.hand_up:
             self.hand_up_s = None
         elif self.hand_up_s is None:

@@ -92,7 +92,7 @@ class Classroom:
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """Look for studios until the block ends, and tell the pages."""
+        """Look for studios until the block ends; tell the pages when a studio comes or goes."""
         self.studios.start()
         looking = asyncio.get_running_loop().create_task(self._look())
         try:
@@ -104,10 +104,10 @@ class Classroom:
             await asyncio.to_thread(self.studios.close)
 
     async def open(self) -> None:
-        """Read what was kept of the class.
+        """Read the settings, the students and their evidence from the class file.
 
         Raises:
-            UserError: if its file can't be opened.
+            UserError: if the class file can't be opened.
         """
         store = await self._store()
         kept = {(table.student, table.name): table for table in store.tables()}
@@ -139,7 +139,7 @@ class Classroom:
         return Entered(student, token)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page what it must know, and stop the student's other pages (`Host.greet`)."""
+        """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
         self._send_away(student, forgotten=False)
         student.viewers[viewer] = None
@@ -273,12 +273,12 @@ class Classroom:
         return student
 
     async def _make_room(self) -> None:
-        """Forget the first nickname with which nobody has done anything, and nobody is in.
+        """Forget the first student who has done nothing and has no page open.
 
-        So whoever comes in under a hundred names does not keep the others out.
+        So nobody can keep others out by entering under a hundred nicknames.
 
         Raises:
-            UserError: if there is no such nickname.
+            UserError: if there is no such student.
         """
         idle = (student for student in self.students.values() if student.is_idle)
         student = next(idle, None)
@@ -347,7 +347,7 @@ class Classroom:
             viewer.send(message)
 
     def _public(self) -> tuple[Any, ...]:
-        """Return trouble and studios: the teacher is told at once when they change."""
+        """Return the trouble with the class file and the state of the studios, for the teacher."""
         return (self._keeper.trouble, self.studios.present, self.studios.why)
 
     def _class_message(self, cards: Iterable[Any] | None = None) -> bytes:

@@ -42,7 +42,7 @@ class TeacherPage:
         self._studio = StudioDesk(classroom.studios, self._viewer.send_if_fast)
 
     async def serve(self) -> None:
-        """Answer the page until it goes."""
+        """Answer the page's requests until the page goes."""
         try:
             await serve_requests(
                 self._websocket, self._answers, requests.read, self._take, _ASKS_HZ, _ASKS_BURST
@@ -113,7 +113,7 @@ class TeacherPage:
         await self._class.hand_out(asked.title, table, asked.sequences)
 
     async def _show(self, student: ClassStudent) -> dict[str, Any]:
-        """Let a student's robot walk; the big screen needs robot, trial and table."""
+        """Let a student's robot walk; return robot, trial and table for the big screen."""
         draft = _draft(student)
         file = draft.robot or self._class.robot
         trial = TrialAsk(id=0, table=draft.table, robot=file, sequences=draft.sequences)

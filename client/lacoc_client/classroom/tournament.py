@@ -94,7 +94,7 @@ class Tournament:
     async def play(
         self, players: Mapping[str, SeatFiles], arena: str, rounds: int, seconds: float
     ) -> None:
-        """Start a tournament; `state` says how it goes.
+        """Start a tournament; `state` has its matches and standings.
 
         Args:
             players: robot and gait of each player, by nickname; whoever has no level B is left out.
@@ -154,7 +154,7 @@ class Tournament:
             self._change(state="done" if is_done else "stopped", trouble=trouble)
 
     async def _simulate(self, teams: "Mapping[str, _Team]", words: list[str]) -> Phrase | None:
-        """Run the command; return why it ended early, or None."""
+        """Run `lacoc simulate`; return why it ended early, or None if it did not."""
         jobs = max(1, (os.cpu_count() or 1) - 1)  # one core is left for the class
         words += ["--jobs", str(jobs), "--record", str(self.recordings), "--leave-out"]
         self._simulation = await Simulation.start([*teams, *words])
@@ -174,7 +174,7 @@ class Tournament:
         return None if why is None else say("tournament.ended", why=why)
 
     def _take(self, line: Line, teams: "Mapping[str, _Team]") -> None:
-        """Take in a line of the command."""
+        """Take in a line that `lacoc simulate` printed."""
         match line:
             case LeftOutLine():
                 out = teams[line.player].left_out(line)

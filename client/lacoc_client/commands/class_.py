@@ -33,7 +33,7 @@ class _ClassGroup(TyperGroup):
     usual = "open"
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Put the usual command before its words; see `click.Group.parse_args`."""
+        """Put `open` before words that begin with no command; see `click.Group.parse_args`."""
         if args and args[0] not in self.commands and args[0] not in ctx.help_option_names:
             args = [self.usual, *args]
         return super().parse_args(ctx, args)

@@ -36,7 +36,7 @@ def perhaps_seat(
     seat: str | None,
     token: str | None,
 ) -> Access:
-    """Find the way to a court, and what is known of a seat; a page asks for the rest.
+    """Find the way to a court, with seat and token if they are known; a page asks for the rest.
 
     Raises:
         UserError: if the contest file or the invitation is wrong.
@@ -73,7 +73,7 @@ def referee(
 def spectator(
     invitation: Path | None, contest: Path | None, court: str | None, connect: str | None
 ) -> Access:
-    """Find the way to a court for a spectator; any invitation will do.
+    """Find the way to a court for a spectator; any invitation is accepted.
 
     Raises:
         UserError: if the contest file or the invitation is wrong.
@@ -86,7 +86,7 @@ def spectator(
 def gateway(
     invitation: Path | None, contest: Contest | None, court: str | None, connect: str | None
 ) -> Access:
-    """Find the way to a court for a gateway; with a person's invitation it only watches.
+    """Find the way to a court for a gateway, which only watches with a person's invitation.
 
     Raises:
         UserError: if the invitation or the contest's keys can't be read.

@@ -88,7 +88,7 @@ class _End:
         self._ended_s: float | None = None
 
     def __call__(self) -> bool:
-        """Return whether to end: somebody asked for it, or the match is over and fully told."""
+        """Return whether to end: on request, or after the match and its last event."""
         if self._stopping():
             return True
         frame = self._view.frame

@@ -73,10 +73,10 @@ class DesignPage:
         return True
 
     async def _enter(self, hello: requests.Hello) -> None:
-        """Let the page in, if it shows what it must; it may try again.
+        """Let the page in if its page key, class code or token is right; else it may try again.
 
         Raises:
-            UserError: if it does not.
+            UserError: if the page is not let in.
         """
         client = self._websocket.client
         entered = await self._host.enter(hello, self._viewer, client.host if client else "")

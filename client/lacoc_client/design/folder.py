@@ -95,7 +95,7 @@ class Folder:
         self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Look at the folder; return the names of files that came, went or changed meanwhile."""
+        """Read the folder; return the names of files changed, new or gone since the last look."""
         with self._lock:
             self._look()
             changed, self._changed = self._changed, set()

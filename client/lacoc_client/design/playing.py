@@ -24,15 +24,16 @@ class Playing:
         self._lock = threading.Lock()
 
     def open(self, files: SeatFiles) -> str:
-        """Hand files to the page of the court; start it if it does not run. Blocks meanwhile.
+        """Hand files to the page of `lacoc practice` or `lacoc play`; first start it if needed.
 
-        A page that is open already notices the new files, and asks whether to use them.
+        The start takes some seconds. A page that is open already notices the new files, and asks
+        whether to use them.
 
         Returns:
-            The address of the page, with its key.
+            The address of the page, with the page key.
 
         Raises:
-            UserError: if it does not become ready.
+            UserError: if the command does not become ready.
         """
         with self._lock:
             paths = self._write(files)

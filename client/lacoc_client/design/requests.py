@@ -277,7 +277,7 @@ def read(data: bytes) -> Asked:
 
 
 def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
-    """Decode a request; as `read`, for the requests that a decoder knows."""
+    """Decode a request with this decoder; raise the same error as `read`."""
     try:
         if len(data) > REQUEST_BYTES:
             most = PARSE_BYTES if _any_do.decode(data).do == "parse" else REQUEST_BYTES

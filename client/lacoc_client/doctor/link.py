@@ -25,7 +25,7 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
 
     Args:
         access: the way to the court.
-        seconds: how long its frames are counted.
+        seconds: how long the court's frames are counted.
     """
     about = say("doctor.court", court=access.court)
     try:
@@ -111,7 +111,7 @@ def _frames(view: Spectator, seconds: float) -> Finding:
 
 
 def _record(view: Spectator) -> Iterator[Finding]:
-    """Report what is wrong with the court's disk, if its health says so."""
+    """Report what is wrong with the court's record, if the court's health says so."""
     end_s = time.monotonic() + _FIRST_S
     while view.health is None and time.monotonic() < end_s:
         view.wait_frame(_FIRST_S)

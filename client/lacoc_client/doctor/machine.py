@@ -66,7 +66,7 @@ class Finding(msgspec.Struct, frozen=True):
 
 
 def packages() -> Iterator[Finding]:
-    """Check Python, this software, and that every package it needs is there and in range."""
+    """Check the versions of Python and LACOC, and that each needed package has a right version."""
     lacoc = distribution("lacoc")
     wanted = lacoc.metadata["Requires-Python"]
     python = platform.python_version()
@@ -151,7 +151,7 @@ def web_port(host: str, port: int, *, needed: bool) -> Finding:
     Args:
         host: address of this machine to listen at.
         port: the port.
-        needed: whether it was asked for; otherwise a taken port is only a note.
+        needed: whether the user named the port; otherwise a taken port is only a note.
     """
     about = say("doctor.port", port=port)
     why: Phrase | str = _why_taken(host, port)

@@ -55,7 +55,7 @@ class Page:
         self._entering = asyncio.Lock()
 
     async def serve(self) -> None:
-        """Answer the page until it goes."""
+        """Answer the page's requests until the page goes."""
         try:
             await serve_requests(
                 self._websocket, self._answers, wire.read, self._answer, _ASKS_HZ, _ASKS_BURST

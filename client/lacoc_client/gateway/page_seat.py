@@ -43,7 +43,7 @@ class PageSeat:
         """The seat and its hold, as last logged."""
 
     def join(self, asked: wire.JoinAsk, watching: Access) -> None:
-        """Take a seat; it replaces the page's earlier seat, if it had one.
+        """Take a seat, in place of the page's earlier seat if it had one.
 
         Args:
             asked: the page's request.

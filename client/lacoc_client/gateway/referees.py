@@ -50,7 +50,7 @@ class Referees:
         """Let a page act in place of another.
 
         Raises:
-            UserError: if it has not entered.
+            UserError: if the page has not entered.
         """
         if viewer not in self._entered:
             raise UserError(say("gateway.enter-first"))

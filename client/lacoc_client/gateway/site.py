@@ -32,7 +32,7 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
     """Make the application of a gateway.
 
     Args:
-        home: its settings.
+        home: the gateway's settings.
         files: the built pages.
     """
     courts = Courts(home)

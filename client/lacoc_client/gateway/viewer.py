@@ -42,7 +42,7 @@ class Viewer:
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:
-        """Set the frame rate [Hz], within bounds."""
+        """Set the frame rate [Hz]; a rate below 1 or above 50 becomes 1 or 50."""
         # Comparisons with NaN are False, so it becomes the highest rate.
         self._interval_s = 1 / (MOST_HZ if not hz < MOST_HZ else max(LEAST_HZ, hz))
         self._next_s = 0.0

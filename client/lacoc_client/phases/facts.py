@@ -224,7 +224,7 @@ def _most_common(values: npt.NDArray[Any]) -> int:
 
 
 def _pressed(keys: str, reply: TrialReply) -> tuple[str, ...]:
-    """List the pressed keys. The reply has the last one; an earlier one without a level is B."""
+    """List the pressed keys, the last one from the reply; keys without a level are of level B."""
     found = [_KEY.fullmatch(word.strip()) for word in keys.split(",")]
     before = [f"{(key[1] or 'B').upper()}{key[2]}" for key in found[:-1] if key]
     return (*before, f"{'AB'[reply.level]}{reply.key}")

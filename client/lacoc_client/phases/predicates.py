@@ -141,7 +141,7 @@ class TriedWhere:
     """What is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the trial with the largest share; of equal ones, of the last."""
+        """Return the outcome of the trial with the largest share, the last one if several do."""
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [_all([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
         return max(best, key=_share, default=Outcome(0.0, (self.none,)))
@@ -188,7 +188,7 @@ class OneVersion:
     shown: Predicate
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the version with the largest share; of equal ones, of the last."""
+        """Return the outcome of the version with the largest share, the last one if several do."""
         versions: dict[str, list[Evidence]] = {}
         for one in evidence:
             if isinstance(one, Edited | Tried | Checked | Compared | Coached):

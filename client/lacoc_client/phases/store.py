@@ -121,7 +121,7 @@ class ClassStore:
             self._waiting.add((table.student, table.name))
 
     def write(self, table: KeptTable) -> "Future[None]":
-        """Keep something as `keep` does, but write it at once; errors are those of `keep`."""
+        """Keep a table as `keep` does, but write it at once; errors are those of `keep`."""
         self.keep(table)  # so that it is written later if the disk is full now
         return self._do(lambda file: file.write_tables([table]), writes=True)
 

@@ -75,7 +75,7 @@ class BoardView:
 
 
 def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
-    """Return the score, line by line."""
+    """Return the text beside the board, line by line: match, phase, clock, hint and teams."""
     phase = Phase(frame.phase)
     left = render(say("terminal.left") if sheet.duration_s else say("terminal.played"))
     lines = [

@@ -79,7 +79,7 @@ def refusals(refused: Mapping[str, int]) -> str:
 
 
 def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
-    """Return what a robot does, such as "B key 2, posture 1/4"; "" before it is on the field."""
+    """Return a robot's key, as "B key 2, posture 1/4"; "" before the robot is on the field."""
     if not frame.poses:
         return ""
     seat = frame.seats[index]
@@ -96,7 +96,7 @@ def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
 
 
 def place(frame: Frame, sheet: Sheet, seat: str) -> str:
-    """Say where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if it has none."""
+    """Say where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if there is none."""
     pose = poses(frame, sheet).get(seat)
     if pose is None:
         return ""

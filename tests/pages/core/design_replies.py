@@ -16,7 +16,7 @@ from lacoc_shared.studio import GaitFiles, RobotRequest, TrialRequest
 
 
 def replies(name: str) -> list[bytes]:
-    """Ask about a robot, and for a trial of its sample gait."""
+    """Return a studio's answers about a robot: a description, and a trial of its sample gait."""
     courses: dict[str, Course] = {}
 
     def course_of(robot: RobotSpec) -> Course:

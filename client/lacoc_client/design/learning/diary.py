@@ -102,7 +102,7 @@ class Diary:
             await _kept(asyncio.wrap_future(vote))
 
     async def keep(self, draft: Draft, version: str) -> None:
-        """Keep the newest table; it is on the disk about a second later.
+        """Keep the newest table; it is on the disk with the next evidence, or after about a second.
 
         Args:
             draft: the table.
@@ -114,7 +114,7 @@ class Diary:
             store.keep(draft.kept(self._student, version, time.time()))
 
     async def write(self, table: KeptTable) -> None:
-        """Write something else of the student; it is on the disk when this returns."""
+        """Write data such as the student's token; if that fails, `Phases.trouble` says why."""
         store = await self._opened()
         if store is not None and not self._is_forgotten:
             await _kept(asyncio.wrap_future(store.write(table)))
@@ -185,7 +185,7 @@ class Diary:
         )
 
     async def _opened(self) -> ClassStore | None:
-        """Open the file, read what it has of this student, and return it; None if this fails."""
+        """Open the file and read this student's evidence and draft; None if it can't be opened."""
         store = await self._keeper.opened()
         async with self._reading:
             if store is not None and not self._is_read:

@@ -29,7 +29,7 @@ class Keeper:
         return self._refused if self._store is None else self._store.trouble
 
     async def opened(self) -> ClassStore | None:
-        """Return the file, after it was opened; None if it can't be."""
+        """Open the file if it is not open yet, and return it; None if it can't be opened."""
         if self._store is None and self._refused is None:
             if self._opening is None:
                 self._opening = asyncio.get_running_loop().create_task(self._open())

@@ -91,7 +91,7 @@ class _Edit:
         """Return the changed workbook; None if nothing changes.
 
         Raises:
-            NotEditable: if something in it can't be kept.
+            NotEditable: if something in the workbook can't be kept.
         """
         contents = self._contents()
         if not contents:

@@ -98,7 +98,7 @@ def _check_robot(rows: Iterable[Row], name: str, table: PostureTable) -> None:
 
 
 def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -> None:
-    """Give each posture without a row a free one, in the order of the keys where that is possible.
+    """Give each posture without a row a free row, in the order of the keys if possible.
 
     Args:
         place_of: row of each posture; the new ones are added.

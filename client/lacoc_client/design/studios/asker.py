@@ -101,7 +101,7 @@ class Asker:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 
     async def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
-        """Call a function for each report on a search, on another thread, until it is closed.
+        """Call a function for each report on a search, on another thread, until `Listening.close`.
 
         Raises:
             NotNow: if there is no studio.

@@ -37,5 +37,5 @@ class Studios:
         return None if self.present else self._askers[0].why
 
     def free(self) -> Asker:
-        """Return the way to a studio that is there and has the least to do."""
+        """Return the way to the studio with the least to do; to an absent one if none is there."""
         return min(self._askers, key=lambda asker: (asker.studio is None, asker.open))
