@@ -8,6 +8,7 @@ from typing import Any, Literal, NamedTuple, get_args
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
+from lacoc_robots.robot_file import LARGEST_FILE
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -74,8 +75,6 @@ _PLACES: Mapping[str, _Place] = {
 }
 assert _PLACES.keys() == set(get_args(RobotEntry))
 
-_MAX_BYTES = 32 * 1024  # of a robot file
-
 
 def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
     """Return the text of a robot file with one number changed.
@@ -94,7 +93,7 @@ def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
     if not math.isfinite(value):
         raise UserError(say("design.no-place", entry=_shown(place)))
     try:
-        wanted = read_toml(text, _MAX_BYTES, any_integers=True)  # refuses what is hostile
+        wanted = read_toml(text, LARGEST_FILE, any_integers=True)  # refuses what is hostile
     except BadToml as error:
         raise UserError(error.phrase) from None
     try:
