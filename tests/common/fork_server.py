@@ -76,7 +76,7 @@ def serve(door: socket.socket) -> int:
 
 
 def reap(waiting: dict[int, int]) -> None:
-    """Send the wait status of each process that has ended."""
+    """Write the wait status of each ended process to the descriptor of that process."""
     for pid in list(waiting):
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:

@@ -226,7 +226,7 @@ def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
 
 
 def test_the_counts_of_refusals_are_the_teams_own() -> None:
-    """Another team on the seat begins with no refusals; the same team that comes back does not."""
+    """The count of refusals starts again for another team; it goes on for the same team."""
     inbox = make()
     take_seat(inbox)
     inbox.join(LEFT, b"nonsense")

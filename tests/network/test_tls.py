@@ -43,7 +43,7 @@ def refused(access: Access) -> str:
 
 
 def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
-    """An invitation opens the court at its IP address and at its name: its certificate has both."""
+    """An invitation works with the IP address and with the host name of the court."""
     port = keyed.address.rpartition(":")[2]
     for host in ("127.0.0.1", "localhost"):
         access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
@@ -126,7 +126,7 @@ def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
 
 
 def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """A court does not open with TLS and no keys, and a contest with keys allows only TLS."""
+    """A court at a TLS address needs keys, and a contest with keys needs TLS addresses."""
     with pytest.raises(UserError, match="lacoc contest keys"):
         open_court(["tls/127.0.0.1:0"])
     contest = keyed_file(tmp_path)

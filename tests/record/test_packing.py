@@ -139,7 +139,7 @@ def test_segments_that_the_packed_file_lacks_are_kept(
 def test_damage_beside_a_packed_file_removes_nothing(
     victim: str, tmp_path: Path, write_match: WriteMatch
 ) -> None:
-    """If the packed file or its segment is damaged, packing again removes neither."""
+    """Packing again removes no file if the packed file or its source segment is damaged."""
     path = write_match(tmp_path)
     data = path.read_bytes()
     pack.pack([path], tmp_path / "m.mcap")

@@ -90,7 +90,7 @@ def test_a_turned_table_is_within_the_ranges(steps: list[float]) -> None:
 
 
 def test_no_step_changes_nothing() -> None:
-    """Without a step, and mixed with itself, a table stays as it is."""
+    """A table does not change by a step of zero, or when it is mixed with itself."""
     for robot in ("hexapod", "octopod"):
         own, styles = task_for(robot).table.angles_deg, styles_of(robot)
         assert styles.turned(own, [0.0] * len(WAYS)) == own
