@@ -188,7 +188,8 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
         folder: the folder of an arena that is not installed, as the user named it.
 
     Raises:
-        UserError: if the arena is not installed here, and no folder was named.
+        UserError: if the arena is not installed here and no folder was named, or if a part or a
+            setting of the arena is wrong.
     """
     if folder is not None and name not in plugins.installed(_GROUP):
         module = plugins.package_of_folder(folder)

@@ -79,7 +79,7 @@ def open_ghost(name: str) -> tuple[Record, int]:
 
 
 def ghost_join(record: Record, seat: int) -> JoinSeat:
-    """Return the request that joined a ghost's seat: team, robot and gait files.
+    """Return the last join of a ghost's seat: team, robot and gait files.
 
     Raises:
         UserError: if nobody joined this seat.

@@ -110,7 +110,7 @@ class CheckedGame:
         return getattr(self._game, name)  # what a game has for its own field and bots
 
     def start(self) -> Any:
-        """See `Game.start`."""
+        """Return the first state (`Game.start`), checked: msgpack must be able to store it."""
         state = self._state("start", self._source.call("start", self._game.start))
         try:
             packed = msgspec.msgpack.encode(state)
@@ -129,7 +129,7 @@ class CheckedGame:
         dt_s: float,
         struck: AbstractSet[Claim] = frozenset(),
     ) -> tuple[Any, tuple[GameEvent, ...]]:
-        """See `Game.step`."""
+        """Judge one tick (`Game.step`), and check the new state and the events."""
         found = self._source.call("step", self._game.step, state, observation, dt_s, struck)
         match found:
             case (after, tuple() as events):
@@ -139,7 +139,7 @@ class CheckedGame:
         raise self._wrong("step", found, say("game-expects.step"))
 
     def board(self, state: Any) -> tuple[int, ...]:
-        """See `Game.board`."""
+        """Return the state of each marker (`Game.board`), checked."""
         found = self._source.call("board", self._game.board, state)
         if not _whole_numbers(found, len(self.markers)) or any(not 0 <= s <= DOWN for s in found):
             expected = say("game-expects.board", markers=len(self.markers), most=DOWN)
@@ -147,7 +147,7 @@ class CheckedGame:
         return tuple(found)
 
     def score(self, state: Any) -> tuple[int, ...]:
-        """See `Game.score`."""
+        """Return the points of each seat (`Game.score`), checked."""
         found = self._source.call("score", self._game.score, state)
         if not _whole_numbers(found, self._seats):
             expected = say("game-expects.score", seats=self._seats)
@@ -155,21 +155,21 @@ class CheckedGame:
         return tuple(found)
 
     def over(self, state: Any) -> Phrase | None:
-        """See `Game.over`."""
+        """Return why the match is over, or None (`Game.over`), checked."""
         found = self._source.call("over", self._game.over, state)
         if not (found is None or isinstance(found, Phrase)):
             raise self._wrong("over", found, say("game-expects.over"))
         return found
 
     def winner(self, state: Any, scores: tuple[int, ...]) -> int | None:
-        """See `Game.winner`."""
+        """Return the winner's seat, or None for a draw (`Game.winner`), checked."""
         found: int | None = self._source.call("winner", self._game.winner, state, scores)
         if found is not None and not (_is_whole(found) and 0 <= found < self._seats):
             raise self._wrong("winner", found, say("game-expects.winner", last=self._seats - 1))
         return found
 
     def set(self, state: Any, marker: int, value: int) -> Any:
-        """See `Game.set`."""
+        """Set a marker, as a referee decides (`Game.set`), and check the new state."""
         rule = self._game.set
         try:
             found = self._source.call("set", rule, state, marker, value, refuses=True)

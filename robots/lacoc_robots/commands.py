@@ -121,7 +121,8 @@ def _stands(robot: str, contest: Path | None, notes: list[Phrase]) -> RobotSpec:
     """Read a robot and check that it can stand.
 
     Raises:
-        FileRefused: with every mistake in its file, or with what it did instead of standing.
+        FileRefused: with every mistake in the robot's file, or with what the robot did instead
+            of standing.
     """
     name, data = find_robot(robot)
     spec = _spec(name, data, contest)
@@ -140,7 +141,7 @@ def _spec(name: str, data: bytes, contest: Path | None) -> RobotSpec:
 
 
 def _gait_beside(robot: str, spec: RobotSpec, notes: list[Phrase]) -> Gait:
-    """Read the gait files beside a robot's file; a note names each one that has mistakes."""
+    """Read the gait files beside a robot's file; leave out and note those with mistakes."""
     tables: list[PostureTable | LocomotionTable] = []
     for file in sample_gait_files(robot):
         if file is None:

@@ -188,7 +188,8 @@ def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
     """Join postures into sequences as --keys says.
 
     Raises:
-        UserError: if --keys is written wrong, or names a posture that does not exist.
+        UserError: if --keys is written wrong, has too many keys or postures, or names a posture
+            that does not exist.
     """
     compact = keys.replace(" ", "")
     if not _KEYS.fullmatch(compact):
@@ -240,7 +241,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet that each posture lifts; neighbours that lift the same feet count once."""
+    """Name the feet that postures lift, at most six steps; equal neighbours are one step."""
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
     shown = then.join(" ".join(step) or none for step in steps[:6])

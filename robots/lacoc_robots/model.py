@@ -93,7 +93,7 @@ def add_robot(
         rgba: colour; the accent legs get a shade of it.
 
     Raises:
-        ValueError: if there is no such seat.
+        ValueError: if there is no such seat, or too many seats.
     """
     contype, conaffinity = collision_bits(seat, seats)
     body = parent.worldbody.add_body(name=f"{prefix}body", pos=[0, 0, robot.start_z_m])
@@ -145,7 +145,7 @@ def add_robot(
 
 
 def on_floor(robot: RobotSpec) -> mj.MjSpec:
-    """Put a robot alone on a floor under a light; its names have no prefix."""
+    """Put a robot alone on a floor under a light; the names of its parts have no prefix."""
     world = mj.MjSpec()
     world.modelname = robot.name
     set_options(world)
@@ -165,7 +165,7 @@ def on_floor(robot: RobotSpec) -> mj.MjSpec:
 
 
 def export_mjcf(robot: RobotSpec) -> str:
-    """Write a robot as plain MJCF, on a floor under a light, with the keyframe "stand".
+    """Return a robot as plain MJCF, on a floor under a light, with the keyframe "stand".
 
     The keyframe is the start posture at the start height, held by the servos.
     """

@@ -72,7 +72,7 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:
-    """Read every table; a wrong number is noted as a mistake and becomes NaN in the robot."""
+    """Read every table; a wrong number is noted and becomes NaN in the robot (`hold_us`: 0)."""
     body, start = root.table("body"), root.table("start")
     drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
     surface = root.table("surface", optional=True)
@@ -172,7 +172,7 @@ def _leg(table: Entries, default: _Link, limits: Limits) -> LegSpec:
 
 
 def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
-    """Read the links of all legs, or (given a default) the entries that one leg replaces."""
+    """Read the table [link], or (given it as `default`) the entries that one leg replaces."""
 
     def own(name: str) -> bool:
         table.ask(name)
@@ -247,7 +247,7 @@ def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
 
 
 def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
-    """Check that the robot fits in its box at angle 0, and starts on the floor or just above."""
+    """Check the robot's size with every angle 0, and its height above the floor at the start."""
     low, high = _bounds(robot, (0.0,) * robot.joints)
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     for extent_m, most_m, found in (
@@ -272,7 +272,7 @@ def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits)
 
 
 def _bounds(robot: RobotSpec, posture: Posture) -> tuple[Point, Point]:
-    """Return lowest and highest x, y and z of all parts; NaN unless every number is known."""
+    """Return lowest and highest x, y and z of all parts; all NaN if a needed number is unknown."""
     ends = (c for capsule in robot.capsules(posture) for c in (*capsule.start, *capsule.end))
     radii = (leg.radius_m for leg in robot.legs)
     if any(map(math.isnan, (*robot.size_m, *ends, *radii))):

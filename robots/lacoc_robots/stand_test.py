@@ -22,12 +22,12 @@ def try_standing(
 
     Args:
         robot: the robot.
-        gait: its gait.
+        gait: the robot's gait.
         levels: levels of control that are open.
         file: name of the robot file, for error messages.
 
     Returns:
-        The mistakes that keep it from standing; empty if it stays in place.
+        The mistakes that keep the robot from standing; empty if the robot stays in place.
     """
     postures = standing_postures(gait, levels, robot.start_posture)
     return [
@@ -38,7 +38,7 @@ def try_standing(
 
 
 def stand(robot: RobotSpec, posture: Posture) -> Stood:
-    """Put a robot on an empty floor as a match does, and let its drive move it to a posture.
+    """Put a robot on an empty floor as a match does, let it take a posture, and measure it.
 
     Args:
         robot: the robot.

@@ -23,7 +23,7 @@ class Entries:
 
         Args:
             table: the table as parsed.
-            place: put before an entry's name, such as "body." or "leg 2 (R,B), ".
+            place: put before an entry's name, such as "body." or "leg 2, ".
             file: the file's name.
             book: list that mistakes are appended to.
         """
@@ -58,7 +58,7 @@ class Entries:
         *,
         with_time: bool = False,
     ) -> float:
-        """Read a number between two bounds; NaN if it is wrong or missing.
+        """Read a number between two bounds; NaN if it is wrong, or missing without a default.
 
         Args:
             name: the entry.

@@ -219,7 +219,7 @@ def key_for(
     here: tuple[float, float, float] = (0.0, 0.0, 0.0),
     other: tuple[float, float, float] = AWAY,
 ) -> Key | None:
-    """Return the first key that a pilot presses for a robot that stands at `here`."""
+    """Return the first key that a bot's `Pilot` presses for a robot that stands at `here`."""
     frame = make_frame([here, other], [STAND, STAND])
     return pilot().toward(frame, Eyes(SHEET).poses(frame), target_m)
 
@@ -247,7 +247,7 @@ def test_eyes_read_poses(heading: float) -> None:
     ],
 )
 def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Key | None) -> None:
-    """A pilot turns the shorter way to its target and walks; without a target it presses no key."""
+    """A bot's `Pilot` turns the shorter way to a target and walks; without one it stands."""
     assert key_for(target_m) == key
 
 
@@ -263,7 +263,7 @@ def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Ke
 def test_pass_the_other_robot(
     other: tuple[float, float, float], here: tuple[float, float, float], key: Key
 ) -> None:
-    """A pilot passes the other robot on the right, or on the left if a wall is on the right."""
+    """A bot's `Pilot` passes another robot on the right, or on the left if a wall is there."""
     assert key_for((0.9, here[1]), here, other) == key
 
 
@@ -282,7 +282,7 @@ def frames(
 
 
 def test_key_is_left_at_the_end_of_its_sequence() -> None:
-    """A pilot changes its key only when the sequence is back at its first posture."""
+    """A bot's `Pilot` changes the key only when the sequence is back at the first posture."""
     turned_away = (0.0, 0.0, math.pi / 2)
     seen = [
         make_frame([turned_away, AWAY], [FORWARD, STAND], ticks=tick, postures=(posture, 0))
@@ -292,25 +292,25 @@ def test_key_is_left_at_the_end_of_its_sequence() -> None:
 
 
 def test_restart_when_it_lies_on_its_back() -> None:
-    """When a robot lies on its back, its pilot waits two seconds before it presses [x]."""
+    """When a robot lies on its back, its bot's `Pilot` presses [x] after two seconds."""
     keys = fly(pilot(), frames(2 * BEATS_PER_S + 1, STAND, upside_down=True))
     assert RESTART not in keys[:-1]
     assert keys[-1] == RESTART
 
 
 def test_restart_when_tangled() -> None:
-    """A pilot presses [x] when its robot has been caught on the other one for eight seconds."""
+    """A bot's `Pilot` presses [x] when two robots have been closer than 0.36 m for 8 s."""
     keys = fly(pilot(), frames(8 * BEATS_PER_S + 1, FORWARD, other=(0.3, 0.0, math.pi)))
     assert keys.index(RESTART) == 8 * BEATS_PER_S
 
 
 def test_no_key_while_keys_are_refused() -> None:
-    """A pilot presses nothing while keys are refused after [x] (rules 3)."""
+    """A bot's `Pilot` presses nothing while keys are refused after [x] (rules 3)."""
     assert fly(pilot(), frames(10, STAND, locked=100)) == [None] * 10
 
 
 def test_stuck_at_a_wall() -> None:
-    """A pilot turns when its robot has stepped forward for a while but stays in its place."""
+    """A bot's `Pilot` turns the robot when it has walked for a while without moving."""
     at_wall = (0.9, 0.5, 0.0)
     stuck = [
         make_frame([at_wall, AWAY], [FORWARD, STAND], ticks=tick, postures=(tick // 18 % 4, 0))

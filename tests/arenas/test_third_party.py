@@ -33,7 +33,7 @@ PARTS = dict(re.findall(r"^`(\w+\.\w+)`:\n\n```\w+\n(.*?)^```", GUIDE, re.MULTIL
 
 @pytest.fixture
 def race(tmp_path: Path) -> Path:
-    """Give a folder with the guide's game."""
+    """Give a folder with the game that docs/write-an-arena.md builds."""
     folder = tmp_path / "race_of_another"
     folder.mkdir()
     assert set(PARTS) == {"arena.toml", "rules.py", "field.py", "bots.py"}
@@ -119,7 +119,7 @@ def test_the_guide_names_all_that_a_game_has() -> None:
 
 
 def test_the_key_of_the_guide_s_bot_is_one(race: Path) -> None:
-    """The guide's second bot works exactly as printed."""
+    """The second bot of docs/write-an-arena.md works exactly as printed."""
     (turner,) = re.findall(r"```python\n(from lacoc_arenas.bot.*?)^```", GUIDE, re.M | re.S)
     bots = race / "bots.py"
     bots.write_text(turner + "\nBOTS = {'turner': turner}\n")
@@ -222,7 +222,7 @@ def test_a_referee_s_wrong_state_stays_a_value_error(race: Path) -> None:
 
 
 def test_the_guide_s_game_is_played(race: Path, tmp_path: Path) -> None:
-    """Two bots walk the guide's race, and the left one wins."""
+    """Two bots play the race of docs/write-an-arena.md, and the left one wins."""
     overrides = {"game": {"length_m": 1.2}, "match": {"duration_s": 20.0}}
     ground = arena.load(str(race), overrides)
     setup = Setup(

@@ -51,7 +51,7 @@ def test_workbook_saved_by_calc(workshop, legs):
 
 
 def test_the_workbook_that_ships_with_the_hexapod(workshop, legs):
-    """The hexapod's Loco-data.xlsx holds the workshop's table in the layout that we write."""
+    """The hexapod's Loco-data.xlsx holds the workshop's table in the cells that we write."""
     path = package_files("lacoc_robots") / "samples" / "hexapod" / "Loco-data.xlsx"
     data = path.read_bytes()
     assert read_gait_file(Path(str(path)), legs=legs) == workshop

@@ -86,7 +86,7 @@ def test_check_draws_the_legs_of_the_mistakes(lacoc, tmp_path):
 
 @pytest.mark.parametrize("legs", LEG_LABELS)
 def test_the_picture_names_the_leg_of_each_joint(legs):
-    """Each line of the picture has the joints of its two legs, and only mistakes stand out."""
+    """Each line of the picture has the joint ids of two legs; only joints with mistakes are red."""
     labels = LEG_LABELS[legs]
     picture = joint_picture(labels, {legs})
     for line in picture.plain.splitlines()[1:-1]:
@@ -189,7 +189,7 @@ KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
 @pytest.mark.parametrize("source", KINDS)
 @pytest.mark.parametrize("target", KINDS)
 def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
-    """`convert A B` finds B's format by its name; without --keys it uses the sample gait's keys."""
+    """`convert A B` takes B's format from B's name, and without --keys the sample gait's keys."""
     (folder / "out").mkdir()
     written = folder / "out" / target
     code, out, err = lacoc("gait", "convert", folder / source, written)

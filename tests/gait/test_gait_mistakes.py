@@ -36,7 +36,7 @@ def loco(rows: list[str], announced: object = None) -> str:
 
 
 def posture(label: str = "0 Key", angles: int = 18, **cells: str) -> str:
-    """Return a row of zeros, except for the joints named j0, j1, ..."""
+    """Return a row with a label and zeros; a cell j3 replaces the angle of joint 3."""
     return "\t".join([label, *(cells.get(f"j{joint}", "0") for joint in range(angles))]).strip()
 
 
@@ -346,7 +346,7 @@ def test_mistakes_of_locotra_data(text, expected):
 
 @pytest.mark.parametrize("legs", [6, ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")])
 def test_a_gait_for_another_robot_is_called_so(legs):
-    """Rows that all have 12 angles instead of 18 are one mistake; others are still listed."""
+    """Rows of 12 angles instead of 18 are together one mistake; other mistakes are listed too."""
     text = loco([posture(angles=12), posture("1 Key", angles=12, j7="x")])
     assert places(refused(text, legs=legs)) == [
         (

@@ -246,7 +246,7 @@ def test_a_range_for_each_joint():
     ids=["lines", "mistakes", "tabs"],
 )
 def test_garbage_is_refused_soon(data: bytes, count: int) -> None:
-    """Garbage is refused quickly: reading stops as soon as the rest can't be a gait."""
+    """Garbage is refused with one mistake, or with the first 1,000 mistakes."""
     with pytest.raises(FileRefused) as refusal:
         read_gait(data, "Loco-data.txt")
     assert len(refusal.value.mistakes) == count

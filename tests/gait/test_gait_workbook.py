@@ -275,7 +275,7 @@ def test_more_xml_than_a_table_has_is_refused(sample, content):
 
 
 def test_a_row_far_below_costs_nothing(sample):
-    """A sheet that claims the largest possible size is read without delay."""
+    """A sheet that claims the largest possible size is read, without the cell in its last row."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     sheet = parts["xl/worksheets/sheet1.xml"]

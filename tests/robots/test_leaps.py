@@ -10,7 +10,7 @@ from lacoc_robots.standing import FARTHEST_M
 
 @pytest.mark.slow
 def test_no_robot_that_is_let_in_leaps() -> None:
-    """Of 30 random robots and 5 variants, none that is accepted leaves its start place."""
+    """Of 30 random robots and 5 variants of one, none that is accepted leaves its start place."""
     found = [judge(at_random(seed)) for seed in range(30)]
     farthest = max(found, key=lambda one: one.leap_m or 0.0)
     found += [judge(changed(farthest.candidate, seed)) for seed in range(5)]

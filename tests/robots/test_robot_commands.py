@@ -53,7 +53,7 @@ def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_mistakes_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`robot check --json` prints every mistake as JSON, with its field and what was found."""
+    """`robot check --json` prints every mistake as JSON, with the entry and what was found."""
     file = tmp_path / "mine.toml"
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
     assert lacoc("robot", "check", "--json", str(file)) == 2

@@ -111,7 +111,7 @@ def test_what_may_be_left_out() -> None:
     ],
 )  # fmt: skip
 def test_one_mistake(old: str, new: str, field: str, found: str) -> None:
-    """A mistake names the field that is wrong and what was found there."""
+    """A mistake names the entry that is wrong and what was found there."""
     places = {(m.field, found in m.found) for m in mistakes_of(changed(old, new))}
     assert (field, True) in places
 
@@ -178,7 +178,7 @@ def test_footprint_of_the_workshop_robot(hexapod: RobotSpec) -> None:
     [("wide", "width_m", 0.300), ("long", "length_m", 0.122), ("high", "height_m", 0.105)],
 )
 def test_footprint(axis: str, limit: str, extent_m: float) -> None:
-    """A robot that just fits the contest's box is allowed; in a box 1 mm smaller it is refused."""
+    """A robot as large as a contest's limit is allowed; if it is 1 mm larger, it is refused."""
     text = HEXAPOD.replace("[0.05, 0.045,", "[0.05, 0.047,")
     read_robot(text, "mine.toml", Limits(**{limit: extent_m}))
     (mistake,) = mistakes_of(text, Limits(**{limit: extent_m - 0.001}))

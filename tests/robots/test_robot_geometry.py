@@ -103,7 +103,7 @@ def test_bounds_hold_every_part(angles: list[float]) -> None:
 
 
 def test_radius_in_the_start_posture(hexapod: RobotSpec) -> None:
-    """In the start posture, the robot's radius ends less than a link's radius beyond the feet."""
+    """The robot's radius reaches beyond the feet at the start, by less than a link's radius."""
     _, _, knee, foot = hexapod.points(hexapod.start_posture)[0]
     assert math.hypot(foot.x, foot.y) < hexapod.radius_m < math.hypot(foot.x, foot.y) + 0.015
     assert hexapod.radius_m > math.hypot(knee.x, knee.y)

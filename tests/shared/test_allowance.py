@@ -7,7 +7,7 @@ from lacoc_shared.network.allowance import Allowance
 
 
 def test_a_burst_then_the_rate() -> None:
-    """A burst is granted at once, then units at the rate; at most one burst can be saved up."""
+    """A burst of messages passes at once, then messages at the rate; a long pause gives one burst."""
     allowance = Allowance(2.0, 5)
     assert allowance.take(7, 1000.0) == 5
     assert allowance.take(1, 1000.4) == 0
@@ -24,7 +24,7 @@ def test_a_burst_then_the_rate() -> None:
 def test_never_more_than_promised(
     rate_hz: float, burst: int, asked: list[tuple[float, int]]
 ) -> None:
-    """Within any time span, at most the burst plus the rate times that span is granted."""
+    """In total, never more messages pass than the burst plus the rate times the passed time."""
     allowance, now_s, passed = Allowance(rate_hz, burst), 50.0, 0
     for wait_s, wanted in asked:
         now_s += wait_s

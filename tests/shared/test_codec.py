@@ -25,7 +25,7 @@ NO = say("gateway.no-token")
 
 
 def test_a_payload_is_msgpack_for_anybody() -> None:
-    """A payload is one msgpack value, a map by field name, that any msgpack library reads."""
+    """A refusal is one msgpack value, a map by field name, that any msgpack library reads."""
     refusal = Refusal(NO, (Mistake(file="a.txt", found="x", expected="a number", row=1),))
     data = encode(refusal)
     assert msgpack.unpackb(data)["why"] == {"code": "gateway.no-token"}

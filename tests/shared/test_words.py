@@ -61,7 +61,7 @@ def phrases(codes: list[str]) -> st.SearchStrategy[Phrase]:
 
 
 def test_each_code_uses_its_values_in_both_languages() -> None:
-    """For each phrase code, the texts in both languages use exactly the values that it has."""
+    """For each phrase code, the text in each language uses exactly the values of the code."""
     for code in CODES:
         _check_entry(code)
 

@@ -52,7 +52,7 @@ class _Hunter(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def open(self, board: tuple[int, ...], marker: int) -> bool:
-        """Say whether a marker can be gained: a standing flag, or a corner that is not held."""
+        """Say whether a marker can be gained: a standing flag, or a corner that is not its own."""
         return board[marker] == NEUTRAL or (marker < CORNERS and board[marker] != self.seat + 1)
 
     @abstractmethod
@@ -70,7 +70,7 @@ class Nearest(_Hunter):
     """Goes to the nearest standing flag; if all have fallen, to the nearest corner."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
-        """Return the nearest flag or corner."""
+        """Return the nearest standing flag; without one, the nearest corner that can be gained."""
         pose = poses[self.seat]
         targets = [marker for marker in range(len(board)) if self.open(board, marker)]
         flags = [marker for marker in targets if marker >= CORNERS]
@@ -108,7 +108,7 @@ class Planner(_Hunter):
     def _worths(
         self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]
     ) -> dict[int, float]:
-        """Return what each open target is worth to this seat."""
+        """Return what each marker that can be gained is worth to this seat, if above 0."""
         pose, other = poses[self.seat], poses[1 - self.seat]
         worths = {}
         for marker, info in enumerate(self.game.markers):
@@ -161,12 +161,12 @@ class Planner(_Hunter):
 
 
 def nearest(sheet: Sheet, seat: int) -> Brain:
-    """Make a `Nearest`."""
+    """Make a brain that goes to the nearest flag (`Nearest`)."""
     return Nearest(sheet, seat)
 
 
 def planner(sheet: Sheet, seat: int) -> Brain:
-    """Make a `Planner`."""
+    """Make a brain that plans routes over flags and corners (`Planner`)."""
     return Planner(sheet, seat)
 
 

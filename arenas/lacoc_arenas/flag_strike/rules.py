@@ -196,14 +196,14 @@ class FlagStrike:
         return left, right
 
     def over(self, state: State) -> Phrase | None:
-        """Return why the match is over: a robot has all corners (workshop 5-2 rule 4); or None."""
+        """Return why the match is over: a team has all corners (workshop 5-2 rule 4); or None."""
         holder = self._holder(state)
         return None if holder is None else say("over.all-corners", seat=("left", "right")[holder])
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
         """Return the seat with more points; or, if `all_corners_win`, the one with all corners.
 
-        Workshop 5-2 rule 8.
+        None for a draw (workshop 5-2 rule 8).
         """
         if self.settings.all_corners_win:
             holder = self._holder(state)

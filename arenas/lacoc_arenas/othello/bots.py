@@ -50,7 +50,7 @@ class _Walker(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def blocked(self, cell: int, poses: list[Pose]) -> bool:
-        """Say whether another robot stands in the way."""
+        """Say whether another robot is near the disc of a cell."""
         return any(
             other.distance_m(*self.discs[cell]) < _BLOCKED_M
             for seat, other in enumerate(poses)
@@ -72,7 +72,7 @@ class Nearest(_Walker):
     """Goes to the nearest disc that it can flip, or else to an own disc beside such a disc."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """Return the nearest useful cell."""
+        """Return the nearest useful cell, if possible one that is not blocked."""
         own, pose = self.seat + 1, poses[self.seat]
         flips = [n for n in self.game.neighbours[last] if cells[n] != own == cells[last]]
         starts = [
@@ -152,12 +152,12 @@ def _around(cell: int) -> list[int]:
 
 
 def nearest(sheet: Sheet, seat: int) -> Brain:
-    """Make a `Nearest`."""
+    """Make a brain that goes to the nearest disc to flip (`Nearest`)."""
     return Nearest(sheet, seat)
 
 
 def planner(sheet: Sheet, seat: int) -> Brain:
-    """Make a `Planner`."""
+    """Make a brain that plans routes over several discs (`Planner`)."""
     return Planner(sheet, seat)
 
 

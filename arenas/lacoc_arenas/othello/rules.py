@@ -107,7 +107,7 @@ class Othello:
         """For each disc, the discs next to it in its row and its column."""
 
     def start(self) -> State:
-        """Return the opening, with the robots on their start cells."""
+        """Return the first state: the opening board, and the robots on their start cells."""
         left, right = (self.cell_at(places[0].x_m, places[0].y_m) for places in self.starts)
         return State(_opening(self.settings.opening, left, right), (left, right))
 
@@ -227,7 +227,7 @@ class Othello:
         return state.cells
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Return the number of discs of each colour (workshop 5-1 rule 6)."""
+        """Return the number of discs of each team (workshop 5-1 rule 6)."""
         return state.cells.count(LEFT), state.cells.count(RIGHT)
 
     def over(self, state: State) -> Phrase | None:
@@ -238,7 +238,7 @@ class Othello:
         return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
-        """Return the seat with more discs (workshop 5-1 rule 7)."""
+        """Return the seat with more points; None for a draw (workshop 5-1 rule 7)."""
         return leader(scores)
 
     def set(self, state: State, marker: int, value: int) -> State:

@@ -90,7 +90,7 @@ def _folded(make: Callable[..., Any], **what: Any) -> Any:
 
 @cache
 def _context(base: Any) -> Any:
-    """Make a context whose formatter and help option use the language of this process."""
+    """Make a class of contexts whose formatter and help option use the language of this process."""
 
     class Formatter(base.formatter_class):  # type: ignore[misc]
         def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
@@ -117,7 +117,7 @@ def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]
 
 
 def _explained(show: Callable[[Any], None], error: Any) -> None:
-    """Show a mistake in the use of a command; a kind that is not known here stays English."""
+    """Show a mistake in the use of a command; an unknown kind of mistake stays English."""
     message = error.message
     hint = error.param.get_error_hint() if getattr(error, "param", None) else ""
     match type(error).__name__:

@@ -31,7 +31,7 @@ def of_process(environment: Mapping[str, str] | None = None) -> Language:
 
 
 def _spoken(name: str) -> Language:
-    """Read a name such as "ja", "ja_JP.UTF-8" or Windows' "Japanese_Japan"."""
+    """Return the language of a name such as "ja_JP.UTF-8" or Windows' "Japanese_Japan"."""
     short = name[:2].lower()
     return next((language for language in LANGUAGES if language == short), "en")
 

@@ -37,7 +37,7 @@ class _Writer:
         atexit.register(self.close)
 
     def msg(self, line: str) -> None:
-        """Take a line; never blocks."""
+        """Put a line into the queue, or drop the line if the queue is full; never blocks."""
         try:
             if self._lost:
                 self._lines.put_nowait(f"({self._lost} lines of the log were lost here)")
@@ -49,7 +49,7 @@ class _Writer:
     info = warning = msg  # structlog calls the method of the level
 
     def close(self) -> None:
-        """Write the lines that still wait, unless the queue is full because nobody reads."""
+        """Wait up to a second until the queued lines are written; never wait for a full queue."""
         try:
             self._lines.put_nowait(None)
         except queue.Full:
@@ -111,7 +111,7 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
 
 
 def log_clock(ticks: int) -> str:
-    """Format ticks of a match's clock with tenths of a second: "2:04.6"."""
+    """Format ticks of a match's clock with tenths of a second: "2:04.6". Less than 0 is 0."""
     tenths = max(0, ticks) * 10 // BEATS_PER_S
     return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
 

@@ -30,7 +30,7 @@ def package(group: str, what: str, name: str) -> ModuleType:
     Args:
         group: the entry-point group.
         what: the word for such a package in error messages, such as "arena".
-        name: an installed name, or the path of a folder (anything with a slash or a dot).
+        name: an installed name; if there is none of this name, the path of a folder.
 
     Raises:
         UserError: if there is no such package; the message lists the installed ones.
@@ -67,7 +67,7 @@ def _loaded(group: str, name: str) -> ModuleType | None:
 
 
 def package_of_folder(folder: Path) -> ModuleType:
-    """Make a folder importable as a package with a unique name, so that `.rules` works in it."""
+    """Import a folder as a package with a unique name, so that its files can import each other."""
     folder = folder.resolve()
     name = f"lacoc_folder_{hashlib.blake2b(str(folder).encode(), digest_size=6).hexdigest()}"
     if name in sys.modules:

@@ -44,7 +44,7 @@ def accept_any_text() -> None:
 
 
 def show_crashes(stream: TextIO | None) -> None:
-    """Write the stack of every thread if a library crashes the process (SIGSEGV)."""
+    """Write every thread's stack to a stream (None: standard error) if the process crashes."""
     with contextlib.suppress(io.UnsupportedOperation, RuntimeError):  # no stream, or no file
         faulthandler.enable(stream or sys.stderr)
 

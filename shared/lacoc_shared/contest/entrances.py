@@ -11,7 +11,7 @@ from lacoc_shared.words import say
 
 
 def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Return court and address for a client that only watches.
+    """Return court, address and certificate (with keys) for a client that only watches.
 
     Args:
         contest: the contest file, if there is one; it gives what the options leave open.
@@ -19,7 +19,8 @@ def spectator_access(contest: Contest | None, court: str | None, connect: str | 
         connect: the court's address, or None.
 
     Raises:
-        UserError: if the contest has no such court, or the address is wrong.
+        UserError: if the contest has no such court, or several and none is named, or if the address
+            is wrong or the keys can't be read.
     """
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
@@ -45,7 +46,8 @@ def seat_access(
         token: the seat's token, or None.
 
     Raises:
-        UserError: if seat or token are neither given nor in the contest file.
+        UserError: if seat or token are neither given nor in the contest file, or as in
+            `spectator_access`.
     """
     access = spectator_access(contest, court, connect)
     _, entry = _court_of(contest, court)
@@ -66,7 +68,8 @@ def referee_access(
     """Return court, address and token for a referee; arguments as in `seat_access`.
 
     Raises:
-        UserError: if the token is neither given nor in the contest file.
+        UserError: if the token is neither given nor in the contest file, or as in
+            `spectator_access`.
     """
     access = spectator_access(contest, court, connect)
     _, entry = _court_of(contest, court)
@@ -104,11 +107,11 @@ def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict
 
 
 def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
-    """Write the command line for each person at a court: the seats, the referee, spectators.
+    """Return the command line for each person at a court: the seats, the referee, spectators.
 
     Args:
         name: the court's name.
-        court: its entry.
+        court: the court's entry in the contest file.
         any_host: the host to name if the court listens on all addresses of its machine.
     """
     where = f"--court {name} --connect {court.address(any_host)}"
@@ -124,7 +127,7 @@ def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
 
 
 def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
-    """Write the command line for each person whose invitation file is in the current folder.
+    """Return the command line for each person whose invitation file is in the current folder.
 
     Args:
         everybody: the access of each person, by name.

@@ -94,10 +94,10 @@ def read_invitation(path: Path) -> Access:
 
 
 def invitation_text(access: Access, contest: str) -> str:
-    """Write an invitation as TOML.
+    """Return the text of an invitation file (TOML).
 
     Args:
-        access: its entries.
+        access: the entries of the invitation.
         contest: the contest's name.
     """
     whose = f"seat {access.seat}" if access.role == "seat" else access.role

@@ -56,7 +56,8 @@ def read_toml(
         any_integers: leave integers beyond 64 bits to the caller, which can name their place.
 
     Raises:
-        BadToml: if it is too long, not TOML, nested too deep, or has an integer beyond 64 bits.
+        BadToml: if it is too long, not TOML, nested too deep, has an integer beyond 64 bits, or
+            has too many dots in a line.
     """
     if len(text) > max_bytes:
         raise BadToml(say("toml.too-long", bytes=len(text), most=max_bytes))

@@ -82,9 +82,9 @@ def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[s
 
 
 def leg_labels(legs: int) -> tuple[str, ...]:
-    """Return the usual labels of legs, clockwise from the right front.
+    """Return the labels of legs where no robot file gives them, clockwise from the right front.
 
-    They are used where no robot file gives labels.
+    If the robot does not have 4, 6 or 8 legs, the labels are numbers from 0.
     """
     return LEG_LABELS.get(legs) or tuple(map(str, range(legs)))
 
@@ -111,7 +111,7 @@ def number_text(value: float) -> str:
 
 
 def narrow(text: str) -> str:
-    """Replace full-width characters, and the minus sign U+2212, by their ASCII forms."""
+    """Replace full-width characters, special spaces and the minus sign U+2212 by ASCII."""
     return text.translate(_NARROW)
 
 
@@ -128,7 +128,7 @@ def shown(cell: str) -> Phrase | str:
 
 
 def quoted(cell: str) -> str:
-    """Quote a cell that is not empty."""
+    """Return a non-empty cell for a message: a number as it is, other text in quotation marks."""
     text = printable(cell)
     return text if number_of(cell) is not None else f'"{text}"'
 

@@ -1,4 +1,4 @@
-"""Make level B from level A: join postures to the sequences of a locomotion table."""
+"""Make level B from level A: join postures into the sequences of a locomotion table."""
 
 from collections.abc import Sequence
 
@@ -50,6 +50,6 @@ def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]])
 
 
 def sample_sequences(table: PostureTable) -> LocomotionTable | None:
-    """Join postures as the sample's keys do; None if a posture that they need is missing."""
+    """Join postures into the sample gait's sequences; None if the table lacks a posture."""
     used = {posture for sequence in SAMPLE_KEYS for posture in sequence}
     return to_locomotion(table, SAMPLE_KEYS) if used <= table.postures.keys() else None

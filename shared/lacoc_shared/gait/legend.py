@@ -76,7 +76,7 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
 
 
 def without_zeros(cells: Sequence[str]) -> list[str]:
-    """Remove the zeros that a sheet shows where a formula refers to an empty cell."""
+    """Empty each cell that is 0, as a sheet shows empty cells by formulas; then trim the row."""
     return trimmed(["" if number_of(cell) == 0 else cell for cell in cells])
 
 

@@ -192,7 +192,7 @@ class _Reader:
         return PostureTable(postures)
 
     def _locomotion(self, rows: list[Row]) -> LocomotionTable:
-        """Read LocoTra-data: the number of keys, then for each key a number and its postures."""
+        """Read LocoTra-data: the number of keys, then for each key a count and its postures."""
         header, *body = rows
         keys = self._count(header, 1, MAX_KEYS, say("gait.number-of-keys"))
         groups: list[tuple[Row | None, list[Row]]] = []
@@ -232,7 +232,7 @@ class _Reader:
         return LocomotionTable(tuple(sequences))
 
     def _count(self, row: Row, column: int, highest: int, what: Phrase) -> int | None:
-        """Read the whole number at the end of a row, from 1 to `highest`; None after a mistake."""
+        """Read a row's last cell, a whole number from 1 to `highest`; None if it is not one."""
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
         if without_zeros(row.cells[column:]):
             self._add(
@@ -249,7 +249,7 @@ class _Reader:
         return int(value)
 
     def _joints(self, rows: Sequence[Row], first: int) -> int:
-        """Return the number of angles in a row: the robot's, else the most common in the file."""
+        """Return how many angles a row should have: the robot's if a row fits, else the usual."""
         counts = Counter(len(row.cells) - first for row in rows)
         known = {legs * JOINTS_PER_LEG for legs in LEG_LABELS}
         usual = [joints for joints, _ in counts.most_common() if joints in known]
@@ -266,7 +266,7 @@ class _Reader:
         return usual[0]
 
     def _angles(self, row: Row, first: int, joints: int) -> Posture:
-        """Read the angles [rad] of a row from the cell with index `first` on; mistakes become 0."""
+        """Read the angles [rad] of a row from cell index `first` on; a wrong cell becomes 0."""
         cells = row.cells[first:]
         legs = joints // JOINTS_PER_LEG
         angles = say("gait.angles-of-legs", count=joints, each=JOINTS_PER_LEG, legs=legs)

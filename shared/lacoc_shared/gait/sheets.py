@@ -22,7 +22,7 @@ _MIRROR_COLOUR = "#595959"  # grey: not for editing
 
 
 def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int) -> None:
-    """Add the edited sheet and its mirror to a workbook.
+    """Add the sheet to edit, and a mirror that shows its cells by formulas, to a workbook.
 
     Args:
         book: the workbook.
@@ -72,7 +72,7 @@ def _write_edited(
 
 
 def _add_help(book: Workbook, sheet: Worksheet, last_posture: int, last_column: int) -> None:
-    """Reject a wrong number as it is typed, and highlight one that was pasted."""
+    """Let spreadsheet programs reject a wrong number that is typed, and mark a pasted one."""
     limit = number_text(RANGE_DEG)
     angles = (1, 1, last_posture, last_column)
     sheet.data_validation(

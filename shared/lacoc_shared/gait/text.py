@@ -137,7 +137,7 @@ def _decoded(data: bytes, encoding: str, name: str) -> str:
 
 
 def line_cells(line: str) -> list[str]:
-    """Split a line into its cells."""
+    """Split a line into its cells: at tabs, or at spaces if it has no tab."""
     cells = line.split("\t") if "\t" in line else _SPACED_CELL.findall(line)
     return [_unquoted(cell.strip()) for cell in cells]
 

@@ -92,7 +92,7 @@ def read_workbook(
         notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
-        FileRefused: with every mistake in the file; each names its cell.
+        FileRefused: with every mistake in the file; a mistake in a cell names the cell.
     """
     sheet, rows = sheet_rows(data, name)
     try:
@@ -107,7 +107,7 @@ def read_workbook(
 
 
 def sheet_rows(data: bytes, name: str) -> tuple[str, list[Row]]:
-    """Return the title of the sheet that is read from a workbook, and its rows.
+    """Return the title and the rows of the sheet that has the gait.
 
     Args:
         data: the .xlsx file.
@@ -146,7 +146,7 @@ def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
 
 
 def _require_harmless(data: bytes, name: str) -> None:
-    """Check the zip's list before anything is unpacked, and the XML before openpyxl reads it.
+    """Check the zip's list of files before it is unpacked, and the XML before openpyxl reads it.
 
     Raises:
         FileRefused: if it is not a zip, has a password, or needs too much memory or time.
@@ -248,7 +248,7 @@ def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
 
 
 def _text(value: object, formula: object) -> str:
-    """Return a cell as a text file would have it; the formula if no value was stored."""
+    """Return a cell as text; "uncalculated" and the formula if no value was stored."""
     match value:
         case None:
             return "" if formula is None else f"uncalculated {formula}"

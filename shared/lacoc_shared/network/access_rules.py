@@ -127,7 +127,7 @@ def _watching() -> Rules:
 
 
 def _actors(protection: Protection) -> dict[str, Rules]:
-    """Make the rules beyond watching: a seat's user steers it, the referee's user decides."""
+    """Make the rules of users who do more than watch: keys and requests of seats, and decisions."""
     keys = Keys(protection.court)
     seats = {
         user: _acting(

@@ -90,7 +90,7 @@ def why_not_connected(endpoints: Sequence[str], ca: str = "") -> Phrase:
 
     Args:
         endpoints: complete addresses.
-        ca: certificate of the authority that signs the court's (PEM); "" without keys.
+        ca: certificate (PEM) of the authority that signs the court's certificate; "" without keys.
     """
     reasons = [_why_not_connected(one, ca) for one in endpoints]
     return reasons[0] if len(reasons) == 1 else say("plain.sentences", sentences=reasons)

@@ -18,7 +18,7 @@ that size then stay in the heaps.
 
 
 def share() -> None:
-    """Let the threads that start later share a few heaps."""
+    """Let later threads share a few heaps, and return large blocks as soon as they are freed."""
     _call("mallopt", _M_ARENA_MAX, _HEAPS)
     _call("mallopt", _M_MMAP_THRESHOLD, _BLOCK_BYTES)
 

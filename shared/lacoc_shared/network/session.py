@@ -291,7 +291,7 @@ class Session:
         return tuple(sorted(str(r.ok.key_expr) for r in replies if r.ok is not None))
 
     def locators(self) -> tuple[str, ...]:
-        """Return the addresses on which a court's session listens, with their actual ports."""
+        """Return the addresses on which this court's session listens, with their actual ports."""
         zid = self._session.info.zid()
         found: list[str] = []
         for reply in self._session.get(f"@/{zid}/router"):
@@ -354,7 +354,7 @@ def open_client(
 
     Raises:
         NotConnected: if there is no connection; the message says why.
-        UserError: if an address is wrong, or needs keys that are missing.
+        UserError: if an address is wrong, or is encrypted without keys or plain with keys.
     """
     endpoints = [address.endpoint(one, "tls" if credentials else "tcp") for one in connect]
     address.check_protocols(endpoints, keys=credentials is not None)

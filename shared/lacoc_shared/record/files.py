@@ -70,7 +70,7 @@ def hold(file: BinaryIO) -> bool:
 
 
 def is_held(path: Path) -> bool:
-    """Say whether a running process writes or packs a segment."""
+    """Say whether a running process writes or packs a segment; True if the segment has gone."""
     try:
         with path.open("rb+") as file:
             return not hold(file)

@@ -144,7 +144,7 @@ def _damaged_index() -> Stop:
 
 
 def _is_index_damaged(data: bytes, at: int) -> bool:
-    """Say whether the summary, which begins at a byte, is damaged or cut.
+    """Say whether a file's summary, which begins at byte `at`, is damaged or cut.
 
     Only a packed file has an index and a checksum there.
     """
@@ -168,7 +168,7 @@ def _is_packed(data: bytes) -> bool:
 
 
 def _is_cut(data: bytes, at: int) -> bool:
-    """Say whether a file ends in the middle of the MCAP record that begins at a byte."""
+    """Say whether a file ends in the middle of the MCAP record that begins at byte `at`."""
     if data.endswith(MCAP0_MAGIC) and len(data) > at + len(MCAP0_MAGIC):
         return False
     length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD_BYTES], "little")

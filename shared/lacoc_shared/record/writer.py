@@ -119,11 +119,11 @@ class RecordWriter:
         self._write(_FRAME, beat, encoded)
 
     def touch(self, beat: int, touch: Touch) -> None:
-        """Write what the rules saw besides the frame."""
+        """Write which markers were touched in a tick, and where robots were put back."""
         self._write(_TOUCH, beat, codec.encode(touch))
 
     def snapshot(self, beat: int, data: bytes) -> None:
-        """Write the whole state after a beat; only the court understands `data`."""
+        """Write the state of physics after a beat; only the court understands `data`."""
         self._write(_SNAPSHOT, beat, data)
 
     def sheet(self, beat: int, sheet: Sheet) -> None:

@@ -60,7 +60,7 @@ _THIN_M = 0.001
 
 
 def foxglove(record: Record) -> bytes:
-    """Make the MCAP file.
+    """Return a record as an MCAP file for Foxglove and similar viewers.
 
     Raises:
         UserError: if the record has no scene.
@@ -163,7 +163,7 @@ class _Picture:
         )
 
     def board(self, packed: bytes, time: Timestamp) -> SceneUpdate:
-        """Return all markers in their current states."""
+        """Return all markers in the states of `Frame.markers`; they replace those drawn before."""
         markers = self._sheet.markers
         states = unpack_states(packed, len(markers))
         geoms: list[list[SceneGeom]] = [[] for _ in markers]

@@ -25,7 +25,7 @@ class PosData:
         self._tick = 0
 
     def add(self, frame: Frame) -> None:
-        """Add a frame: it becomes a row if physics ran in its beat. A late frame is ignored.
+        """Add a frame: it becomes a row if physics ran in its beat. An older frame is ignored.
 
         Raises:
             ValueError: if the frame's robots have other numbers of joints.

@@ -16,7 +16,7 @@ from lacoc_shared.words import render, say
 
 
 def pos_data(record: Record, seat: str) -> bytes:
-    """Make the Pos-data.txt of a seat (rules 2).
+    """Make the Pos-data.txt of a seat (rules 2); it begins again when a team changes its robot.
 
     Raises:
         UserError: if there is no such seat, or no frame has poses of robots.
@@ -66,8 +66,8 @@ def events_csv(record: Record) -> bytes:
 def result_json(record: Record) -> bytes:
     """Return the result as JSON.
 
-    It has two more entries: `played_s` is `clock_s` and the time that the referee gave; `health`
-    says how well the match ran, and is null if headless.
+    It has two more entries: `played_s` is `clock_s` plus the time that the referee gave; `health`
+    says how well the match ran, and is null if no court measured it.
 
     Raises:
         UserError: if the match has no result.
