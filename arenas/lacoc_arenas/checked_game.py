@@ -240,7 +240,7 @@ def _check_values(source: Source, game: AnyGame) -> None:
 
 
 def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
-    """Return the marker that a geom shows, and the state; (-1, -1) if it shows no marker.
+    """Return the indices of the marker and the state that a geom shows; (-1, -1) if none.
 
     Raises:
         UserError: if the geom's name begins with "marker:", and there is no such marker or state.

@@ -113,7 +113,7 @@ class Pilot:
     def toward(
         self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
     ) -> Key | None:
-        """Return the key that brings the robot nearer to a point or restarts it; None: no new key.
+        """Return the key that brings the robot nearer to a point, or [x]; None keeps the last key.
 
         Args:
             frame: the newest frame.

@@ -241,7 +241,10 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet that postures lift, at most six steps; equal neighbours are one step."""
+    """Name the feet that each posture lifts; neighbours that lift the same feet count once.
+
+    Only the first six steps are named; "…" stands for the rest.
+    """
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
     shown = then.join(" ".join(step) or none for step in steps[:6])

@@ -310,7 +310,7 @@ def test_no_key_while_keys_are_refused() -> None:
 
 
 def test_stuck_at_a_wall() -> None:
-    """A bot's `Pilot` turns the robot when it has walked for a while without moving."""
+    """A bot's `Pilot` turns a robot that has walked for a while without moving."""
     at_wall = (0.9, 0.5, 0.0)
     stuck = [
         make_frame([at_wall, AWAY], [FORWARD, STAND], ticks=tick, postures=(tick // 18 % 4, 0))

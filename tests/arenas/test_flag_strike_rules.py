@@ -100,7 +100,7 @@ def test_neutral_at_the_start() -> None:
 
 
 def test_lasts_three_minutes() -> None:
-    """A match lasts 3 minutes (workshop 5-2 rule 1); countdown 3 s, the pause after [x] 5 s."""
+    """A match lasts 3 minutes (workshop 5-2 rule 1), its countdown 3 s, the pause after [x] 5 s."""
     match = arena.load("flag-strike").match
     assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (180.0, 3.0, 5.0)
     assert match.levels == ("B",)

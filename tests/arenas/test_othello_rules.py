@@ -439,7 +439,7 @@ def test_winner_has_more_discs(scores: tuple[int, int], winner: int | None) -> N
 
 
 def test_lasts_three_minutes() -> None:
-    """A match lasts 3 minutes (workshop 5-1 rule 2); countdown 3 s, the pause after [x] 5 s."""
+    """A match lasts 3 minutes (workshop 5-1 rule 2), its countdown 3 s, the pause after [x] 5 s."""
     match = arena.load("othello").match
     assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (180.0, 3.0, 5.0)
     assert match.levels == ("B",)

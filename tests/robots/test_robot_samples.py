@@ -89,7 +89,7 @@ def test_the_samples_there_are() -> None:
 
 @samples
 def test_folder(folder: Path) -> None:
-    """A sample is a package with a robot file and both gait files, laid out as by `write_gait`."""
+    """A sample is a package with a robot file and both gait files, as `write_gait` writes them."""
     robot, postures, locomotion = load(folder)
     assert (folder / "__init__.py").read_text().startswith('"""')
     assert (folder / "Loco-data.txt").read_bytes() == write_gait(postures, robot.labels)

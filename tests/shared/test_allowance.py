@@ -7,7 +7,7 @@ from lacoc_shared.network.allowance import Allowance
 
 
 def test_a_burst_then_the_rate() -> None:
-    """A burst of messages passes at once, then messages at the rate; a long pause gives one burst."""
+    """A burst passes at once, then messages at the rate. A long pause saves up only one burst."""
     allowance = Allowance(2.0, 5)
     assert allowance.take(7, 1000.0) == 5
     assert allowance.take(1, 1000.4) == 0

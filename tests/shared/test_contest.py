@@ -72,7 +72,7 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
 
 
 def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
-    """Links are made equal only if the court's entry says so, by default with at most 400 ms."""
+    """A court makes links equal only if its entry says so, with at most 400 ms by default."""
     assert contests.load(file).courts["main"].most_delay_ms == 0
     equal = 'arena = "othello"\ninput_delay = "equal"'
     file.write_text(GOOD.replace('arena = "othello"', equal))

@@ -140,7 +140,7 @@ def _broken(error: Exception) -> TyperCommand:
 
 
 def _missing_extra(error: Exception) -> str | None:
-    """Say how to install a missing package of an extra, such as "server"; None for other errors."""
+    """Say how to install a missing package, such as MuJoCo; None for any other error."""
     module = (error.name or "").partition(".")[0] if isinstance(error, ImportError) else ""
     if module not in _EXTRAS:
         return None

@@ -111,7 +111,7 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
 
 
 def log_clock(ticks: int) -> str:
-    """Format ticks of a match's clock with tenths of a second: "2:04.6". Less than 0 is 0."""
+    """Format ticks of a match's clock with tenths of a second: "2:04.6"; at least "0:00.0"."""
     tenths = max(0, ticks) * 10 // BEATS_PER_S
     return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
 

@@ -81,7 +81,7 @@ def error(what: Phrase | str) -> None:
 
 
 def refused(mistakes: Sequence[Mistake]) -> None:
-    """List all mistakes in a file (rules 2)."""
+    """Print how many mistakes were found, and a table of all of them (rules 2)."""
     error(say("command.mistakes", count=len(mistakes)))
     show(mistakes_table(mistakes), stderr)
 

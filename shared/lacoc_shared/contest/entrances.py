@@ -46,8 +46,8 @@ def seat_access(
         token: the seat's token, or None.
 
     Raises:
-        UserError: if seat or token are neither given nor in the contest file, or as in
-            `spectator_access`.
+        UserError: if seat or token are neither given nor in the contest file; also for the reasons
+            of `spectator_access`.
     """
     access = spectator_access(contest, court, connect)
     _, entry = _court_of(contest, court)
@@ -68,7 +68,7 @@ def referee_access(
     """Return court, address and token for a referee; arguments as in `seat_access`.
 
     Raises:
-        UserError: if the token is neither given nor in the contest file, or as in
+        UserError: if the token is neither given nor in the contest file; also for the reasons of
             `spectator_access`.
     """
     access = spectator_access(contest, court, connect)

@@ -280,7 +280,10 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
 
 
 def _check_ports(courts: dict[str, Court]) -> None:
-    """Check that no two courts of a machine share a port; other `connect` hosts: other machines."""
+    """Check that no two courts of a machine share a port.
+
+    Two courts with different `connect` hosts are on two machines.
+    """
     taken = [at for court in courts.values() for at in court.listen]
     for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
         apart = one.connect and other.connect and one.host != other.host

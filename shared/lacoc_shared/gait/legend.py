@@ -76,7 +76,10 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
 
 
 def without_zeros(cells: Sequence[str]) -> list[str]:
-    """Empty each cell that is 0, as a sheet shows empty cells by formulas; then trim the row."""
+    """Replace each 0 by an empty cell, and trim the row.
+
+    A sheet shows 0 where a formula refers to an empty cell.
+    """
     return trimmed(["" if number_of(cell) == 0 else cell for cell in cells])
 
 

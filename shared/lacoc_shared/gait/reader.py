@@ -249,7 +249,10 @@ class _Reader:
         return int(value)
 
     def _joints(self, rows: Sequence[Row], first: int) -> int:
-        """Return how many angles a row should have: the robot's if a row fits, else the usual."""
+        """Return how many angles a row should have.
+
+        It is the robot's number if some row has it, else the most common one in the file.
+        """
         counts = Counter(len(row.cells) - first for row in rows)
         known = {legs * JOINTS_PER_LEG for legs in LEG_LABELS}
         usual = [joints for joints, _ in counts.most_common() if joints in known]

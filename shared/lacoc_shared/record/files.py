@@ -58,7 +58,7 @@ def hold(file: BinaryIO) -> bool:
     """Lock an open segment for writing or packing, until it is closed or its process ends.
 
     Returns:
-        False if another process has locked it.
+        False if another process has locked it. True also if the file system has no locks.
     """
     try:
         _lock(file)
