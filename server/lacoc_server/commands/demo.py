@@ -84,8 +84,8 @@ def demo_command(
             raise UserError(say("demo.not-same"))
         # Without a browser here, somebody may have opened the address elsewhere.
         if served and sys.stdout.isatty():
-            screen.note(say("demo.page"))
-            with suppress(KeyboardInterrupt):
+            with suppress(KeyboardInterrupt):  # it may come as soon as the note is read
+                screen.note(say("demo.page"))
                 threading.Event().wait()
 
 
