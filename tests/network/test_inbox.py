@@ -226,7 +226,7 @@ def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
 
 
 def test_the_counts_of_refusals_are_the_teams_own() -> None:
-    """The count of refusals starts again for another team; it goes on for the same team."""
+    """The health report counts refusals for each team anew; `doors` counts all of the seat."""
     inbox = make()
     take_seat(inbox)
     inbox.join(LEFT, b"nonsense")
