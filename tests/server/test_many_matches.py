@@ -40,7 +40,7 @@ def in_json(*words: str) -> list[dict[str, Any]]:
 
 @pytest.mark.slow
 def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
-    """`--json` prints who is left out, then all players, and then two lines for each match.
+    """`--json` prints who is left out, the remaining players, and two lines for each match.
 
     One line names the match's record, the other one has the standings.
     """
