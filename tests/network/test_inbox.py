@@ -158,7 +158,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
 
 
 def test_a_join_is_weighed_in_with_what_the_seat_has() -> None:
-    """The files' check gets the seat's present join, and its notes come before the match's."""
+    """The check of files gets the seat's present join; its notes precede the match's notes."""
     inbox = make()
     mine = SentFile("mine.toml", b"a robot of our own")
     inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None], has_begun=False)
@@ -203,7 +203,7 @@ BROKEN = join_bytes(name="Blues", postures=SentFile("a.txt", b"wrong"))
 
 
 def test_a_broken_file_keeps_nobody_out_of_a_match_that_is_on() -> None:
-    """Bad files in a match that has begun: the seat keeps its files, and notes say why."""
+    """A join with bad files after a match began is accepted: the seat keeps its former files."""
     inbox = make()
     files = (SentFile("mine.toml", b"a robot"), SentFile("mine.txt", b"a gait"), None)
     inbox.hold([JoinSeat(LEFT, "Blue", *files, "older hash"), None], has_begun=True)
@@ -226,7 +226,7 @@ def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
 
 
 def test_the_counts_of_refusals_are_the_teams_own() -> None:
-    """The count of refusals starts again for another team; it goes on for the same team."""
+    """The health report counts refusals for each team anew; `doors` counts all of the seat."""
     inbox = make()
     take_seat(inbox)
     inbox.join(LEFT, b"nonsense")

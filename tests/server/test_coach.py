@@ -42,7 +42,7 @@ def made_up(tables: Sequence[Angles]) -> list[float]:
 
 
 def searched(size: Size, rounds: int = 40) -> Improved:
-    """Return the table that a search from zeros finds in this many rounds, after the undoing."""
+    """Return what a search from zero angles finds in these rounds; weak changes are undone."""
     left = iter(range(rounds))
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, made_up)
@@ -113,7 +113,7 @@ def test_what_matters_is_ranked() -> None:
 
 @given(st.data())
 def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
-    """A repeated digit has one row; a change of one angle leaves all other angles as they are."""
+    """Postures of one digit share a row; changing one angle leaves the other angles as they are."""
     posture = st.tuples(*[st.floats(-1, 1)] * 3)
     rows = data.draw(st.lists(posture, min_size=1, max_size=4))
     order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))
@@ -134,7 +134,10 @@ def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
 
 
 def test_goals() -> None:
-    """A goal scores speed forward, or turning to its side. A robot on its belly scores below 0."""
+    """Goal "forward" scores speed; "left" and "right" score turning to that side.
+
+    A robot that lies on its belly for half of the time scores below 0.
+    """
     task = sample_task(2)
     forward = try_table(task, task.table.angles_deg)
     left = try_table(sample_task(1), sample_task(1).table.angles_deg)
@@ -155,7 +158,10 @@ def sample_task(key: int) -> Task:
 @pytest.mark.slow
 @pytest.mark.long
 def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """`lacoc coach` writes a map and variants into folders, and breeds from files that are kept."""
+    """`lacoc coach` writes a map or six variants of a gait into a folder.
+
+    It breeds new variants from those named by `--keep`, and refuses options that don't combine.
+    """
 
     def found(*words: str) -> Any:
         with contextlib.suppress(SystemExit):

@@ -70,7 +70,7 @@ def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
 
 
 def test_show_as_json(tmp_path: Path) -> None:
-    """`show --json` gives the command of each person with its token, by court and person."""
+    """`show --json` gives a command line for each person; a contestant's has the seat's token."""
     file = tmp_path / "contest.toml"
     run("init", str(file), "--court", "hall")
     lines = json.loads(run("show", str(file), "--json", "--host", "10.0.0.1"))

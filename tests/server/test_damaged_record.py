@@ -116,7 +116,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 
 
 def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
-    """If a bit is flipped, verify and a court's start end with a message, not with a crash.
+    """A flipped bit in a record never crashes verify or a court's start; an error is a message.
 
     The record stays as it is, and `verify` finds most flips.
     """

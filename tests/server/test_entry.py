@@ -63,7 +63,7 @@ def test_the_files_are_not_swapped() -> None:
 
 
 def test_a_workbook_is_refused() -> None:
-    """A court reads text: a workbook is a mistake."""
+    """An Excel file sent as Loco-data is a mistake, because a court reads only text."""
     assert mistakes_of(None, SentFile("Loco-data.xlsx", b"PK\x03\x04"))
 
 
@@ -148,7 +148,7 @@ def test_a_team_that_comes_back_without_files_keeps_its_own() -> None:
     ],
 )
 def test_without_files_a_team_gets_the_sample(asked: Join, held: JoinSeat | None) -> None:
-    """A new team without files gets the sample, and a note says so, also when it comes back."""
+    """A team without files of its own gets the sample robot and gait, and a note says so."""
     whole, notes = CONTEST(asked, held)
     files = (whole.robot, whole.postures, whole.locomotion)
     assert files == (SAMPLE.robot, SAMPLE.postures, SAMPLE.locomotion)

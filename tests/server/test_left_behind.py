@@ -104,7 +104,7 @@ def test_a_renamed_record_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("there", "here"), [("othello", "practice"), ("practice", "othello")])
 def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Path) -> None:
-    """A court refuses to go on with a match of another arena, and does not change its record."""
+    """A court refuses to go on with a match of another arena, and leaves the record as it is."""
     match_id = killed(tmp_path, arena=there)
     path = files.segment_path(tmp_path, match_id, 0)
     data = path.read_bytes()
@@ -125,7 +125,10 @@ def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
-    """A match that its court ended is over, even if its segments are not packed yet."""
+    """A match that its court ended is over, even if its segments are not packed yet.
+
+    If the end of its last segment is cut off, the match can be resumed.
+    """
     journal = held(tmp_path)
     journal.close()
     assert unfinished(tmp_path, "main", OTHELLO) is None
@@ -216,7 +219,7 @@ def packed(folder: Path, *numbers: str) -> list[Path]:
 
 
 def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
-    """If a court ends by an error, the next start goes on with its match, which is halted."""
+    """If an error ends a court, the match is resumed by the next start, in HALTED."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
     with ExitStack() as stack:

@@ -40,7 +40,10 @@ def in_json(*words: str) -> list[dict[str, Any]]:
 
 @pytest.mark.slow
 def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
-    """Lines name who is left out, what begins, and each match with its record and standings."""
+    """`--json` prints who is left out, the remaining players, and two lines for each match.
+
+    One line names the match's record, the other one has the standings.
+    """
     anna, ben, dai = handed_in(tmp_path, "anna", "ben", "大")
     (chie,) = handed_in(tmp_path, "chie", locomotion=BROKEN)
     emi = f"straight@{tmp_path / 'emi'}"

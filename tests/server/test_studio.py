@@ -352,7 +352,10 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
 
 
 def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
-    """A studio fills a map and breeds variants; a page sends back what it keeps as it came."""
+    """A studio fills a map of gaits, and breeds new variants from the tables that a user keeps.
+
+    It refuses wrong tables and negative numbers.
+    """
     files = files_of("quadruped")
     asked = MapRequest(protocol=PROTOCOL, job="map", files=files, seconds=0)
     found = decode(asker.begin("map", asked).wait(), MapReply, TRIAL_REPLY_MAX_BYTES)
