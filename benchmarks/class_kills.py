@@ -18,7 +18,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.class_file import Document
 from lacoc_client.phases.evidence import Guessed
 from lacoc_client.phases.store import ClassStore
 
@@ -68,7 +68,7 @@ def kill_once(path: Path, after_s: float) -> Killed:
     acknowledged = max((number for word, number, _ in seen if word == "evidence"), default=0)
     with ClassStore(path) as store:
         numbers = [one.number for one in store.evidence().result()]
-        version = max((int(table.version) for table in store.tables()), default=0)
+        version = max((int(table.version) for table in store.documents()), default=0)
     lost = [killed_s - at_s for word, number, at_s in seen if word == "table" and number > version]
     times_s = [at_s for _, _, at_s in seen] + [killed_s]
     return Killed(
@@ -83,11 +83,11 @@ def kill_once(path: Path, after_s: float) -> Killed:
 def keep_on(path: Path) -> None:
     """Write evidence and tables until somebody ends this process."""
     store = ClassStore(path)
-    version = max((int(table.version) for table in store.tables()), default=0)
+    version = max((int(table.version) for table in store.documents()), default=0)
     while True:
         version += 1
         content = b"x" * 5000
-        store.keep(KeptTable(STUDENT, FILE, str(version), time.time(), content))
+        store.keep(Document(STUDENT, FILE, str(version), time.time(), content))
         print("table", version, time.monotonic(), flush=True)
         guess = Guessed(about="foot", said="forward", was=("forward", "up"))
         number = store.add(STUDENT, guess, time.time()).result()

@@ -265,7 +265,7 @@ def _lost_evidence(folder: Path, lesson: Lesson) -> int:
     kept = file.evidence()
     edits = Counter(one.student for one in kept if isinstance(one.evidence, Edited))
     tries = Counter(one.student for one in kept if isinstance(one.evidence, Tried))
-    drafts = [read_draft(one) for one in file.tables() if one.name == DRAFT]
+    drafts = [read_draft(one) for one in file.documents() if one.name == DRAFT]
     file.close()
     assert all(isinstance(draft, Draft) for draft in drafts)
     return (lesson.edits - edits).total() + (lesson.tries - tries).total()

@@ -16,8 +16,6 @@ from lacoc_client.design.requests import Hello
 from lacoc_client.design.studios.asker import Asker
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.design.table import FileTable
-from lacoc_client.gateway.page_socket import PageSocket
-from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.class_file import ClassFile
 from lacoc_client.phases.evidence import Moved, Named
 from lacoc_shared.mistakes import UserError
@@ -48,7 +46,7 @@ def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
     asyncio.run(forget())
     file = ClassFile(path)
     assert [one.student for one in file.evidence()] == ["Bo"]
-    assert file.tables() == []
+    assert file.documents() == []
     assert file.votes(WORD) == {}
     file.close()
     assert WORD.encode() not in path.read_bytes()
@@ -60,15 +58,14 @@ def test_whoever_is_forgotten_while_coming_in_is_not_in(tmp_path: Path) -> None:
 
     async def forget() -> None:
         await room.open()
-        viewer = Viewer(PageSocket.__new__(PageSocket))
         hello = Hello(id=1, code=room.state.code, name="Ada")
-        coming = asyncio.create_task(room.enter(hello, viewer, "10.0.0.1"))
+        coming = asyncio.create_task(room.enter(hello, "10.0.0.1"))
         await asyncio.sleep(0)
         ada: ClassStudent = room.find("Ada")
         await room.forget(ada)
         await asyncio.wait({coming})  # either refused, or in before and sent away
         assert room.students == {}
-        back = await room.enter(hello, viewer, "10.0.0.1")
+        back = await room.enter(hello, "10.0.0.1")
         assert room.find("Ada") is back.student is not ada
         await room.forget(room.find("Ada"))
         await room._keeper.close()
@@ -76,7 +73,7 @@ def test_whoever_is_forgotten_while_coming_in_is_not_in(tmp_path: Path) -> None:
     asyncio.run(forget())
     file = ClassFile(tmp_path / CLASS_FILE)
     assert file.evidence() == []
-    assert {table.student for table in file.tables()} == {""}
+    assert {table.student for table in file.documents()} == {""}
     file.close()
 
 
@@ -110,10 +107,9 @@ def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
 
     async def fill() -> None:
         await room.open()
-        viewer = Viewer(PageSocket.__new__(PageSocket))
 
         async def comes(name: str) -> ClassStudent:
-            await room.enter(Hello(id=1, code=room.state.code, name=name), viewer, "10.0.0.1")
+            await room.enter(Hello(id=1, code=room.state.code, name=name), "10.0.0.1")
             return room.find(name)
 
         ada = await comes("Ada")

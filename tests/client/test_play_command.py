@@ -53,9 +53,16 @@ class Terminal:
     def ended(self) -> int:
         """Wait until the command has ended, and return its exit code."""
         self.child.expect(pexpect.EOF)
+        self.child.wait()  # `close` alone would give up on a slow machine
         self.child.close()
         code = self.child.exitstatus
         return -self.child.signalstatus if code is None else int(code)
+
+    def kill(self) -> None:
+        """End the command if it still runs."""
+        self.child.kill(signal.SIGKILL)
+        self.child.wait()
+        self.child.close()
 
 
 @pytest.fixture
@@ -74,7 +81,7 @@ def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProces
     assert court.start("referee", "start", *words).wait(TIMEOUT_S) == 0
     terminal.sees("PLAYING")
     yield court, terminal
-    terminal.child.close(force=True)
+    terminal.kill()
 
 
 def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Path) -> None:

@@ -72,6 +72,11 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
     """Return the serious accessibility mistakes that axe-core finds, each as rule and elements."""
     import axe_core_python.sync_playwright  # type: ignore[import-not-found,import-untyped]
 
+    # In the middle of a change of colour the contrast is that of neither.
+    page.wait_for_function(
+        "document.getAnimations().every(one => one.effect.getComputedTiming().endTime === Infinity"
+        " || one.playState === 'finished')"
+    )
     found = axe_core_python.sync_playwright.Axe().run(page)["violations"]
     return [
         (one["id"], [node["html"][:200] for node in one["nodes"]])

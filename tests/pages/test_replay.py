@@ -33,6 +33,9 @@ PHONE = {"width": 390, "height": 844}
 SECONDS = 40
 RUN_UP = 50
 """A jump to an event leads to this many beats before the event."""
+SAMPLE = """new Promise((done) => requestAnimationFrame((now_ms) => setTimeout(() =>
+    done([now_ms / 1000, window.__replay.recording.beat.value]))))"""
+"""Returns the time of a picture and its beat. At another moment the beat would be older."""
 
 
 def played(folder: Path, match_id: str, arena: str, seconds: float) -> Path:
@@ -193,8 +196,7 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
         then: list[float] = []
 
         def enough() -> bool:
-            sample = "[performance.now() / 1000, window.__replay.recording.beat.value]"
-            then.extend(show.page.evaluate(sample))
+            then.extend(show.page.evaluate(SAMPLE))
             # A busy machine may draw nothing for longer than 1.2 s.
             return then[-2] - then[0] > 1.2 and then[-1] > then[1]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from benchmarks.class_kills import OLDEST_S, kill_once
 
-from lacoc_client.phases.class_file import ClassFile, KeptTable, forget
+from lacoc_client.phases.class_file import ClassFile, Document, forget
 from lacoc_client.phases.evidence import Edited, Evidence, Guessed, Hand, Joined, LegEdit, Named
 from lacoc_client.phases.export import evidence_csv, tables_zip
 from lacoc_client.phases.store import ClassStore
@@ -29,8 +29,8 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "class [1].sqlite"  # a name with letters that mean a pattern to `glob`
 
 
-def table(student: str, version: str, name: str = "Loco-data.txt") -> KeptTable:
-    return KeptTable(student, name, version, 1_700_000_000.0, f"{student} {version}".encode())
+def table(student: str, version: str, name: str = "Loco-data.txt") -> Document:
+    return Document(student, name, version, 1_700_000_000.0, f"{student} {version}".encode())
 
 
 def names(path: Path) -> set[str]:
@@ -52,8 +52,8 @@ def test_what_is_kept_can_be_read_again(path: Path) -> None:
         assert [(one.student, one.at_s) for one in kept] == [("Ada", 1.5)] * 2 + [("りく", 2.5)]
         assert [one.evidence for one in kept] == [Joined(), EDIT, GUESS]
         assert [one.number for one in store.evidence("Ada", after=1).result()] == [2]
-        assert store.tables() == [table("Ada", "2"), table("りく", "7")]
-        assert store.tables("りく") == [table("りく", "7")]
+        assert store.documents() == [table("Ada", "2"), table("りく", "7")]
+        assert store.documents("りく") == [table("りく", "7")]
         assert store.trouble is None
     assert names(path) == {path.name}
 
@@ -62,7 +62,7 @@ def test_a_table_is_on_the_disk_with_the_evidence_after_it(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """When evidence is acknowledged, the tables that the student kept before it are written too."""
-    monkeypatch.setattr("lacoc_client.phases.store.TABLE_S", 1e6)
+    monkeypatch.setattr("lacoc_client.phases.store.DOCUMENT_S", 1e6)
     copy = tmp_path / "copy.sqlite"
     with ClassStore(path) as store:
         store.keep(table("Ada", "1"))
@@ -71,7 +71,7 @@ def test_a_table_is_on_the_disk_with_the_evidence_after_it(
         for end in ("", "-wal"):  # what a killed program leaves
             Path(f"{copy}{end}").write_bytes(Path(f"{path}{end}").read_bytes())
     file = ClassFile(copy)
-    assert file.tables() == [table("Ada", "1")]
+    assert file.documents() == [table("Ada", "1")]
     assert len(file.evidence()) == 1
     file.close()
 
@@ -169,7 +169,7 @@ def test_a_damaged_file_is_kept_and_the_class_goes_on(path: Path, damage: str) -
 
 def test_damage_while_the_class_runs_keeps_everybodys_tables(path: Path) -> None:
     """If the file is damaged while it is open, a fresh file gets new evidence and all tables."""
-    large = KeptTable(
+    large = Document(
         "Ada", "Loco-data.txt", "1", 1.0, bytes(8 << 20)
     )  # too large for SQLite's cache
     with ClassStore(path) as store:
@@ -186,14 +186,14 @@ def test_damage_while_the_class_runs_keeps_everybodys_tables(path: Path) -> None
         assert store.add("Ada", GUESS, 2.0).result() == 1
     with ClassStore(path) as store:
         assert [one.evidence for one in store.evidence().result()] == [GUESS]
-        assert store.tables() == [large]
+        assert store.documents() == [large]
 
 
 FULL = """
 import resource, sys
 from pathlib import Path
 from lacoc_client.phases.evidence import Hand
-from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.class_file import Document
 from lacoc_client.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
 import signal
@@ -209,7 +209,7 @@ try:
     print("acknowledged")
 except UserError as error:
     print(error.phrase.code, store.trouble.code)
-store.keep(KeptTable("Ada", "Loco-data.txt", "1", 3.0, b"x"))
+store.keep(Document("Ada", "Loco-data.txt", "1", 3.0, b"x"))
 resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 print(store.add("Ada", Hand(up=True), 4.0).result(), store.trouble)
 store.close()
@@ -227,7 +227,7 @@ def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
     with ClassStore(path) as store:
         hands = [one.evidence for one in store.evidence().result()]
         assert hands == [Hand(up=True), Hand(up=True)]
-        assert [one.version for one in store.tables()] == ["1"]
+        assert [one.version for one in store.documents()] == ["1"]
 
 
 def test_another_programs_database_is_left_alone(path: Path) -> None:

@@ -1,13 +1,13 @@
 """A student of a class, who has a token and a card on the teacher's page."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 
-from lacoc_client.classroom.cards import Card, Seen, card
+from lacoc_client.classroom.cards import Card, Seen, card, hand_times
 from lacoc_client.design.learning.diary import Diary
 from lacoc_client.design.learning.rules import Rules
 from lacoc_client.design.learning.student import Student
-from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.class_file import Document, Kept
 from lacoc_client.phases.evidence import Joined
 from lacoc_shared.studio import TrialReply
 
@@ -34,6 +34,15 @@ class ClassStudent(Student):
         """Time since when the hand is up."""
         self._trial: TrialReply | None = None
         self._last: Card | None = None
+
+    def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
+        """Begin with what the class file has of this student, in its order."""
+        documents = list(documents)
+        self.diary.begin((one.evidence for one in evidence), documents)
+        tokens = (one.content.decode() for one in documents if one.name == TOKEN)
+        self.token_hash = next(tokens, "")
+        self.seen_s = evidence[-1].at_s if evidence else 0.0
+        self.hand_up_s = hand_times((one.at_s, one.evidence) for one in evidence)
 
     @property
     def is_idle(self) -> bool:
@@ -74,6 +83,6 @@ class ClassStudent(Student):
         self._last = now
         return now
 
-    def kept_token(self) -> KeptTable:
+    def kept_token(self) -> Document:
         """Return the token as a class file keeps it."""
-        return KeptTable(self.name, TOKEN, "", time.time(), self.token_hash.encode())
+        return Document(self.name, TOKEN, "", time.time(), self.token_hash.encode())

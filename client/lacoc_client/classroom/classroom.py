@@ -5,14 +5,13 @@ import time
 from collections.abc import AsyncIterator, Iterable, Sequence
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
 from lacoc_client.classroom.admission import Guesses, new_code, read_code, read_name, same_name
-from lacoc_client.classroom.cards import hand_times
-from lacoc_client.classroom.class_student import TOKEN, ClassStudent
-from lacoc_client.classroom.state import NAME, NOBODY, ClassState, Handed, fresh_state, read_state
+from lacoc_client.classroom.class_student import ClassStudent
+from lacoc_client.classroom.state import NOBODY, ClassState, Handed, fresh_state, read_state
 from lacoc_client.classroom.tournament import Tournament
 from lacoc_client.design import requests
 from lacoc_client.design.designer import folder_message, sample_postures, studio_message
@@ -29,7 +28,7 @@ from lacoc_client.design.table import FileTable
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
-from lacoc_client.phases.class_file import Kept, KeptTable
+from lacoc_client.phases.class_file import Document, Kept
 from lacoc_client.phases.evidence import Hand, Joined
 from lacoc_client.phases.store import ClassStore
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
@@ -42,6 +41,8 @@ from lacoc_shared.words import say
 
 CLASS_FILE = "lacoc-class.sqlite"
 """Name of the file in the folder of a class."""
+
+_T = TypeVar("_T", Kept, Document)
 
 _MOST_STUDENTS = 100
 _SOON_S = 0.1
@@ -110,23 +111,18 @@ class Classroom:
             UserError: if the class file can't be opened.
         """
         store = await self._store()
-        kept = {(table.student, table.name): table for table in store.tables()}
-        state = kept.pop((NOBODY, NAME), None)
-        self.state = (state and read_state(state)) or self.state
+        kept = await asyncio.wrap_future(store.evidence())
+        evidence = _by_student(kept)
+        documents = _by_student(store.documents())
+        for document in documents.pop(NOBODY, []):
+            self.state = read_state(document) or self.state
         await asyncio.wrap_future(store.write(self.state.kept()))
-        evidence = await asyncio.wrap_future(store.evidence())
-        for name in dict.fromkeys((*(one.student for one in evidence), *(key[0] for key in kept))):
-            student = self._new(name)
-            await student.diary.read()
-            token = kept.get((name, TOKEN))
-            student.token_hash = token.content.decode() if token else ""
-            own: list[Kept] = [one for one in evidence if one.student == name]
-            student.seen_s = own[-1].at_s if own else 0.0
-            student.hand_up_s = hand_times((one.at_s, one.evidence) for one in own)
+        for name in dict.fromkeys((*evidence, *documents)):
+            self._new(name).begin(evidence.get(name, []), documents.get(name, []))
 
     # What students do
 
-    async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> Entered:
+    async def enter(self, hello: requests.Hello, where: str) -> Entered:
         """Let a student in who shows a token, or the class code and a nickname (`Host.enter`)."""
         if hello.token:
             student, token = self._known(hello), hello.token
@@ -233,9 +229,9 @@ class Classroom:
         """
         return await asyncio.wrap_future((await self._store()).evidence())
 
-    async def kept(self) -> list[KeptTable]:
+    async def documents(self) -> list[Document]:
         """Return the drafts and tokens of all students, and the settings of the class."""
-        return (await self._store()).tables()
+        return (await self._store()).documents()
 
     def add_teacher(self, viewer: Viewer) -> None:
         """Add a page of the teacher, and tell it everything."""
@@ -367,6 +363,14 @@ class Classroom:
 
     def _tournament_message(self) -> bytes:
         return wire.map_message(Kind.TOURNAMENT, msgspec.structs.asdict(self.tournament.state))
+
+
+def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
+    """Sort evidence or documents by the name of the student, in their order."""
+    groups: dict[str, list[_T]] = {}
+    for one in kept:
+        groups.setdefault(one.student, []).append(one)
+    return groups
 
 
 def _handed_message(handed: Handed) -> bytes:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from lacoc_client.design.learning.draft import NAME as DRAFT
 from lacoc_client.design.learning.draft import read_draft
-from lacoc_client.phases.class_file import ClassFile, Damaged, KeptTable
+from lacoc_client.phases.class_file import ClassFile, Damaged, Document
 from lacoc_client.phases.export import evidence_csv, tables_zip
 from lacoc_client.seat_files import USUAL_NAMES
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
@@ -14,7 +14,7 @@ from lacoc_shared.words import say
 EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
-def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
+def student_files(kept: Iterable[Document]) -> list[Document]:
     """Return the gait and robot files of all drafts; tokens and settings are left out."""
     found = []
     for one in kept:
@@ -26,7 +26,7 @@ def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
         except FileRefused:  # a cell without an angle: pages send no such table
             continue
         found += [
-            KeptTable(one.student, name, one.version, one.at_s, file.data)
+            Document(one.student, name, one.version, one.at_s, file.data)
             for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]
@@ -48,7 +48,7 @@ def export(path: Path) -> dict[str, bytes]:
     try:
         return {
             EVIDENCE: evidence_csv(file.evidence()),
-            TABLES: tables_zip(student_files(file.tables())),
+            TABLES: tables_zip(student_files(file.documents())),
         }
     finally:
         file.close()

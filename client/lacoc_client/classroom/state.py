@@ -8,7 +8,7 @@ from lacoc_client.classroom.admission import new_code
 from lacoc_client.design.learning.rules import FREE, Rules
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway.home import new_key
-from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.class_file import Document
 
 NAME, NOBODY = "class", ""
 """Name under which it is kept, and the student whose it is: nobody's."""
@@ -35,9 +35,9 @@ class ClassState(msgspec.Struct, frozen=True, kw_only=True):
     handed: Handed | None = None
     """The last table that was handed out."""
 
-    def kept(self) -> KeptTable:
+    def kept(self) -> Document:
         """Return the settings as a class file keeps them."""
-        return KeptTable(NOBODY, NAME, "", time.time(), msgspec.json.encode(self))
+        return Document(NOBODY, NAME, "", time.time(), msgspec.json.encode(self))
 
 
 def fresh_state() -> ClassState:
@@ -45,7 +45,7 @@ def fresh_state() -> ClassState:
     return ClassState(code=new_code(), key=new_key())
 
 
-def read_state(kept: KeptTable) -> ClassState | None:
+def read_state(kept: Document) -> ClassState | None:
     """Decode kept settings; None if they are of another version of this program."""
     try:
         return msgspec.json.decode(kept.content, type=ClassState)

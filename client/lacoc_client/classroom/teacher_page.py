@@ -131,7 +131,7 @@ class TeacherPage:
         if what == "evidence":
             kept = await self._class.evidence()
             return {"name": EVIDENCE, "data": await asyncio.to_thread(evidence_csv, kept)}
-        files = await asyncio.to_thread(student_files, await self._class.kept())
+        files = await asyncio.to_thread(student_files, await self._class.documents())
         return {"name": TABLES, "data": await asyncio.to_thread(tables_zip, files)}
 
     def _players(self) -> dict[str, SeatFiles]:

@@ -5,18 +5,15 @@ from typing import Annotated, Literal
 import msgspec
 
 from lacoc_client.design.learning.rules import Rules
-from lacoc_client.design.requests import ParseAsk, Ping, read_with
+from lacoc_client.design.requests import Name, ParseAsk, Ping, Sequences, read_with
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway.wire import Ask
-
-_Name = Annotated[str, msgspec.Meta(max_length=200)]
-_Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
 
 
 class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
     """The first message: it has the page key."""
 
-    key: _Name = ""
+    key: Name = ""
 
 
 class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
@@ -28,28 +25,28 @@ class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
     """Offer a table to everybody: this one, that of a student, or else the sample."""
 
-    title: _Name = ""
+    title: Name = ""
     table: FileTable | None = None
-    sequences: _Sequences | None = None
-    student: _Name | None = None
+    sequences: Sequences | None = None
+    student: Name | None = None
 
 
 class LowerAsk(Ask, frozen=True, kw_only=True, tag="lower"):
     """Take a student's hand down."""
 
-    student: _Name
+    student: Name
 
 
 class AdmitAsk(Ask, frozen=True, kw_only=True, tag="admit"):
     """Let another browser in under a student's name."""
 
-    student: _Name
+    student: Name
 
 
 class ForgetAsk(Ask, frozen=True, kw_only=True, tag="forget"):
     """Delete all that is kept of a student."""
 
-    student: _Name
+    student: Name
 
 
 class NewCodeAsk(Ask, frozen=True, kw_only=True, tag="new_code"):
@@ -59,7 +56,7 @@ class NewCodeAsk(Ask, frozen=True, kw_only=True, tag="new_code"):
 class ShowAsk(Ask, frozen=True, kw_only=True, tag="show"):
     """Let a student's robot walk with the newest table, for the big screen."""
 
-    student: _Name
+    student: Name
 
 
 class ExportAsk(Ask, frozen=True, kw_only=True, tag="export"):
@@ -71,7 +68,7 @@ class ExportAsk(Ask, frozen=True, kw_only=True, tag="export"):
 class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
     """Start a tournament of the newest tables."""
 
-    arena: _Name
+    arena: Name
     rounds: Annotated[int, msgspec.Meta(ge=1, le=20)]
     seconds: Annotated[float, msgspec.Meta(ge=1, le=180)]
 

@@ -19,6 +19,7 @@ from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.evidence import Hand, Moved, Named
+from lacoc_client.phases.facts import TrialFacts
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -79,7 +80,7 @@ class DesignPage:
             UserError: if the page is not let in.
         """
         client = self._websocket.client
-        entered = await self._host.enter(hello, self._viewer, client.host if client else "")
+        entered = await self._host.enter(hello, client.host if client else "")
         student = entered.student
         self._leave()
         self._learner = Learner(student, self._sample_trial)
@@ -135,15 +136,17 @@ class DesignPage:
         reply, payload = await self._studio.trial(asked)
         if asked.watched:
             return msgspec.Raw(payload)
-        await learner.tried(asked, reply)
+        facts = await learner.tried(asked, reply)
         self._host.learned(learner.student, reply)
-        task = asyncio.get_running_loop().create_task(self._compare(asked, learner))
+        task = asyncio.get_running_loop().create_task(self._compare(asked, facts, learner))
         self._comparing.add(task)
         task.add_done_callback(self._comparing.discard)
         return msgspec.Raw(payload)
 
-    async def _compare(self, asked: requests.TrialAsk, learner: Learner) -> None:
-        if await learner.compared(asked):
+    async def _compare(
+        self, asked: requests.TrialAsk, facts: TrialFacts | None, learner: Learner
+    ) -> None:
+        if await learner.compared(asked, facts):
             self._host.learned(learner.student)
 
     async def _sample_trial(self, asked: requests.TrialAsk) -> TrialReply | None:

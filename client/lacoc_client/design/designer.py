@@ -66,7 +66,7 @@ class Designer:
         self._student = Student("", Diary(self._keeper), lambda: FREE)
         self._robot_name = robot or WORKSHOPS_ROBOT
 
-    async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> Entered:
+    async def enter(self, hello: requests.Hello, where: str) -> Entered:
         """Let a page in that shows the page key; see `Host.enter`."""
         key = hello.key.encode("utf-8", "surrogatepass")
         if not hmac.compare_digest(key, self.key.encode()):

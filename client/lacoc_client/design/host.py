@@ -1,6 +1,6 @@
 """The host of a page of /design: a folder of one's own, or a class."""
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from lacoc_client.design import requests
 from lacoc_client.design.files import FileContent
@@ -24,12 +24,11 @@ class Host(Protocol):
     playing: Playing | None
     """The way to a court; None: pages have none."""
 
-    async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> "Entered":
+    async def enter(self, hello: requests.Hello, where: str) -> "Entered":
         """Let a page in.
 
         Args:
             hello: what the page shows.
-            viewer: the page.
             where: address of the page's machine.
 
         Raises:
@@ -54,14 +53,10 @@ class Host(Protocol):
         """Read the sample postures of the robot, which may have none; may block."""
 
 
-class Entered:
-    """A page that was let in.
+class Entered(NamedTuple):
+    """A page that was let in."""
 
-    Args:
-        student: whose page it is.
-        token: lets this browser in again; None: it needs none.
-    """
-
-    def __init__(self, student: Student, token: str | None = None) -> None:
-        self.student = student
-        self.token = token
+    student: Student
+    """Whose page it is."""
+    token: str | None = None
+    """Lets this browser in again; None: it needs none."""

@@ -22,20 +22,20 @@ MESSAGE_BYTES = 16 << 20
 """Longest message [bytes]; a longer one closes the connection."""
 
 _T = TypeVar("_T")
-_Name = Annotated[str, msgspec.Meta(max_length=200)]
+Name = Annotated[str, msgspec.Meta(max_length=200)]
 _Job = Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,15}$")]
-_Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
+Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
 
 
 class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
     """Ask to be let in, with the page key or with a class code and a name; the first message."""
 
-    key: _Name = ""
-    code: _Name = ""
+    key: Name = ""
+    code: Name = ""
     """The class code."""
-    name: _Name = ""
+    name: Name = ""
     """Nickname in the class."""
-    token: _Name = ""
+    token: Name = ""
     """What the class gave this browser before."""
 
 
@@ -48,7 +48,7 @@ class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
 class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
     """Read a file of the folder."""
 
-    name: _Name
+    name: Name
 
 
 class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
@@ -58,7 +58,7 @@ class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
 class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
     """Read a file that was dropped on the page, or a sheet that was pasted."""
 
-    name: _Name
+    name: Name
     data: Any
     """Bytes, or text."""
 
@@ -66,10 +66,10 @@ class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
 class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
     """Save a table, or the text of a robot file."""
 
-    name: _Name
+    name: Name
     table: FileTable | None = None
     robot: str | None = None
-    version: _Name = ""
+    version: Name = ""
     """Version of the file that the content was made from; "": there was no file of this name."""
     force: bool = False
     """Whether to save even if the file has changed since that version."""
@@ -78,7 +78,7 @@ class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
 class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
     """Make a file to download."""
 
-    name: _Name
+    name: Name
     table: FileTable
 
 
@@ -110,8 +110,8 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
     table: FileTable | None = None
     """None: the sample gait of the robot."""
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
-    keys: _Name = ""
+    sequences: Sequences | None = None
+    keys: Name = ""
     seconds: float | None = None
     guesses: tuple[Foretold, ...] = ()
     watched: bool = False
@@ -123,20 +123,20 @@ class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
 
     table: FileTable
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
+    sequences: Sequences | None = None
     by: By | None = None
     """None: this is no edit of the student's; a file was opened, or an edit was undone."""
     size: Literal["cell", "three", "table"] | None = None
     """If the student took over the coach's changes, the size of the coach's search."""
     guess: FootWay | None = None
     """The direction in which the student guessed, before the edit, that the foot will go."""
-    file: _Name = ""
+    file: Name = ""
     """Name of the file that is open; "": none."""
-    file_version: _Name = ""
+    file_version: Name = ""
     """Version of that file that the table was made from."""
     saved: bool = False
     """Whether the files have this table and this robot."""
-    robot_version: _Name | None = None
+    robot_version: Name | None = None
     """Version of the file that the robot was made from, if that file lacks changes of the robot;
     "": the robot has no file; None: nothing is lacking."""
 
@@ -146,7 +146,7 @@ class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
 
     table: FileTable
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
+    sequences: Sequences | None = None
 
 
 class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
@@ -154,7 +154,7 @@ class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
 
     table: FileTable
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
+    sequences: Sequences | None = None
 
 
 class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
@@ -188,10 +188,10 @@ class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
     """Name that the page chooses for the search; progress and `cancel` have it too."""
     table: FileTable | None = None
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
+    sequences: Sequences | None = None
     key: int | None = None
-    goal: _Name = "forward"
-    size: _Name | None = None
+    goal: Name = "forward"
+    size: Name | None = None
     seconds: float = 30.0
     seed: int = 0
 
@@ -203,7 +203,7 @@ class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
     """As in `CoachAsk`."""
     table: FileTable | None = None
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
+    sequences: Sequences | None = None
     key: int | None = None
     seconds: float = 30.0
     seed: int = 0
@@ -216,7 +216,7 @@ class VariantsAsk(Ask, frozen=True, kw_only=True, tag="variants"):
     """As in `CoachAsk`."""
     table: FileTable | None = None
     robot: SentFile | None = None
-    sequences: _Sequences | None = None
+    sequences: Sequences | None = None
     key: int | None = None
     keep: tuple[tuple[int, ...], ...] = ()
     """Tables of one or two gaits to breed from; empty: from `table`."""

@@ -1,4 +1,4 @@
-"""The SQLite file of a class: all evidence, and every student's newest tables."""
+"""The SQLite file of a class: all evidence, and the newest documents of everybody."""
 
 import sqlite3
 from collections.abc import Iterable, Iterator
@@ -48,12 +48,13 @@ class Kept(NamedTuple):
     evidence: Evidence
 
 
-class KeptTable(NamedTuple):
-    """The newest content of one of a student's gait files."""
+class Document(NamedTuple):
+    """The newest content of something that is kept under a name; in SQL a row of `tables`."""
 
     student: str
+    """Whose it is; "" stands for the whole class, or for whoever designs alone."""
     name: str
-    """Name of the gait file, such as "Loco-data.txt"."""
+    """What it is, such as "draft"."""
     version: str
     at_s: float
     content: bytes
@@ -91,15 +92,15 @@ class ClassFile:
             raise
 
     def add(
-        self, student: str, evidence: Evidence, at_s: float, tables: Iterable[KeptTable] = ()
+        self, student: str, evidence: Evidence, at_s: float, documents: Iterable[Document] = ()
     ) -> int:
-        """Write evidence, and tables with it; return the number of the evidence.
+        """Write evidence, and documents with it; return the number of the evidence.
 
         Raises:
             sqlite3.Error: if the file can't be written; `problem` says why.
         """
         with self._db:
-            self._write_tables(tables)
+            self._write_documents(documents)
             return self._add(student, evidence, at_s)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> bool:
@@ -126,10 +127,10 @@ class ClassFile:
         rows = self._db.execute("SELECT choice, votes FROM votes WHERE poll = ?", (poll,))
         return dict(rows.fetchall())
 
-    def write_tables(self, tables: Iterable[KeptTable]) -> None:
-        """Write the newest content of gait files; raises the same error as `add`."""
+    def write_documents(self, documents: Iterable[Document]) -> None:
+        """Write the newest content of documents; raises the same error as `add`."""
         with self._db:
-            self._write_tables(tables)
+            self._write_documents(documents)
 
     def evidence(self, student: str | None = None, after: int = 0) -> list[Kept]:
         """Read evidence in the order in which it was written; skip evidence that can't be decoded.
@@ -145,10 +146,10 @@ class ClassFile:
         )
         return list(_readable(rows))
 
-    def tables(self) -> list[KeptTable]:
-        """Read everybody's newest tables."""
+    def documents(self) -> list[Document]:
+        """Read the newest documents of everybody."""
         rows = self._db.execute("SELECT student, name, version, at_s, content FROM tables")
-        return [KeptTable(*row) for row in rows]
+        return [Document(*row) for row in rows]
 
     def forget(self, student: str) -> None:
         """Delete all that is kept of a student; votes have no names, so they stay."""
@@ -178,8 +179,8 @@ class ClassFile:
             return UserError(say("class.cannot-open", file=text_of(self._path), why=why))
         return UserError(say("class.no-room", file=file, why=why))
 
-    def _write_tables(self, tables: Iterable[KeptTable]) -> None:
-        self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", tables)
+    def _write_documents(self, documents: Iterable[Document]) -> None:
+        self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", documents)
 
     def _add(self, student: str, evidence: Evidence, at_s: float) -> int:
         added = self._db.execute(

@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from lacoc_client.phases.class_file import Kept, KeptTable
+from lacoc_client.phases.class_file import Document, Kept
 from lacoc_client.phases.evidence import Evidence, Guessed
 
 _FIRST = ("number", "time", "student", "kind")
@@ -39,7 +39,7 @@ def evidence_csv(evidence: Iterable[Kept]) -> bytes:
     return text.getvalue().encode("utf-8-sig")
 
 
-def tables_zip(tables: Iterable[KeptTable]) -> bytes:
+def tables_zip(tables: Iterable[Document]) -> bytes:
     """Put the newest tables into a zip archive with one folder for each student."""
     data = io.BytesIO()
     folders: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""Keeps the evidence and tables of a class on disk; `class_file` reads and writes the file."""
+"""Keeps the evidence and documents of a class on disk; `class_file` reads and writes the file."""
 
 import sqlite3
 import threading
@@ -9,13 +9,13 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, TypeVar
 
-from lacoc_client.phases.class_file import ClassFile, Damaged, Kept, KeptTable, set_aside
+from lacoc_client.phases.class_file import ClassFile, Damaged, Document, Kept, set_aside
 from lacoc_client.phases.evidence import Evidence
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import Phrase, say
 
-TABLE_S = 1.0
-"""Longest time that a new table waits before it is written [s]."""
+DOCUMENT_S = 1.0
+"""Longest time that a new document waits before it is written [s]."""
 
 _T = TypeVar("_T")
 
@@ -30,15 +30,15 @@ class _Job(Generic[_T]):
 
 
 class ClassStore:
-    """The evidence and tables of a class, kept on disk; may be used from any thread.
+    """The evidence and documents of a class, kept on disk; may be used from any thread.
 
     A thread of its own works on the file, so that no event loop waits for the disk. The methods
     return futures, which are done when their data are on the disk (`asyncio.wrap_future` makes an
     event loop wait for one). If the process is killed, no evidence is lost whose future was done.
-    A table is lost only if it was newer than `TABLE_S` plus the time of a write.
+    A document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
 
     A damaged file is renamed, and the class goes on in a fresh file. While the disk is full,
-    futures fail with a `UserError`, and tables wait until there is room.
+    futures fail with a `UserError`, and documents wait until there is room.
 
     Args:
         path: the file; it is made if there is none.
@@ -56,13 +56,13 @@ class ClassStore:
             self._file = ClassFile(path)
         except Damaged:
             self._file = self._fresh()
-        self._tables = {(one.student, one.name): one for one in self._file.tables()}
+        self._documents = {(one.student, one.name): one for one in self._file.documents()}
         self._waiting: set[tuple[str, str]] = set()
-        """Student and name of each table that is not on disk yet."""
+        """Student and name of each document that is not on disk yet."""
         self._jobs: SimpleQueue[_Job[Any] | None] = SimpleQueue()
         self._closed = False
         self._lock = threading.Lock()
-        """Guards `_tables`, `_waiting` and `_closed`."""
+        """Guards `_documents`, `_waiting` and `_closed`."""
         self._thread = threading.Thread(target=self._run, name="class-store", daemon=True)
         self._thread.start()
 
@@ -75,7 +75,7 @@ class ClassStore:
         return self._no_room or self._damage
 
     def add(self, student: str, evidence: Evidence, at_s: float) -> "Future[int]":
-        """Keep evidence, and with it the tables of the student that wait.
+        """Keep evidence, and with it the documents of the student that wait.
 
         Args:
             student: name of the student.
@@ -87,9 +87,9 @@ class ClassStore:
         """
 
         def work(file: ClassFile) -> int:
-            tables = self._waiting_tables(student)
-            number = file.add(student, evidence, at_s, tables)
-            self._written(tables)
+            documents = self._waiting_documents(student)
+            number = file.add(student, evidence, at_s, documents)
+            self._written(documents)
             return number
 
         return self._do(work, writes=True)
@@ -106,24 +106,25 @@ class ClassStore:
         """Read evidence; arguments and result are those of `ClassFile.evidence`."""
         return self._do(lambda file: file.evidence(student, after))
 
-    def keep(self, table: KeptTable) -> None:
-        """Keep the newest content of a student's gait file; it is written within `TABLE_S`.
+    def keep(self, document: Document) -> None:
+        """Keep the newest content of a document; it is written within `DOCUMENT_S`.
 
         Raises:
             UserError: if the store is closed.
             ValueError: if a name can't be encoded as UTF-8.
         """
-        f"{table.student}{table.name}{table.version}".encode()  # one bad name would stop all tables
+        # One name that can't be encoded would stop all documents.
+        f"{document.student}{document.name}{document.version}".encode()
         with self._lock:
             if self._closed:
                 raise UserError(say("class.closed"))
-            self._tables[table.student, table.name] = table
-            self._waiting.add((table.student, table.name))
+            self._documents[document.student, document.name] = document
+            self._waiting.add((document.student, document.name))
 
-    def write(self, table: KeptTable) -> "Future[None]":
-        """Keep a table as `keep` does, but write it at once; errors are those of `keep`."""
-        self.keep(table)  # so that it is written later if the disk is full now
-        return self._do(lambda file: file.write_tables([table]), writes=True)
+    def write(self, document: Document) -> "Future[None]":
+        """Keep a document as `keep` does, but write it at once; errors are those of `keep`."""
+        self.keep(document)  # so that it is written later if the disk is full now
+        return self._do(lambda file: file.write_documents([document]), writes=True)
 
     def forget(self, student: str) -> "Future[None]":
         """Delete all that is kept of a student."""
@@ -131,21 +132,21 @@ class ClassStore:
         def work(file: ClassFile) -> None:
             file.forget(student)  # first: if this fails, everything is as before
             with self._lock:
-                gone = [key for key in self._tables if key[0] == student]
+                gone = [key for key in self._documents if key[0] == student]
                 for key in gone:
-                    del self._tables[key]
+                    del self._documents[key]
                     self._waiting.discard(key)
 
         return self._do(work, writes=True)
 
-    def tables(self, student: str | None = None) -> list[KeptTable]:
-        """Return the newest tables of a student, or of all (None), sorted by student and name."""
+    def documents(self, student: str | None = None) -> list[Document]:
+        """Return the newest documents of a student or of all (None), by student and name."""
         with self._lock:
-            tables = sorted(self._tables.items())
-        return [table for (who, _), table in tables if student in (None, who)]
+            documents = sorted(self._documents.items())
+        return [document for (who, _), document in documents if student in (None, who)]
 
     def close(self) -> None:
-        """Write the tables that wait, and close the file."""
+        """Write the documents that wait, and close the file."""
         with self._lock:
             if not self._closed:
                 self._closed = True
@@ -170,7 +171,7 @@ class ClassStore:
     # What follows runs in the store's own thread.
 
     def _run(self) -> None:
-        next_s = time.monotonic() + TABLE_S
+        next_s = time.monotonic() + DOCUMENT_S
         going_on = True
         while going_on:
             try:
@@ -182,8 +183,8 @@ class ClassStore:
                     self._work(job)
                 going_on = job is not None
             if not going_on or time.monotonic() >= next_s:
-                self._write_tables()
-                next_s = time.monotonic() + TABLE_S
+                self._write_documents()
+                next_s = time.monotonic() + DOCUMENT_S
         self._file.close()
 
     def _work(self, job: _Job[Any]) -> None:
@@ -196,7 +197,7 @@ class ClassStore:
                 self._file.close()
                 self._file = self._fresh()
                 with self._lock:
-                    self._waiting |= self._tables.keys()
+                    self._waiting |= self._documents.keys()
                 result = self._once(job)
         except Exception as error:
             if job.writes and isinstance(error, UserError):
@@ -213,26 +214,28 @@ class ClassStore:
         except sqlite3.Error as error:
             raise self._file.problem(error) from error
 
-    def _write_tables(self) -> None:
-        tables = self._waiting_tables()
-        if not tables:
+    def _write_documents(self) -> None:
+        documents = self._waiting_documents()
+        if not documents:
             return
-        job = _Job(lambda file: file.write_tables(tables), writes=True)
+        job = _Job(lambda file: file.write_documents(documents), writes=True)
         self._work(job)
-        if job.done.exception() is None:  # else `trouble` says why, and the tables go on waiting
-            self._written(tables)
+        if job.done.exception() is None:  # else `trouble` says why, and the documents go on waiting
+            self._written(documents)
 
-    def _waiting_tables(self, student: str | None = None) -> list[KeptTable]:
-        """Return the tables of a student, or of all (None), that are not on the disk yet."""
+    def _waiting_documents(self, student: str | None = None) -> list[Document]:
+        """Return the documents of a student, or of all (None), that are not on the disk yet."""
         with self._lock:
-            return [self._tables[key] for key in sorted(self._waiting) if student in (None, key[0])]
+            return [
+                self._documents[key] for key in sorted(self._waiting) if student in (None, key[0])
+            ]
 
-    def _written(self, tables: Iterable[KeptTable]) -> None:
-        """Take in that tables are on the disk; one that was kept meanwhile is newer, and waits."""
+    def _written(self, documents: Iterable[Document]) -> None:
+        """Note that documents are on the disk; one that was kept meanwhile is newer, and waits."""
         with self._lock:
-            for table in tables:
-                key = table.student, table.name
-                if self._tables.get(key) is table:
+            for document in documents:
+                key = document.student, document.name
+                if self._documents.get(key) is document:
                     self._waiting.discard(key)
 
     def _fresh(self) -> ClassFile:

@@ -10,7 +10,7 @@ import msgspec
 from lacoc_client.design.learning.draft import NAME, Draft, read_draft
 from lacoc_client.design.learning.keeper import Keeper
 from lacoc_client.design.learning.rules import Rules
-from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.class_file import Document
 from lacoc_client.phases.evidence import Evidence, Named, Voted
 from lacoc_client.phases.phases import PHASES
 from lacoc_client.phases.progress import Progress, State, progress
@@ -80,11 +80,24 @@ class Diary:
         if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
+    def begin(self, evidence: Iterable[Evidence], documents: Iterable[Document]) -> None:
+        """Begin with what the file has of this student.
+
+        Args:
+            evidence: the student's evidence, in order.
+            documents: the student's documents.
+        """
+        self._is_read = True
+        self._evidence[:0] = evidence
+        self._progress = None
+        drafts = (read_draft(document) for document in documents if document.name == NAME)
+        self.draft = self.draft or next(drafts, None)
+
     async def add(self, *evidence: Evidence) -> None:
         """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
         if not evidence or self._is_forgotten:
             return
-        self._take(evidence)
+        self._evidence += evidence
         store = await self._opened()
         if store is not None and not self._is_forgotten:
             now_s = time.time()
@@ -95,7 +108,7 @@ class Diary:
         """Keep a vote, unless the student has voted in this poll before."""
         if self._is_forgotten or Voted(poll=poll) in self._evidence:
             return
-        self._take([Voted(poll=poll)])
+        self._evidence.append(Voted(poll=poll))
         store = await self._opened()
         if store is not None and not self._is_forgotten:
             vote = store.vote(self._student, poll, choice, time.time())
@@ -113,11 +126,11 @@ class Diary:
         if store is not None and not self._is_forgotten:
             store.keep(draft.kept(self._student, version, time.time()))
 
-    async def write(self, table: KeptTable) -> None:
+    async def write(self, document: Document) -> None:
         """Write data such as the student's token; if that fails, `Phases.trouble` says why."""
         store = await self._opened()
         if store is not None and not self._is_forgotten:
-            await _kept(asyncio.wrap_future(store.write(table)))
+            await _kept(asyncio.wrap_future(store.write(document)))
 
     async def forget(self) -> None:
         """Delete all that is kept of the student; nothing more is kept from now on.
@@ -194,19 +207,8 @@ class Diary:
                     kept = await asyncio.wrap_future(store.evidence(self._student))
                 except UserError:
                     return store  # `Keeper.trouble` says why
-                self._evidence[:0] = [one.evidence for one in kept]
-                self._progress = None
-                if self.draft is None:
-                    self.draft = _newest(store, self._student)
+                self.begin((one.evidence for one in kept), store.documents(self._student))
         return store
-
-    def _take(self, evidence: Iterable[Evidence]) -> None:
-        self._evidence += evidence
-
-
-def _newest(store: ClassStore, student: str) -> Draft | None:
-    drafts = [read_draft(table) for table in store.tables(student) if table.name == NAME]
-    return drafts[0] if drafts else None
 
 
 async def _kept(work: asyncio.Future[_T]) -> None:

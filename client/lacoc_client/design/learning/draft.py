@@ -4,7 +4,7 @@ import msgspec
 
 from lacoc_client.design.files import sent_gait
 from lacoc_client.design.table import FileTable
-from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.class_file import Document
 from lacoc_client.seat_files import SeatFiles, with_level_b
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
@@ -30,9 +30,9 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
     """Version of the file that the robot was made from, if that file lacks changes of the robot;
     "": the robot has no file; None: nothing is lacking."""
 
-    def kept(self, student: str, version: str, at_s: float) -> KeptTable:
+    def kept(self, student: str, version: str, at_s: float) -> Document:
         """Return the draft as a class file keeps it."""
-        return KeptTable(student, NAME, version, at_s, msgspec.msgpack.encode(self))
+        return Document(student, NAME, version, at_s, msgspec.msgpack.encode(self))
 
     def files(self) -> SeatFiles:
         """Return the files of a match: robot, postures and locomotion.
@@ -52,7 +52,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
             return files
 
 
-def read_draft(kept: KeptTable) -> Draft | None:
+def read_draft(kept: Document) -> Draft | None:
     """Decode a kept draft; None if it is of another version of this program."""
     try:
         return msgspec.msgpack.decode(kept.content, type=Draft)

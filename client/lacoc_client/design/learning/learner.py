@@ -113,11 +113,15 @@ class Learner:
         await self._diary.add(*evidence)
         return EditReply(guess=judged)
 
-    async def tried(self, asked: requests.TrialAsk, reply: TrialReply) -> None:
-        """Take in a trial, and judge the guesses that were made before it."""
+    async def tried(self, asked: requests.TrialAsk, reply: TrialReply) -> TrialFacts | None:
+        """Take in a trial, and judge the guesses that were made before it.
+
+        Returns:
+            What the trial showed; None: it is no evidence.
+        """
         facts = _facts(reply, asked.keys)
         if asked.table is None or facts is None:
-            return
+            return None
         before = self._last.get(asked.keys)
         self._last[asked.keys] = facts
         evidence: list[Evidence] = [
@@ -129,14 +133,18 @@ class Learner:
             elif before is not None:
                 evidence.append(Guessed(about="pace", said=guess.said, was=(pace(before, facts),)))
         await self._diary.add(*evidence)
+        return facts
 
-    async def compared(self, asked: requests.TrialAsk) -> bool:
-        """Compare the last trial of a key of level B with the same trial of the sample gait.
+    async def compared(self, asked: requests.TrialAsk, own: TrialFacts | None) -> bool:
+        """Compare a trial of a key of level B with the same trial of the sample gait.
+
+        Args:
+            asked: the trial.
+            own: what it showed, as from `tried`.
 
         Returns:
             Whether the comparison was kept as evidence.
         """
-        own = self._last.get(asked.keys)
         if asked.table is None or own is None or not own.keys[-1].startswith("B"):
             return False
         place = (asked.keys, asked.robot)
