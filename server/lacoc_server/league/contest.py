@@ -1,0 +1,329 @@
+"""A contest as its facts make it."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import msgspec
+
+from lacoc_server.league.facts import (
+    AnyFact,
+    Called,
+    Disqualified,
+    Drawn,
+    Entered,
+    FilesChanged,
+    NoShow,
+    OfMatch,
+    Planned,
+    Played,
+    Recalled,
+    Replaced,
+    RoundDrawn,
+    Withdrawn,
+    ordered,
+)
+from lacoc_server.league.formats.format import Format, Pair, Stage
+from lacoc_server.league.matches import Match, Rules, counting, fact_teams, resolve
+from lacoc_server.league.standings import Table
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+
+class Team(msgspec.Struct, frozen=True, kw_only=True):
+    """A team of the contest."""
+
+    name: str
+    files: str
+    """Hash of the files that it plays with."""
+    withdrawn: bool = False
+    disqualified: bool = False
+
+    @property
+    def gone(self) -> bool:
+        """Whether it plays no more."""
+        return self.withdrawn or self.disqualified
+
+
+class StageView(msgspec.Struct, frozen=True, kw_only=True):
+    """A stage with its matches and tables."""
+
+    name: str
+    format: str
+    stage: Stage
+    matches: tuple[Match, ...]
+    tables: tuple[Table, ...]
+    rounds_to_draw: int
+    """Rounds that are still to be drawn."""
+
+    @property
+    def may_draw(self) -> bool:
+        """Whether the next round can be drawn: some are left, and no drawn match is open."""
+        return self.rounds_to_draw > 0 and all(match.decided for match in self.matches)
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing is left to play or to draw."""
+        return self.rounds_to_draw == 0 and all(match.decided for match in self.matches)
+
+    @property
+    def ranking(self) -> tuple[str, ...]:
+        """The teams over all groups, the best first: the seeding of a stage that follows.
+
+        First all winners of groups, then all seconds, and so on; those of equal rank by points,
+        difference, points scored and seeding. Disqualified teams are left out.
+        """
+        rows = [row for table in self.tables for row in table.rows if not row.out]
+        seeds = {team: place for place, team in enumerate(self.stage.entries)}
+        return tuple(
+            row.team
+            for row in sorted(
+                rows,
+                key=lambda row: (
+                    row.rank,
+                    -row.points,
+                    row.conceded - row.scored,
+                    -row.scored,
+                    seeds[row.team],
+                ),
+            )
+        )
+
+
+class Unused(msgspec.Struct, frozen=True, kw_only=True):
+    """A fact that changes nothing, and why."""
+
+    fact: str
+    why: Phrase
+
+
+class Contest(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that follows from the facts."""
+
+    teams: tuple[Team, ...]
+    """In the order in which they entered."""
+    stages: tuple[StageView, ...]
+    """In the order in which they were drawn."""
+    running: tuple[Called, ...]
+    """Games that are on a court now."""
+    ended_ms: dict[str, tuple[str, int]]
+    """By team: the pairing of its newest game, and when that ended."""
+    unused: tuple[Unused, ...]
+
+    def stage(self, name: str) -> StageView:
+        """Return a stage.
+
+        Raises:
+            KeyError: if no stage of this name was drawn.
+        """
+        return {view.name: view for view in self.stages}[name]
+
+    def encoded(self) -> bytes:
+        """Return all of it as JSON; the same facts give the same bytes."""
+        return msgspec.json.encode(self, order="deterministic")
+
+
+def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
+    """Compute a contest from its facts.
+
+    Args:
+        facts: in any order; a fact that occurs twice counts once.
+        formats: the known formats by name.
+
+    Raises:
+        UserError: if two facts have the same id, or a stage has an unknown format or tie-break.
+    """
+    known = ordered(facts)
+    unused: dict[str, Phrase] = {}
+    teams = _teams(known, unused)
+    by_pairing: dict[str, list[OfMatch]] = {}
+    for fact in known:
+        if isinstance(fact, OfMatch):
+            by_pairing.setdefault(fact.pairing, []).append(fact)
+    stages = _stages(known, teams, by_pairing, formats, unused)
+    matches = {match.pairing.id: match for view in stages for match in view.matches}
+    for pairing, about in by_pairing.items():
+        _note_unused(matches.get(pairing), about, unused)
+    return Contest(
+        teams=tuple(teams.values()),
+        stages=tuple(stages),
+        running=_running(known, matches),
+        ended_ms=_ended(known),
+        unused=tuple(
+            Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused
+        ),
+    )
+
+
+def next_round(contest: Contest, name: str, formats: Mapping[str, Format]) -> tuple[Pair, ...]:
+    """Pair the next round of a stage.
+
+    Raises:
+        UserError: if no round can be drawn now.
+    """
+    view = contest.stage(name)
+    if not view.may_draw:
+        raise UserError(say("league.no-round", stage=name))
+    gone = {team.name for team in contest.teams if team.gone}
+    matches = {match.pairing.id: match for match in view.matches}
+    return formats[view.format].next_round(view.stage, matches, gone)
+
+
+def _teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Team]:
+    teams: dict[str, Team] = {}
+    for fact in facts:
+        if isinstance(fact, Entered):
+            if fact.team in teams:
+                unused[fact.id] = say("league.entered-twice", team=fact.team)
+            else:
+                teams[fact.team] = Team(name=fact.team, files=fact.files)
+        elif isinstance(fact, Withdrawn | Disqualified | FilesChanged):
+            if fact.team not in teams:
+                unused[fact.id] = say("league.unknown-team", team=fact.team)
+                continue
+            team = teams[fact.team]
+            if isinstance(fact, FilesChanged):
+                team = msgspec.structs.replace(team, files=fact.files)
+            elif isinstance(fact, Withdrawn):
+                team = msgspec.structs.replace(team, withdrawn=True)
+            else:
+                team = msgspec.structs.replace(team, disqualified=True)
+            teams[fact.team] = team
+    return teams
+
+
+def _stages(
+    facts: Sequence[AnyFact],
+    teams: Mapping[str, Team],
+    by_pairing: Mapping[str, Sequence[OfMatch]],
+    formats: Mapping[str, Format],
+    unused: dict[str, Phrase],
+) -> list[StageView]:
+    plans: dict[str, Planned] = {}
+    stages: dict[str, tuple[str, Stage]] = {}
+    for fact in facts:
+        if isinstance(fact, Planned):
+            if fact.stage in stages:
+                unused[fact.id] = say("league.drawn-already", stage=fact.stage)
+            else:
+                plans[fact.stage] = fact
+        elif isinstance(fact, Drawn):
+            why = _cannot_draw(fact, plans, stages, teams)
+            if why is not None:
+                unused[fact.id] = why
+                continue
+            plan = plans[fact.stage]
+            if plan.format not in formats:
+                raise UserError(say("league.unknown-format", format=plan.format, known=[*formats]))
+            stage = Stage(name=fact.stage, settings=plan.settings, entries=fact.entries)
+            stages[fact.stage] = (plan.format, stage)
+        elif isinstance(fact, RoundDrawn):
+            why = _cannot_draw_round(fact, stages, formats)
+            if why is not None:
+                unused[fact.id] = why
+                continue
+            format_name, stage = stages[fact.stage]
+            drawn = (*stage.drawn, fact.pairs)
+            stages[fact.stage] = (format_name, msgspec.structs.replace(stage, drawn=drawn))
+    return [_view(name, stage, formats[name], teams, by_pairing) for name, stage in stages.values()]
+
+
+def _view(
+    format_name: str,
+    stage: Stage,
+    how: Format,
+    teams: Mapping[str, Team],
+    by_pairing: Mapping[str, Sequence[OfMatch]],
+) -> StageView:
+    gone = {team.name for team in teams.values() if team.gone}
+    out = {team.name for team in teams.values() if team.disqualified}
+    rules = Rules(
+        settings=stage.settings, entries=stage.entries, decisive=how.decisive, balanced=how.balanced
+    )
+    matches = resolve(how.pairings(stage), by_pairing, gone, rules)
+    return StageView(
+        name=stage.name,
+        format=format_name,
+        stage=stage,
+        matches=tuple(matches.values()),
+        tables=how.tables(stage, matches, out),
+        rounds_to_draw=max(0, how.rounds(stage) - len(stage.drawn)),
+    )
+
+
+def _cannot_draw(
+    fact: Drawn,
+    plans: Mapping[str, Planned],
+    stages: Mapping[str, object],
+    teams: Mapping[str, Team],
+) -> Phrase | None:
+    if fact.stage in stages:
+        return say("league.drawn-already", stage=fact.stage)
+    if fact.stage not in plans:
+        return say("league.not-planned", stage=fact.stage)
+    for team in fact.entries:
+        if team not in teams:
+            return say("league.unknown-team", team=team)
+    if len({*fact.entries}) != len(fact.entries):
+        return say("league.team-twice", stage=fact.stage)
+    return None
+
+
+def _cannot_draw_round(
+    fact: RoundDrawn, stages: Mapping[str, tuple[str, Stage]], formats: Mapping[str, Format]
+) -> Phrase | None:
+    if fact.stage not in stages:
+        return say("league.not-drawn", stage=fact.stage)
+    name, stage = stages[fact.stage]
+    if fact.round != len(stage.drawn) + 1 or fact.round > formats[name].rounds(stage):
+        return say("league.other-round", stage=fact.stage, round=fact.round)
+    teams = [team for pair in fact.pairs for team in pair]
+    if len({*teams}) != len(teams) or not {*teams} <= {*stage.entries}:
+        return say("league.wrong-pairs", stage=fact.stage, round=fact.round)
+    return None
+
+
+def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str, Phrase]) -> None:
+    """Note the results and decisions that a match does not use."""
+    used = {game.fact for game in match.games} if match else set()
+    teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
+    counted, _, _ = counting(teams, about)
+    for fact in about:
+        if match is None:
+            unused[fact.id] = say("league.unknown-pairing", pairing=fact.pairing)
+        elif isinstance(fact, NoShow):
+            if fact.team not in teams:
+                unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
+        elif fact_teams(fact) and {*fact_teams(fact)} != {*teams}:
+            unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
+        elif isinstance(fact, Played | Replaced) and fact.id not in used:
+            other = fact.game not in counted or counted[fact.game].fact != fact.id
+            unused[fact.id] = (
+                say("league.result-replaced", pairing=fact.pairing, game=fact.game)
+                if other
+                else say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
+            )
+
+
+def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Called, ...]:
+    """Find the games that are on a court: called, and neither recalled nor ended since."""
+    running: dict[str, Called] = {}
+    for fact in facts:
+        if isinstance(fact, Called):
+            running[fact.court] = fact
+        elif isinstance(fact, Recalled | Played):
+            running = {
+                court: call
+                for court, call in running.items()
+                if (call.pairing, call.game) != (fact.pairing, fact.game)
+            }
+    return tuple(running[court] for court in sorted(running))
+
+
+def _ended(facts: Sequence[AnyFact]) -> dict[str, tuple[str, int]]:
+    """Find the end of each team's newest game."""
+    ended: dict[str, tuple[str, int]] = {}
+    for fact in facts:
+        if isinstance(fact, Played):
+            for team in fact.teams:
+                if fact.at_ms >= ended.get(team, ("", 0))[1]:
+                    ended[team] = (fact.pairing, fact.at_ms)
+    return ended
