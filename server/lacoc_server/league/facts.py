@@ -102,7 +102,7 @@ class RoundDrawn(Fact, frozen=True, kw_only=True, tag="round-drawn"):
 
     stage: str
     round: Annotated[int, msgspec.Meta(ge=1)]
-    pairs: tuple[tuple[Name, Name] | tuple[Name], ...]
+    pairs: tuple[Annotated[tuple[Name, ...], msgspec.Meta(min_length=1, max_length=2)], ...]
     """The left team and the right team; a team alone has a bye."""
 
 

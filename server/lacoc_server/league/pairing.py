@@ -46,6 +46,8 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     winner_place: int | None = None
     """Final place of the winner, if the pairing decides it."""
     loser_place: int | None = None
-    """Best place of those who lose in this round; they leave the stage here."""
+    """Best place of those who leave the stage in this round."""
+    loser_goes_on: bool = False
+    """True: only if nobody wins does anybody leave here; otherwise the loser has another match."""
     only_if_second_won: str = ""
     """A pairing; this one is played only if the second place won there."""

@@ -10,7 +10,7 @@ from lacoc_server.league.matches import Match
 from lacoc_server.league.pairing import Pairing
 from lacoc_server.league.standings import Table
 
-Pair = tuple[str, str] | tuple[str]
+Pair = tuple[str, ...]
 """The left team and the right team of a pairing that is drawn; a team alone has a bye."""
 
 

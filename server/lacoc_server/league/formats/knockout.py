@@ -73,9 +73,17 @@ def _places(matches: Collection[Match]) -> dict[str, int]:
         if match.pairing.winner_place and match.winner:
             places[match.winner] = match.pairing.winner_place
         if match.pairing.loser_place:
-            losers = (match.loser,) if match.winner else match.teams
-            places.update({team: match.pairing.loser_place for team in losers if team})
+            places.update(dict.fromkeys(_leaving(match), match.pairing.loser_place))
     return places
+
+
+def _leaving(match: Match) -> list[str]:
+    """Return the teams that leave the stage after a decided match."""
+    if match.winner:
+        losers = () if match.pairing.loser_goes_on else (match.loser,)
+    else:
+        losers = match.teams
+    return [team for team in losers if team]
 
 
 def seeded(entries: Sequence[str]) -> list[AnySource]:
@@ -110,8 +118,9 @@ def single_bracket(stage: Stage) -> Iterator[Pairing]:
 def _winners(
     stage: Stage,
     places: Sequence[AnySource],
-    loser_place: Callable[[int], int | None],
+    loser_place: Callable[[int], int],
     final_place: int | None,
+    loser_goes_on: bool = False,
 ) -> Iterator[Pairing]:
     """Yield the rounds of the winners' bracket."""
     sources, number = list(places), 1
@@ -125,6 +134,7 @@ def _winners(
                 sources=pair,
                 winner_place=final_place if len(pairs) == 1 else None,
                 loser_place=loser_place(number),
+                loser_goes_on=loser_goes_on,
             )
         sources = [WinnerOf(stage.id("w", number, order)) for order in range(1, len(pairs) + 1)]
         number += 1
@@ -138,7 +148,7 @@ def double_bracket(stage: Stage) -> Iterator[Pairing]:
     """
     places = seeded(stage.entries)
     last = len(places).bit_length() - 1
-    yield from _winners(stage, places, lambda number: None, final_place=None)
+    yield from _winners(stage, places, lambda number: _fall(number, last), None, True)
     finalist: AnySource = LoserOf(stage.id("w", 1, 1))
     if last > 1:
         yield from _losers(stage, last)
@@ -158,6 +168,13 @@ def double_bracket(stage: Stage) -> Iterator[Pairing]:
             loser_place=2,
             only_if_second_won=final,
         )
+
+
+def _fall(number: int, last: int) -> int:
+    """Return the place of those who lose where the losers of a winners' round arrive."""
+    if number > 1:
+        return 2 ** (last - number + 1) + 1
+    return 2 if last == 1 else 3 * 2 ** (last - 2) + 1
 
 
 def _losers(stage: Stage, last: int) -> Iterator[Pairing]:

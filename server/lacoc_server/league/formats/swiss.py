@@ -2,9 +2,11 @@
 
 Rounds are drawn one by one (`facts.RoundDrawn`), so a later correction changes points but not who
 has met. The pairs are those of the FIDE (Dutch) system, with one rule that is stricter: a team that
-sat left once more than right must sit right.
+sat left once more than right must sit right. Where the system knows no way out, and in stages too
+large for its engine, a matching breaks as few rules as possible.
 """
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import msgspec
@@ -17,6 +19,9 @@ from lacoc_server.league.pairing import Bye, Entry, Pairing
 from lacoc_server.league.standings import DRAW, WIN, Table, counted, standings
 
 ORDER = ("points", "buchholz-cut", "buchholz", "sonneborn", "direct", "difference", "seed")
+
+LARGEST = 60
+"""Most teams that the engine pairs: 60 take a second, 200 some minutes."""
 
 
 class Player(msgspec.Struct, kw_only=True):
@@ -133,15 +138,14 @@ def seated(one: Player, other: Player) -> tuple[str, str]:
 def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
     """Pair the players of a round; with an odd number one has a bye.
 
-    The engine knows no way out when its rules can't all be kept, and then its pairs break one of
-    them. Then a matching breaks as few as possible.
+    When the rules can't all be kept, the engine's pairs break any of them; the matching does not.
 
     Returns:
         The pairs in the order of their tables, a bye last.
     """
     if not players:
         return []
-    found = dutch(players, round_number)
+    found = dutch(players, round_number) if len(players) <= LARGEST else []
     if not _legal(found, players):
         found = fewest_faults(players)
     return sorted(
@@ -226,30 +230,40 @@ def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
 def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
     """Pair so that fewest meet again, then fewest have two byes, then sides differ least.
 
-    Among those, teams with as equal points as possible meet.
+    Then teams with as equal points as possible meet, and of those with equal points the upper half
+    meets the lower half.
     """
+    ordered = sorted(players, key=lambda player: (-player.points, player.number))
+    equals = Counter(player.points for player in players)
     graph = networkx.Graph()
-    ordered = sorted(players, key=lambda player: player.number)
     many = len(players) + 1
-    most = 4 * (max(player.points for player in players) + 1) ** 2 * many
     for at, one in enumerate(ordered):
         if len(players) % 2:
-            cost = _cost((one,), many, most) + one.points**2
-            graph.add_edge(at, len(players), weight=-cost)
+            graph.add_edge(at, len(ordered), weight=-_cost((one,), one.points, 0, many))
         for to in range(at + 1, len(ordered)):
             other = ordered[to]
-            cost = _cost((one, other), many, most) + (one.points - other.points) ** 2
-            graph.add_edge(at, to, weight=-cost)
+            apart = one.points - other.points
+            fold = 0 if apart else abs(to - at - equals[one.points] // 2)
+            graph.add_edge(at, to, weight=-_cost((one, other), apart, fold, many))
     matching = networkx.max_weight_matching(graph, maxcardinality=True)
     return [
         tuple(ordered[place] for place in sorted(pair) if place < len(ordered)) for pair in matching
     ]
 
 
-def _cost(pair: Sequence[Player], many: int, most: int) -> int:
-    """Weigh the faults of a pair so that no number of lesser ones is worth a greater one."""
+def _cost(pair: Sequence[Player], apart: int, fold: int, many: int) -> int:
+    """Weigh a pair so that no number of lesser faults is worth a greater one.
+
+    Args:
+        pair: the pair.
+        apart: how many points its teams are apart.
+        fold: how far they are from half of those with equal points.
+        many: more than the number of teams.
+    """
     again, bye, side = faults(pair)
-    return ((again * many + bye) * many + side) * most
+    most = 4 * many**2  # of points in a stage with more rounds than teams
+    serious = (again * many + bye) * many + side
+    return (serious * many * most**2 + apart**2) * many**2 + fold
 
 
 FORMAT = Swiss()
