@@ -1,7 +1,7 @@
 """Ratings of teams on the Elo scale, with intervals and the advantage of the left side."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import msgspec
@@ -53,9 +53,7 @@ def ratings(games: Iterable[Rated]) -> Ratings:
     whenever they were played. The games are sorted first, so their order does not matter.
     """
     played = sorted(games)
-    model = WHR(
-        {"draw_rate": None} if any(not game.winner for game in played) else {"pinned_draw": 0.0}
-    )
+    model = WHR(_draws(played))
     for game in played:
         result = "B" if game.winner == game.left else "W" if game.winner == game.right else "D"
         model.create_game(game.left, game.right, result, 1, _SIDE)
@@ -80,3 +78,10 @@ def ratings(games: Iterable[Rated]) -> Ratings:
         teams=tuple(sorted(teams, key=lambda one: (-one.elo, one.team))),
         side_elo=round(_ELO * math.log(model.handicap_gamma[_SIDE]), 1),
     )
+
+
+def _draws(games: Sequence[Rated]) -> dict[str, float]:
+    """Say what is assumed of draws where the games can't tell: none without one, else half."""
+    if all(game.winner for game in games):
+        return {"pinned_draw": 0.0}
+    return {} if any(game.winner for game in games) else {"draw_rate": 0.5}
