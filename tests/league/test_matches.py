@@ -221,7 +221,7 @@ def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> Non
     assert len(known) == (size - 1 if bracket is single_bracket else 2 * size - 1)
 
 
-def test_groups_are_dealt_to_and_fro() -> None:
+def test_groups_are_dealt_in_snake_order() -> None:
     """Groups are as strong as each other by seeding."""
     stage = Stage(name="s", settings=Settings(groups=3), entries=tuple("abcdefgh"))
     assert groups(stage) == {"a": ("a", "f", "g"), "b": ("b", "e", "h"), "c": ("c", "d")}

@@ -79,11 +79,13 @@ def _places(matches: Collection[Match]) -> dict[str, int]:
 
 def _leaving(match: Match) -> list[str]:
     """Return the teams that leave the stage after a decided match."""
-    if match.winner:
-        losers = () if match.pairing.loser_goes_on else (match.loser,)
+    if not match.winner:
+        leaving = match.teams
+    elif match.pairing.loser_goes_on:
+        return []
     else:
-        losers = match.teams
-    return [team for team in losers if team]
+        leaving = (match.loser, None)
+    return [team for team in leaving if team]
 
 
 def seeded(entries: Sequence[str]) -> list[AnySource]:
@@ -173,8 +175,8 @@ def double_bracket(stage: Stage) -> Iterator[Pairing]:
 def _fall(number: int, last: int) -> int:
     """Return the place of those who lose where the losers of a winners' round arrive."""
     if number > 1:
-        return 2 ** (last - number + 1) + 1
-    return 2 if last == 1 else 3 * 2 ** (last - 2) + 1
+        return (1 << (last - number + 1)) + 1
+    return 2 if last == 1 else 3 * (1 << (last - 2)) + 1
 
 
 def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
