@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from lacoc_server.league.contest import Contest, compute, next_round
+from lacoc_server.league.contest import Changes, Contest, changes, compute, next_round
 from lacoc_server.league.facts import (
     AnyFact,
     Called,
@@ -164,7 +164,8 @@ def test_a_corrected_semi_final_reopens_the_final() -> None:
     facts = Facts("single-knockout", "abcd")
     facts.play("s:w1.1", 1, "a", "d", 2, 0).play("s:w1.2", 1, "b", "c", 2, 0)
     facts.play("s:w2.1", 1, "a", "b", 2, 0)
-    assert facts.contest.stage("s").ranking[:2] == ("a", "b")
+    before = facts.contest
+    assert before.stage("s").ranking[:2] == ("a", "b")
     facts.add(
         Replaced,
         pairing="s:w1.1",
@@ -180,6 +181,10 @@ def test_a_corrected_semi_final_reopens_the_final() -> None:
         "league.result-replaced",
         "league.other-teams",
     ]
+    what = changes(before, facts.contest)
+    assert [now.pairing.id for _, now in what.matches] == ["s:w1.1", "s:w2.1"]
+    assert ("s", "a", 1, 3) in what.ranks
+    assert changes(before, before) == Changes(matches=(), ranks=())
 
 
 def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:

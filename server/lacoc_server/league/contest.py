@@ -100,6 +100,48 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.json.encode(self, order="deterministic")
 
 
+class Changes(msgspec.Struct, frozen=True, kw_only=True):
+    """What one more fact would change."""
+
+    matches: tuple[tuple[Match | None, Match | None], ...]
+    """Each match that has other teams, another state or another winner: before and after."""
+    ranks: tuple[tuple[str, str, int, int], ...]
+    """Each team with another rank: stage, team, rank before and after."""
+
+
+def changes(before: Contest, after: Contest) -> Changes:
+    """Compare two contests, such as before and after a decision that is not yet made."""
+    was, now = _by_pairing(before), _by_pairing(after)
+    old, new = _ranks(before), _ranks(after)
+    return Changes(
+        matches=tuple(
+            (was.get(name), now.get(name))
+            for name in {**was, **now}
+            if _outcome(was.get(name)) != _outcome(now.get(name))
+        ),
+        ranks=tuple(
+            (*key, old[key], new[key]) for key in old if key in new and old[key] != new[key]
+        ),
+    )
+
+
+def _by_pairing(contest: Contest) -> dict[str, Match]:
+    return {match.pairing.id: match for view in contest.stages for match in view.matches}
+
+
+def _outcome(match: Match | None) -> tuple[object, ...]:
+    return (match.teams, match.state, match.winner) if match else ()
+
+
+def _ranks(contest: Contest) -> dict[tuple[str, str], int]:
+    return {
+        (view.name, row.team): row.rank
+        for view in contest.stages
+        for table in view.tables
+        for row in table.rows
+    }
+
+
 def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
     """Compute a contest from its facts.
 
