@@ -1,6 +1,7 @@
 """What facts mean for matches, brackets and the schedule: one short table each."""
 
 import itertools
+from random import Random
 
 import pytest
 
@@ -30,6 +31,7 @@ from lacoc_server.league.formats.installed import FORMATS
 from lacoc_server.league.formats.knockout import double_bracket, single_bracket
 from lacoc_server.league.formats.round_robin import groups
 from lacoc_server.league.matches import Match
+from lacoc_server.league.pairing import Entry, WinnerOf
 from lacoc_server.league.schedule import assign
 from lacoc_shared.mistakes import UserError
 
@@ -331,3 +333,28 @@ def test_every_team_meets_every_other() -> None:
                 if name in [one.team for one in pairing.sources]
             ]
             assert abs(2 * sum(sides) - len(sides)) <= 1
+
+
+@pytest.mark.parametrize("teams", [8, 16, 32, 64])
+def test_losers_meet_again_late(teams: int) -> None:
+    """In the first half of the losers' bracket nobody meets again, whoever wins."""
+    names = tuple(f"t{number}" for number in range(teams))
+    stage = Stage(name="s", settings=Settings(), entries=names)
+    half = teams.bit_length() - 2  # of the rounds of the losers' bracket
+    for seed in range(30):
+        random = Random(seed)
+        won: dict[str, str] = {}
+        lost: dict[str, str] = {}
+        met: set[frozenset[str]] = set()
+        for pairing in double_bracket(stage):
+            pair = [
+                source.team
+                if isinstance(source, Entry)
+                else (won if isinstance(source, WinnerOf) else lost)[source.pairing]
+                for source in pairing.sources
+            ]
+            if pairing.section == "l" and pairing.round <= half:
+                assert frozenset(pair) not in met
+            met.add(frozenset(pair))
+            random.shuffle(pair)
+            won[pairing.id], lost[pairing.id] = pair

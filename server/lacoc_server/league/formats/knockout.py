@@ -146,7 +146,7 @@ def double_bracket(stage: Stage) -> Iterator[Pairing]:
     """Yield the pairings of a double knockout: winners' bracket, losers' bracket, finals.
 
     In odd rounds of the losers' bracket its winners meet each other; in even rounds they meet those
-    who fall from the winners' bracket, in turned order so that teams meet again as late as can be.
+    who fall from the winners' bracket, turned so that nobody meets again in the first half of it.
     """
     places = seeded(stage.entries)
     last = len(places).bit_length() - 1
