@@ -82,6 +82,8 @@ CLIENT = "A client needs nothing of a court's"
         ("server/lacoc_server/doors/inbox.py", "import lacoc_server.match.match", {BEAT}),
         ("server/lacoc_server/doors/inbox.py", "import secrets", {PURE}),
         ("server/lacoc_server/court/health.py", "import time", {PURE}),
+        ("server/lacoc_server/league/schedule.py", "import time", {PURE}),
+        ("server/lacoc_server/league/facts.py", "import lacoc_server.match.match", {BEAT}),
         ("shared/lacoc_shared/messages.py", "import lacoc_shared.gait.tables", {CONTRACT}),
         ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
         ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),

@@ -1,9 +1,15 @@
 """Who meets whom when many players meet, and where everybody stands."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import msgspec
+
+from lacoc_server.league.formats.round_robin import circle_round
+from lacoc_server.league.standings import Counted
+from lacoc_server.league.standings import standings as league_standings
+
+_ORDER = ("wins", "fewest-lost", "scored", "seed")
 
 
 class Played(NamedTuple):
@@ -43,27 +49,7 @@ def pairings(players: int, rounds: int) -> list[tuple[int, int]]:
         The matches in their order: the player of the left seat and of the right one, by number from
         0.
     """
-    return [pair for number in range(rounds) for pair in _round(players, number)]
-
-
-def _round(players: int, number: int) -> Iterator[tuple[int, int]]:
-    """Yield the matches of a round.
-
-    All players but the last of an even number sit on a circle. In each round another one of them is
-    the pivot: players at the same distance from the pivot meet, and the pivot meets the last
-    player, or rests. A player's distance from the pivot changes by one in each round, so whoever
-    sits left at odd distances and right at even ones changes the seat each time. The pivot takes
-    the seat that keeps its own matches even: left in even rounds.
-    """
-    circle = players - 1 + players % 2  # odd; after so many rounds everybody has met everybody
-    lap, pivot = divmod(number, circle)
-    if lap % 2:
-        pivot = circle - 1 - pivot
-    for distance in range(1, circle // 2 + 1):
-        after, before = (pivot + distance) % circle, (pivot - distance) % circle
-        yield (after, before) if (distance + lap) % 2 else (before, after)
-    if circle < players:
-        yield (pivot, circle) if (pivot + lap) % 2 == 0 else (circle, pivot)
+    return [pair for number in range(rounds) for pair in circle_round(players, number)]
 
 
 def standings(players: Sequence[str], matches: Iterable[Played]) -> list[Standing]:
@@ -76,14 +62,9 @@ def standings(players: Sequence[str], matches: Iterable[Played]) -> list[Standin
     Returns:
         The best player first: the one with most matches won, then fewest lost, then most points.
     """
-    won, drawn, lost, points = (dict.fromkeys(players, 0) for _ in range(4))
-    for match in matches:
-        for seat, (name, score) in enumerate(zip(match.players, match.scores, strict=True)):
-            count = drawn if match.winner is None else won if match.winner == seat else lost
-            count[name] += 1
-            points[name] += score
-    table = [
-        Standing(name=name, won=won[name], drawn=drawn[name], lost=lost[name], points=points[name])
-        for name in won
+    counted = [Counted(match.players, match.scores, match.winner) for match in matches]
+    table = league_standings([*dict.fromkeys(players)], counted, _ORDER)
+    return [
+        Standing(name=row.team, won=row.won, drawn=row.drawn, lost=row.lost, points=row.scored)
+        for row in table.rows
     ]
-    return sorted(table, key=lambda one: (-one.won, one.lost, -one.points))

@@ -22,6 +22,7 @@ FILES = (
     "phases",
     "class",
     "tournament",
+    "league",
     "commands",
 )
 ON_PAGES = FILES[:-1]

@@ -1,0 +1,262 @@
+"""A contest as its facts make it."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import msgspec
+
+from lacoc_server.league.draws import Team, drawn_stages, entered_teams
+from lacoc_server.league.facts import (
+    AnyFact,
+    Called,
+    NoShow,
+    OfMatch,
+    Played,
+    Recalled,
+    Replaced,
+    ordered,
+)
+from lacoc_server.league.formats.format import Format, Pair, Stage
+from lacoc_server.league.matches import Match, Rules, counting, fact_teams, resolve
+from lacoc_server.league.standings import Table
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+
+class StageView(msgspec.Struct, frozen=True, kw_only=True):
+    """A stage with its matches and tables."""
+
+    name: str
+    format: str
+    stage: Stage
+    matches: tuple[Match, ...]
+    tables: tuple[Table, ...]
+    rounds_to_draw: int
+    """Rounds that are still to be drawn."""
+
+    @property
+    def may_draw(self) -> bool:
+        """Whether the next round can be drawn: some are left, and no drawn match is open."""
+        return self.rounds_to_draw > 0 and all(match.decided for match in self.matches)
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing is left to play or to draw."""
+        return self.rounds_to_draw == 0 and all(match.decided for match in self.matches)
+
+    @property
+    def ranking(self) -> tuple[str, ...]:
+        """The teams over all groups, the best first: the seeding of a stage that follows.
+
+        First all winners of groups, then all seconds, and so on; those of equal rank by points,
+        difference, points scored and seeding. Disqualified teams are left out.
+        """
+        rows = [row for table in self.tables for row in table.rows if not row.out]
+        seeds = {team: place for place, team in enumerate(self.stage.entries)}
+        return tuple(
+            row.team
+            for row in sorted(
+                rows,
+                key=lambda row: (
+                    row.rank,
+                    -row.points,
+                    row.conceded - row.scored,
+                    -row.scored,
+                    seeds[row.team],
+                ),
+            )
+        )
+
+
+class Unused(msgspec.Struct, frozen=True, kw_only=True):
+    """A fact that changes nothing, and why."""
+
+    fact: str
+    why: Phrase
+
+
+class Contest(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that follows from the facts."""
+
+    teams: tuple[Team, ...]
+    """In the order in which they entered."""
+    stages: tuple[StageView, ...]
+    """In the order in which they were drawn."""
+    running: tuple[Called, ...]
+    """Games that are on a court now."""
+    ended_ms: dict[str, tuple[str, int]]
+    """By team: the pairing of its newest game, and when that ended."""
+    unused: tuple[Unused, ...]
+
+    def stage(self, name: str) -> StageView:
+        """Return a stage.
+
+        Raises:
+            KeyError: if no stage of this name was drawn.
+        """
+        return {view.name: view for view in self.stages}[name]
+
+    def encoded(self) -> bytes:
+        """Return all of it as JSON; the same facts give the same bytes."""
+        return msgspec.json.encode(self, order="deterministic")
+
+
+class Changes(msgspec.Struct, frozen=True, kw_only=True):
+    """What one more fact would change."""
+
+    matches: tuple[tuple[Match | None, Match | None], ...]
+    """Each match that has other teams, another state or another winner: before and after."""
+    ranks: tuple[tuple[str, str, int, int], ...]
+    """Each team with another rank: stage, team, rank before and after."""
+
+
+def changes(before: Contest, after: Contest) -> Changes:
+    """Compare two contests, such as before and after a decision that is not yet made."""
+    was, now = _by_pairing(before), _by_pairing(after)
+    old, new = _ranks(before), _ranks(after)
+    return Changes(
+        matches=tuple(
+            (was.get(name), now.get(name))
+            for name in {**was, **now}
+            if _outcome(was.get(name)) != _outcome(now.get(name))
+        ),
+        ranks=tuple(
+            (*key, old[key], new[key]) for key in old if key in new and old[key] != new[key]
+        ),
+    )
+
+
+def _by_pairing(contest: Contest) -> dict[str, Match]:
+    return {match.pairing.id: match for view in contest.stages for match in view.matches}
+
+
+def _outcome(match: Match | None) -> tuple[object, ...]:
+    return (match.teams, match.state, match.winner) if match else ()
+
+
+def _ranks(contest: Contest) -> dict[tuple[str, str], int]:
+    return {
+        (view.name, row.team): row.rank
+        for view in contest.stages
+        for table in view.tables
+        for row in table.rows
+    }
+
+
+def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
+    """Compute a contest from its facts.
+
+    Args:
+        facts: in any order; a fact that occurs twice counts once.
+        formats: the known formats by name.
+
+    Raises:
+        UserError: if two facts have the same id, or a stage has an unknown format or tie-break.
+    """
+    known = ordered(facts)
+    unused: dict[str, Phrase] = {}
+    teams = entered_teams(known, unused)
+    by_pairing: dict[str, list[OfMatch]] = {}
+    for fact in known:
+        if isinstance(fact, OfMatch):
+            by_pairing.setdefault(fact.pairing, []).append(fact)
+    stages = [
+        _view(name, stage, formats[name], teams, by_pairing)
+        for name, stage in drawn_stages(known, teams, formats, unused)
+    ]
+    matches = {match.pairing.id: match for view in stages for match in view.matches}
+    for pairing, about in by_pairing.items():
+        _note_unused(matches.get(pairing), about, unused)
+    return Contest(
+        teams=tuple(teams.values()),
+        stages=tuple(stages),
+        running=_running(known, matches),
+        ended_ms=_ended(known),
+        unused=tuple(
+            Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused
+        ),
+    )
+
+
+def next_round(contest: Contest, name: str, formats: Mapping[str, Format]) -> tuple[Pair, ...]:
+    """Pair the next round of a stage.
+
+    Raises:
+        UserError: if no round can be drawn now.
+    """
+    view = contest.stage(name)
+    if not view.may_draw:
+        raise UserError(say("league.no-round", stage=name))
+    gone = {team.name for team in contest.teams if team.gone}
+    matches = {match.pairing.id: match for match in view.matches}
+    return formats[view.format].next_round(view.stage, matches, gone)
+
+
+def _view(
+    format_name: str,
+    stage: Stage,
+    how: Format,
+    teams: Mapping[str, Team],
+    by_pairing: Mapping[str, Sequence[OfMatch]],
+) -> StageView:
+    gone = {team.name for team in teams.values() if team.gone}
+    out = {team.name for team in teams.values() if team.disqualified}
+    rules = Rules(
+        settings=stage.settings, entries=stage.entries, decisive=how.decisive, balanced=how.balanced
+    )
+    matches = resolve(how.pairings(stage), by_pairing, gone, rules)
+    return StageView(
+        name=stage.name,
+        format=format_name,
+        stage=stage,
+        matches=tuple(matches.values()),
+        tables=how.tables(stage, matches, out),
+        rounds_to_draw=max(0, how.rounds(stage) - len(stage.drawn)),
+    )
+
+
+def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str, Phrase]) -> None:
+    """Note the results and decisions that a match does not use."""
+    used = {game.fact for game in match.games} if match else set()
+    teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
+    counted, _, _ = counting(teams, about)
+    for fact in about:
+        if match is None:
+            unused[fact.id] = say("league.unknown-pairing", pairing=fact.pairing)
+        elif isinstance(fact, NoShow):
+            if fact.team not in teams:
+                unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
+        elif fact_teams(fact) and {*fact_teams(fact)} != {*teams}:
+            unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
+        elif isinstance(fact, Played | Replaced) and fact.id not in used:
+            other = fact.game not in counted or counted[fact.game].fact != fact.id
+            unused[fact.id] = (
+                say("league.result-replaced", pairing=fact.pairing, game=fact.game)
+                if other
+                else say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
+            )
+
+
+def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Called, ...]:
+    """Find the games that are on a court: called, and neither recalled nor ended since."""
+    running: dict[str, Called] = {}
+    for fact in facts:
+        if isinstance(fact, Called):
+            running[fact.court] = fact
+        elif isinstance(fact, Recalled | Played):
+            running = {
+                court: call
+                for court, call in running.items()
+                if (call.pairing, call.game) != (fact.pairing, fact.game)
+            }
+    return tuple(running[court] for court in sorted(running))
+
+
+def _ended(facts: Sequence[AnyFact]) -> dict[str, tuple[str, int]]:
+    """Find the end of each team's newest game."""
+    ended: dict[str, tuple[str, int]] = {}
+    for fact in facts:
+        if isinstance(fact, Played):
+            for team in fact.teams:
+                if fact.at_ms >= ended.get(team, ("", 0))[1]:
+                    ended[team] = (fact.pairing, fact.at_ms)
+    return ended

@@ -1,0 +1,224 @@
+"""The facts of a contest: what happened and what was decided, each appended once.
+
+A fact has an id, and a number that is its place among the facts. It may arrive in any order, and
+more than once: `ordered` gives the same facts again. docs/contest.md says what each fact means.
+"""
+
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal
+
+import msgspec
+
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+VERSION = 1
+"""Version of the layout of facts."""
+
+Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
+Outcome = Literal["left", "right", "draw", "void"]
+"""Who won a game, by seat. "void": the game counts for nobody and must be played again."""
+
+
+class Fact(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, tag_field="fact"):
+    """What all facts have."""
+
+    id: Name
+    """Names the fact; unique in the contest."""
+    number: Annotated[int, msgspec.Meta(ge=0)]
+    """Place of the fact among all facts; equal numbers are ordered by id."""
+    at_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
+    """When it happened, in milliseconds since 1970, UTC."""
+
+
+class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
+    """A team entered with these files."""
+
+    team: Name
+    files: str = ""
+    """Hash of the robot file and the gait files."""
+
+
+class Withdrawn(Fact, frozen=True, kw_only=True, tag="withdrawn"):
+    """A team leaves; its opponents win what it has not played."""
+
+    team: Name
+    reason: str = ""
+
+
+class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
+    """A team is expelled; as withdrawn, and it is ranked last."""
+
+    team: Name
+    reason: str = ""
+
+
+class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
+    """A team may use other files although entries are closed."""
+
+    team: Name
+    files: str
+    reason: str
+
+
+class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """How a stage is played. A format reads what it needs."""
+
+    games: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
+    """Best of so many games; the sides are swapped after each game."""
+    extra_games: Annotated[int, msgspec.Meta(ge=0, le=9)] = 1
+    """Most games more while a match of a knockout is level."""
+    rounds: Annotated[int, msgspec.Meta(ge=0, le=999)] = 0
+    """Number of rounds; 0: the format's own number."""
+    groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
+    """Number of groups of a round robin."""
+    third_place: bool = False
+    """True: the losers of the semi-finals of a single knockout play for place 3."""
+    reset: bool = True
+    """True: who comes from the losers' side must win two finals of a double knockout."""
+    tie_breaks: tuple[str, ...] = ()
+    """Codes that order teams with equal points; empty: the format's own list."""
+    options: dict[str, Any] = {}
+    """Entries for formats of others."""
+
+
+class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
+    """A stage will be played in this format. The newest plan before the draw counts."""
+
+    stage: Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,31}$")]
+    format: Name
+    settings: Settings = Settings()
+
+
+class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
+    """A stage begins with these teams; their order is their seeding, the best first."""
+
+    stage: str
+    entries: tuple[Name, ...]
+
+
+class RoundDrawn(Fact, frozen=True, kw_only=True, tag="round-drawn"):
+    """A round of a Swiss stage begins with these pairs. A later correction does not change them."""
+
+    stage: str
+    round: Annotated[int, msgspec.Meta(ge=1)]
+    pairs: tuple[Annotated[tuple[Name, ...], msgspec.Meta(min_length=1, max_length=2)], ...]
+    """The left team and the right team; a team alone has a bye."""
+
+
+class Called(Fact, frozen=True, kw_only=True, tag="called"):
+    """A game is given to a court."""
+
+    pairing: Name
+    game: int
+    teams: tuple[Name, Name]
+    court: Name
+
+
+class Recalled(Fact, frozen=True, kw_only=True, tag="recalled"):
+    """A called game is taken away from its court without a result."""
+
+    pairing: Name
+    game: int
+    reason: str = ""
+
+
+class Played(Fact, frozen=True, kw_only=True, tag="played"):
+    """A game has ended with this official result."""
+
+    pairing: Name
+    game: Annotated[int, msgspec.Meta(ge=1)]
+    """Number of the game in its match, from 1."""
+    teams: tuple[Name, Name]
+    """Who sat left and who sat right."""
+    scores: tuple[int, int]
+    """Points of the left and of the right seat."""
+    outcome: Outcome
+    record: str = ""
+    """Hash of the court's record."""
+
+
+class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):
+    """A decision: the game counts with this result, whatever was played."""
+
+    pairing: Name
+    game: Annotated[int, msgspec.Meta(ge=1)]
+    teams: tuple[Name, Name]
+    scores: tuple[int, int]
+    outcome: Literal["left", "right", "draw"]
+    reason: str
+
+
+class Replay(Fact, frozen=True, kw_only=True, tag="replay"):
+    """A decision: the results that this game had so far do not count; it is played again."""
+
+    pairing: Name
+    game: Annotated[int, msgspec.Meta(ge=1)]
+    teams: tuple[Name, Name]
+    reason: str
+
+
+class Voided(Fact, frozen=True, kw_only=True, tag="voided"):
+    """A decision: the match counts for nobody and is not played again."""
+
+    pairing: Name
+    teams: tuple[Name, Name]
+    reason: str
+
+
+class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
+    """A decision: the team did not appear; its opponent wins the match."""
+
+    pairing: Name
+    team: Name
+    reason: str = ""
+
+
+OfTeam = Entered | Withdrawn | Disqualified | FilesChanged
+OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow
+OfStage = Planned | Drawn | RoundDrawn
+AnyFact = OfTeam | OfMatch | OfStage
+
+
+class _File(msgspec.Struct, frozen=True, kw_only=True):
+    version: int
+    facts: tuple[AnyFact, ...]
+
+
+def ordered(facts: Iterable[AnyFact]) -> tuple[AnyFact, ...]:
+    """Return the facts in their order, each once.
+
+    Raises:
+        UserError: if two different facts have the same id.
+    """
+    by_id: dict[str, AnyFact] = {}
+    for fact in facts:
+        if by_id.setdefault(fact.id, fact) != fact:
+            raise UserError(say("league.two-facts", id=fact.id))
+    return tuple(sorted(by_id.values(), key=lambda fact: (fact.number, fact.id)))
+
+
+def encode(facts: Iterable[AnyFact]) -> bytes:
+    """Write facts as JSON; facts that arrived in another order give the same bytes."""
+    return msgspec.json.encode(_File(version=VERSION, facts=ordered(facts)))
+
+
+def decode(data: bytes) -> tuple[AnyFact, ...]:
+    """Read facts from JSON.
+
+    Raises:
+        UserError: if the JSON is wrong, or of another version; the message says where.
+    """
+    try:
+        version = msgspec.json.decode(data, type=dict[str, msgspec.Raw]).get("version")
+        if version is not None and bytes(version) != str(VERSION).encode():
+            raise UserError(
+                say(
+                    "league.other-version",
+                    found=str(bytes(version), "utf-8", "replace"),
+                    known=VERSION,
+                )
+            )
+        return ordered(msgspec.json.decode(data, type=_File).facts)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+        raise UserError(say("league.wrong-facts", error=str(error))) from None

@@ -1,0 +1,60 @@
+"""What a format is: it says who meets whom in a stage, and how its teams are ranked."""
+
+from collections.abc import Collection, Mapping
+from typing import Protocol
+
+import msgspec
+
+from lacoc_server.league.facts import Settings
+from lacoc_server.league.matches import Match
+from lacoc_server.league.pairing import Pairing
+from lacoc_server.league.standings import Table
+
+Pair = tuple[str, ...]
+"""The left team and the right team of a pairing that is drawn; a team alone has a bye."""
+
+
+class Stage(msgspec.Struct, frozen=True, kw_only=True):
+    """What is fixed of a stage when its draw is done."""
+
+    name: str
+    settings: Settings
+    entries: tuple[str, ...]
+    """By seeding, the best first."""
+    drawn: tuple[tuple[Pair, ...], ...] = ()
+    """The rounds that were drawn, in a format that draws rounds one by one."""
+
+    def id(self, section: str, round_number: int, number: int) -> str:
+        """Name a pairing of the stage."""
+        return f"{self.name}:{section}{round_number}.{number}"
+
+
+class Format(Protocol):
+    """A format; pure."""
+
+    decisive: bool
+    """True: a match must have a winner."""
+    balanced: bool
+    """True: what was played says who sits left. False: the pairings say it."""
+
+    def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
+        """Return all pairings that are fixed; each comes after those that its sources name."""
+
+    def rounds(self, stage: Stage) -> int:
+        """Return the number of rounds that are drawn one by one; 0: the draw fixes them all."""
+
+    def next_round(
+        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+    ) -> tuple[Pair, ...]:
+        """Pair the next round, once all earlier rounds are decided."""
+
+    def tables(
+        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+    ) -> tuple[Table, ...]:
+        """Rank the teams, in a table for each group.
+
+        Args:
+            stage: the stage.
+            matches: its matches by the pairing's id.
+            last: teams that are ranked last, whatever they won.
+        """

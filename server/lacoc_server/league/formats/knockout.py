@@ -1,0 +1,214 @@
+"""Single and double knockout, as tables of sources."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+
+import msgspec
+
+from lacoc_server.league.formats.format import Pair, Stage
+from lacoc_server.league.matches import Match
+from lacoc_server.league.pairing import AnySource, Bye, Entry, LoserOf, Pairing, WinnerOf
+from lacoc_server.league.standings import Standing, Table, counted, standings
+
+ORDER = ("seed",)
+"""What orders teams that went out in the same round; they share the rank."""
+
+
+class Knockout:
+    """A bracket. Whoever loses is out, or gets a second chance in the losers' bracket."""
+
+    decisive = True
+    balanced = True
+
+    def __init__(self, *, double: bool) -> None:
+        """Make the format.
+
+        Args:
+            double: True: a team is out after two defeats.
+        """
+        self.double = double
+
+    def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
+        """Return the bracket."""
+        if len(stage.entries) < 2:
+            return ()
+        return tuple(double_bracket(stage) if self.double else single_bracket(stage))
+
+    def rounds(self, stage: Stage) -> int:
+        """Return 0: the draw fixes all rounds."""
+        return 0
+
+    def next_round(
+        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+    ) -> tuple[Pair, ...]:
+        """Return nothing: no round is drawn later."""
+        return ()
+
+    def tables(
+        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+    ) -> tuple[Table, ...]:
+        """Rank the teams by how far they came; those still in come first."""
+        places = _places(matches.values())
+        rows = standings(stage.entries, counted(matches.values()), ORDER, last).rows
+        rows = tuple(sorted(rows, key=lambda row: (row.out, places.get(row.team, 0), row.rank)))
+        ranked: list[Standing] = []
+        for number, row in enumerate(rows, 1):
+            before = ranked[-1] if ranked else None
+            tied = before is not None and (places.get(row.team, 0), row.out) == (
+                places.get(before.team, 0),
+                before.out,
+            )
+            rank = before.rank if before is not None and tied else number
+            ranked.append(msgspec.structs.replace(row, rank=rank))
+        return (Table(section="", tie_breaks=ORDER, rows=tuple(ranked)),)
+
+
+def _places(matches: Collection[Match]) -> dict[str, int]:
+    """Return the final places that are decided, by team."""
+    resets = {match.pairing.only_if_second_won: match for match in matches}
+    places: dict[str, int] = {}
+    for match in matches:
+        reset = resets.get(match.pairing.id)
+        if match.state != "decided" or (reset is not None and reset.state != "off"):
+            continue
+        if match.pairing.winner_place and match.winner:
+            places[match.winner] = match.pairing.winner_place
+        if match.pairing.loser_place:
+            places.update(dict.fromkeys(_leaving(match), match.pairing.loser_place))
+    return places
+
+
+def _leaving(match: Match) -> list[str]:
+    """Return the teams that leave the stage after a decided match."""
+    if not match.winner:
+        leaving = match.teams
+    elif match.pairing.loser_goes_on:
+        return []
+    else:
+        leaving = (match.loser, None)
+    return [team for team in leaving if team]
+
+
+def seeded(entries: Sequence[str]) -> list[AnySource]:
+    """Place the teams in a bracket: the two best can only meet in its final, and so on.
+
+    The best teams have the byes. The list is as long as the next power of two.
+    """
+    order = [0]
+    while len(order) < len(entries):
+        size = 2 * len(order)
+        order = [place for seed in order for place in (seed, size - 1 - seed)]
+    return [Entry(entries[seed]) if seed < len(entries) else Bye() for seed in order]
+
+
+def single_bracket(stage: Stage) -> Iterator[Pairing]:
+    """Yield the pairings of a single knockout, round by round."""
+    places = seeded(stage.entries)
+    size = len(places)
+    yield from _winners(stage, places, lambda number: size // 2**number + 1, final_place=1)
+    if stage.settings.third_place and size >= 4:
+        semi = size.bit_length() - 2
+        yield Pairing(
+            id=stage.id("p", 1, 1),
+            section="p",
+            round=1,
+            sources=(LoserOf(stage.id("w", semi, 1)), LoserOf(stage.id("w", semi, 2))),
+            winner_place=3,
+            loser_place=4,
+        )
+
+
+def _winners(
+    stage: Stage,
+    places: Sequence[AnySource],
+    loser_place: Callable[[int], int],
+    final_place: int | None,
+    loser_goes_on: bool = False,
+) -> Iterator[Pairing]:
+    """Yield the rounds of the winners' bracket."""
+    sources, number = list(places), 1
+    while len(sources) > 1:
+        pairs = list(zip(sources[::2], sources[1::2], strict=True))
+        for order, pair in enumerate(pairs, 1):
+            yield Pairing(
+                id=stage.id("w", number, order),
+                section="w",
+                round=number,
+                sources=pair,
+                winner_place=final_place if len(pairs) == 1 else None,
+                loser_place=loser_place(number),
+                loser_goes_on=loser_goes_on,
+            )
+        sources = [WinnerOf(stage.id("w", number, order)) for order in range(1, len(pairs) + 1)]
+        number += 1
+
+
+def double_bracket(stage: Stage) -> Iterator[Pairing]:
+    """Yield the pairings of a double knockout: winners' bracket, losers' bracket, finals.
+
+    In odd rounds of the losers' bracket its winners meet each other; in even rounds they meet those
+    who fall from the winners' bracket, turned so that nobody meets again in the first half of it.
+    """
+    places = seeded(stage.entries)
+    last = len(places).bit_length() - 1
+    yield from _winners(stage, places, lambda number: _fall(number, last), None, True)
+    finalist: AnySource = LoserOf(stage.id("w", 1, 1))
+    if last > 1:
+        yield from _losers(stage, last)
+        finalist = WinnerOf(stage.id("l", 2 * (last - 1), 1))
+    champion = WinnerOf(stage.id("w", last, 1))
+    final = stage.id("f", 1, 1)
+    yield Pairing(
+        id=final, section="f", round=1, sources=(champion, finalist), winner_place=1, loser_place=2
+    )
+    if stage.settings.reset:
+        yield Pairing(
+            id=stage.id("f", 2, 1),
+            section="f",
+            round=2,
+            sources=(LoserOf(final), WinnerOf(final)),
+            winner_place=1,
+            loser_place=2,
+            only_if_second_won=final,
+        )
+
+
+def _fall(number: int, last: int) -> int:
+    """Return the place of those who lose where the losers of a winners' round arrive."""
+    if number > 1:
+        return (1 << (last - number + 1)) + 1
+    return 2 if last == 1 else 3 * (1 << (last - 2)) + 1
+
+
+def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
+    """Yield the losers' bracket of a winners' bracket with `last` rounds."""
+    out = 2**last  # places that are still open
+    sources: list[AnySource] = [
+        LoserOf(stage.id("w", 1, order)) for order in range(1, 2 ** (last - 1) + 1)
+    ]
+    for number in range(1, 2 * (last - 1) + 1):
+        if number % 2:
+            pairs = list(zip(sources[::2], sources[1::2], strict=True))
+        else:
+            fell = number // 2 + 1
+            falling = [LoserOf(stage.id("w", fell, order)) for order in range(1, len(sources) + 1)]
+            pairs = list(zip(_turned(falling, fell), sources, strict=True))
+        out -= len(pairs)
+        for order, pair in enumerate(pairs, 1):
+            yield Pairing(
+                id=stage.id("l", number, order),
+                section="l",
+                round=number,
+                sources=pair,
+                loser_place=out + 1,
+            )
+        sources = [WinnerOf(stage.id("l", number, order)) for order in range(1, len(pairs) + 1)]
+
+
+def _turned(falling: Sequence[AnySource], number: int) -> list[AnySource]:
+    """Reorder those who fall: reversed after even rounds, with swapped halves after odd ones."""
+    half = len(falling) // 2
+    return [*reversed(falling)] if number % 2 == 0 else [*falling[half:], *falling[:half]]
+
+
+SINGLE = Knockout(double=False)
+DOUBLE = Knockout(double=True)

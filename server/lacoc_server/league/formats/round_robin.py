@@ -1,0 +1,108 @@
+"""Round robin: everybody of a group meets everybody."""
+
+from collections.abc import Collection, Iterator, Mapping
+
+from lacoc_server.league.formats.format import Pair, Stage
+from lacoc_server.league.matches import Match
+from lacoc_server.league.pairing import Entry, Pairing
+from lacoc_server.league.standings import Table, counted, standings
+
+ORDER = ("points", "direct", "difference", "scored", "wins", "seed")
+
+
+class RoundRobin:
+    """Groups in which everybody meets everybody, by the circle method."""
+
+    decisive = False
+    balanced = False
+
+    def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
+        """Return the pairings of all groups, round by round."""
+        found = [
+            Pairing(
+                id=stage.id(section, number, order),
+                section=section,
+                round=number,
+                sources=(Entry(teams[left]), Entry(teams[right])),
+            )
+            for section, teams in groups(stage).items()
+            for number in range(1, _rounds(stage, len(teams)) + 1)
+            for order, (left, right) in enumerate(circle_round(len(teams), number - 1), 1)
+        ]
+        return tuple(sorted(found, key=lambda pairing: pairing.round))
+
+    def rounds(self, stage: Stage) -> int:
+        """Return 0: the draw fixes all rounds."""
+        return 0
+
+    def next_round(
+        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+    ) -> tuple[Pair, ...]:
+        """Return nothing: no round is drawn later."""
+        return ()
+
+    def tables(
+        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+    ) -> tuple[Table, ...]:
+        """Rank the teams of each group."""
+        return tuple(
+            standings(
+                teams,
+                counted(match for match in matches.values() if match.pairing.section == section),
+                ("points", *stage.settings.tie_breaks) if stage.settings.tie_breaks else ORDER,
+                last,
+                section,
+            )
+            for section, teams in groups(stage).items()
+        )
+
+
+def groups(stage: Stage) -> dict[str, tuple[str, ...]]:
+    """Deal the teams into groups "a", "b", ... in snake order: 1 2 3, 6 5 4, 7 8 9."""
+    number = max(1, min(stage.settings.groups, len(stage.entries) // 2))
+    dealt: list[list[str]] = [[] for _ in range(number)]
+    for place, team in enumerate(stage.entries):
+        lap, at = divmod(place, number)
+        dealt[number - 1 - at if lap % 2 else at].append(team)
+    return {_letters(at): tuple(teams) for at, teams in enumerate(dealt)}
+
+
+def _letters(number: int) -> str:
+    """Name a group: a to z, then aa, ab, ..."""
+    rest, last = divmod(number, 26)
+    return (_letters(rest - 1) if rest else "") + "abcdefghijklmnopqrstuvwxyz"[last]
+
+
+def _rounds(stage: Stage, teams: int) -> int:
+    return stage.settings.rounds or teams - 1 + teams % 2
+
+
+def circle_round(players: int, number: int) -> Iterator[tuple[int, int]]:
+    """Yield the matches of a round of the circle method: the left player and the right one.
+
+    With an odd number of players one rests in each round, always another one. When everybody has
+    met everybody, the rounds come again in reverse order with seats swapped. So after any number of
+    rounds, each player's matches in the two seats differ by at most one in number.
+
+    All players but the last of an even number sit on a circle. In each round another one of them is
+    the pivot: players at the same distance from the pivot meet, and the pivot meets the last
+    player, or rests. A player's distance from the pivot changes by one in each round, so whoever
+    sits left at odd distances and right at even ones changes the seat each time. The pivot takes
+    the seat that keeps its own matches even: left in even rounds.
+
+    Args:
+        players: number of players.
+        number: number of the round, from 0.
+    """
+    circle = players - 1 + players % 2  # odd; after so many rounds everybody has met everybody
+    lap, pivot = divmod(number, circle)
+    if lap % 2:
+        pivot = circle - 1 - pivot
+    for distance in range(1, circle // 2 + 1):
+        after, before = (pivot + distance) % circle, (pivot - distance) % circle
+        yield (after, before) if (distance + lap) % 2 else (before, after)
+    if circle < players:
+        yield (pivot, circle) if (pivot + lap) % 2 == 0 else (circle, pivot)
+
+
+FORMAT = RoundRobin()

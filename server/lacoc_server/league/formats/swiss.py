@@ -1,0 +1,269 @@
+"""Swiss: teams with equal points meet, and nobody meets twice where it can be avoided.
+
+Rounds are drawn one by one (`facts.RoundDrawn`), so a later correction changes points but not who
+has met. The pairs are those of the FIDE (Dutch) system, with one rule that is stricter: a team that
+sat left once more than right must sit right. Where the system knows no way out, and in stages too
+large for its engine, a matching breaks as few rules as possible.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+
+import msgspec
+import networkx
+from caissify_pairings.engines.dutch import DutchEngine
+
+from lacoc_server.league.formats.format import Pair, Stage
+from lacoc_server.league.matches import Match
+from lacoc_server.league.pairing import Bye, Entry, Pairing
+from lacoc_server.league.standings import DRAW, WIN, Table, counted, standings
+
+ORDER = ("points", "buchholz-cut", "buchholz", "sonneborn", "direct", "difference", "seed")
+
+LARGEST = 60
+"""Most teams that the engine pairs: 60 take a second, 200 some minutes."""
+
+
+class Player(msgspec.Struct, kw_only=True):
+    """A team as the pairing of the next round sees it."""
+
+    team: str
+    number: int
+    """Its place in the seeding, from 1."""
+    points: int = 0
+    """2 for a match won, 1 for a draw."""
+    met: set[str] = msgspec.field(default_factory=set)
+    sides: list[int] = msgspec.field(default_factory=list)
+    """Of each match: 1 left, −1 right."""
+    floats: list[str] = msgspec.field(default_factory=list)
+    """Of each round: whether the opponent had fewer points ("down"), more ("up") or as many."""
+    had_bye: bool = False
+
+    @property
+    def balance(self) -> int:
+        """How often it sat left more than right."""
+        return sum(self.sides)
+
+
+class Swiss:
+    """The format."""
+
+    decisive = False
+    balanced = False
+
+    def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
+        """Return the pairings of the rounds that are drawn."""
+        return tuple(
+            Pairing(
+                id=stage.id("r", number, order),
+                section="r",
+                round=number,
+                sources=(Entry(pair[0]), Entry(pair[1]) if len(pair) == 2 else Bye()),
+            )
+            for number, pairs in enumerate(stage.drawn, 1)
+            for order, pair in enumerate(pairs, 1)
+        )
+
+    def rounds(self, stage: Stage) -> int:
+        """Return the number of rounds: as many as a knockout has, unless the plan says more."""
+        return stage.settings.rounds or max(1, (len(stage.entries) - 1).bit_length())
+
+    def next_round(
+        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+    ) -> tuple[Pair, ...]:
+        """Pair the next round."""
+        players = [one for one in history(stage, matches) if one.team not in gone]
+        return tuple(
+            (pair[0].team,) if len(pair) == 1 else seated(pair[0], pair[1])
+            for pair in paired(players, len(stage.drawn) + 1)
+        )
+
+    def tables(
+        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+    ) -> tuple[Table, ...]:
+        """Rank the teams."""
+        order = ("points", *stage.settings.tie_breaks) if stage.settings.tie_breaks else ORDER
+        return (standings(stage.entries, counted(matches.values()), order, last),)
+
+
+def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
+    """Return what the drawn rounds mean for each team, by seeding."""
+    players = {
+        team: Player(team=team, number=number) for number, team in enumerate(stage.entries, 1)
+    }
+    for number, pairs in enumerate(stage.drawn, 1):
+        before = {team: player.points for team, player in players.items()}
+        for order, pair in enumerate(pairs, 1):
+            match = matches[stage.id("r", number, order)]
+            for side, team in zip((1, -1), pair, strict=False):
+                player = players[team]
+                others = [other for other in pair if other != team]
+                _add(player, side, others, match)
+                player.floats.append(_float(before, team, others))
+        for player in players.values():  # who is not paired falls, as with a bye
+            if len(player.floats) < number:
+                player.floats.append("down")
+    return [*players.values()]
+
+
+def _add(player: Player, side: int, others: Sequence[str], match: Match) -> None:
+    """Add a match to what a team has behind it. A match not played counts for no side."""
+    player.met.update(others)
+    if match.games:
+        player.sides.append(side)
+    for line in counted([match]):
+        if player.team in line.teams:
+            won = line.winner is not None and line.teams[line.winner : line.winner + 1] == (
+                player.team,
+            )
+            player.points += DRAW if line.winner is None else WIN if won else 0
+            player.had_bye |= won and not line.played
+
+
+def _float(before: Mapping[str, int], team: str, others: Sequence[str]) -> str:
+    if not others or before[team] > before[others[0]]:
+        return "down"
+    return "up" if before[team] < before[others[0]] else "none"
+
+
+def seated(one: Player, other: Player) -> tuple[str, str]:
+    """Seat a pair: left sits who sat left less often, then who sat right last, then by number."""
+    first, second = sorted((one, other), key=lambda player: player.number)
+    if first.number % 2 == 0:
+        first, second = second, first
+    keys = [(player.balance, player.sides[-1:]) for player in (first, second)]
+    return (second.team, first.team) if keys[1] < keys[0] else (first.team, second.team)
+
+
+def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
+    """Pair the players of a round; with an odd number one has a bye.
+
+    When the rules can't all be kept, the engine's pairs break any of them; the matching does not.
+
+    Returns:
+        The pairs in the order of their tables, a bye last.
+    """
+    if not players:
+        return []
+    found = dutch(players, round_number) if len(players) <= LARGEST else []
+    if not _legal(found, players):
+        found = fewest_faults(players)
+    return sorted(
+        found,
+        key=lambda pair: (
+            len(pair) == 1,
+            -max(one.points for one in pair),
+            -sum(one.points for one in pair),
+            min(one.number for one in pair),
+        ),
+    )
+
+
+def dutch(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
+    """Pair by the FIDE (Dutch) system."""
+    by_number = {player.number: player for player in players}
+    numbers = {player.team: player.number for player in players}
+    engine = DutchEngine(
+        players=[
+            {
+                "id": player.number,
+                "name": player.team,
+                "score": player.points / WIN,
+                "rating": 0,
+                "starting_number": player.number,
+                "color_hist": _colours(player),
+                "float_history": player.floats,
+                "bye_count": int(player.had_bye),
+            }
+            for player in players
+        ],
+        previous_pairings={
+            (player.number, numbers[other])
+            for player in players
+            for other in player.met
+            if other in numbers and player.number < numbers[other]
+        },
+        round_number=round_number,
+        total_rounds=round_number + 2,  # no round is the last: there are no exceptions for its top
+    )
+    return [
+        tuple(by_number[line[side]] for side in ("white_id", "black_id") if line[side] is not None)
+        for line in engine.generate_pairings()
+    ]
+
+
+def _colours(player: Player) -> list[str]:
+    """Say which side a team is due, as a history that the engine understands.
+
+    Two of one colour at the end are an absolute preference of the other one. That makes the
+    engine's limit, which is a difference of two, ours, which is one.
+    """
+    if not player.sides:
+        return []
+    if player.balance == 0:
+        return ["black", "white"] if player.sides[-1] > 0 else ["white", "black"]
+    due_right = player.balance > 0
+    return ["white", "white"] if due_right else ["black", "black"]
+
+
+def _legal(pairs: Iterable[tuple[Player, ...]], players: Sequence[Player]) -> bool:
+    """Say whether everybody is paired once, and no rule is broken."""
+    found = list(pairs)
+    everybody = sorted(player.number for pair in found for player in pair)
+    byes = sum(len(pair) == 1 for pair in found)
+    return (
+        everybody == sorted(player.number for player in players)
+        and byes == len(players) % 2
+        and not any(any(faults(pair)) for pair in found)
+    )
+
+
+def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
+    """Count what is wrong with a pair: met before, a second bye, a third side too many."""
+    if len(pair) == 1:
+        return 0, int(pair[0].had_bye), 0
+    one, other = pair
+    both_due = one.balance * other.balance > 0
+    return int(other.team in one.met), 0, int(both_due)
+
+
+def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
+    """Pair so that fewest meet again, then fewest have two byes, then sides differ least.
+
+    Then teams with as equal points as possible meet, and of those with equal points the upper half
+    meets the lower half.
+    """
+    ordered = sorted(players, key=lambda player: (-player.points, player.number))
+    equals = Counter(player.points for player in players)
+    graph = networkx.Graph()
+    many = len(players) + 1
+    for at, one in enumerate(ordered):
+        if len(players) % 2:
+            graph.add_edge(at, len(ordered), weight=-_cost((one,), one.points, 0, many))
+        for to in range(at + 1, len(ordered)):
+            other = ordered[to]
+            apart = one.points - other.points
+            fold = 0 if apart else abs(to - at - equals[one.points] // 2)
+            graph.add_edge(at, to, weight=-_cost((one, other), apart, fold, many))
+    matching = networkx.max_weight_matching(graph, maxcardinality=True)
+    return [
+        tuple(ordered[place] for place in sorted(pair) if place < len(ordered)) for pair in matching
+    ]
+
+
+def _cost(pair: Sequence[Player], apart: int, fold: int, many: int) -> int:
+    """Weigh a pair so that no number of lesser faults is worth a greater one.
+
+    Args:
+        pair: the pair.
+        apart: how many points its teams are apart.
+        fold: how far they are from half of those with equal points.
+        many: more than the number of teams.
+    """
+    again, bye, side = faults(pair)
+    most = 4 * many**2  # of points in a stage with more rounds than teams
+    serious = (again * many + bye) * many + side
+    return (serious * many * most**2 + apart**2) * many**2 + fold
+
+
+FORMAT = Swiss()

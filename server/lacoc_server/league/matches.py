@@ -1,0 +1,280 @@
+"""A match: a pairing with what is known of it: its teams, its games and who won."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Literal
+
+import msgspec
+
+from lacoc_server.league.facts import (
+    NoShow,
+    OfMatch,
+    Outcome,
+    Played,
+    Replaced,
+    Replay,
+    Settings,
+    Voided,
+)
+from lacoc_server.league.pairing import AnySource, Entry, LoserOf, Pairing, WinnerOf
+
+NOBODY = ""
+"""Stands for the team of a place that is empty for ever."""
+
+Team = str | None
+"""A team's name; NOBODY; None: not known yet."""
+
+State = Literal["waits", "open", "decided", "off"]
+"""waits: a team is not known yet. off: the match is not needed."""
+How = Literal["", "played", "extra", "difference", "seed", "walkover", "bye", "void"]
+"""How a match was decided; "" before that."""
+
+
+class Game(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """A game that counts."""
+
+    number: int
+    teams: tuple[str, str]
+    """Who sat left and who sat right."""
+    scores: tuple[int, int]
+    outcome: Outcome
+    record: str = ""
+    fact: str
+    """Id of the fact that says so."""
+
+    @property
+    def winner(self) -> str:
+        """The team that won; NOBODY for a draw."""
+        return {"left": self.teams[0], "right": self.teams[1]}.get(self.outcome, NOBODY)
+
+
+class Match(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """A pairing with all that the facts say of it."""
+
+    pairing: Pairing
+    teams: tuple[Team, Team]
+    """By place of the pairing."""
+    state: State
+    games: tuple[Game, ...] = ()
+    next_game: int = 0
+    """Number of the game to play; 0: none."""
+    next_seats: tuple[str, str] | None = None
+    """Who sits left and right in it."""
+    winner: Team = None
+    """NOBODY: decided without a winner; such as a draw."""
+    loser: Team = None
+    how: How = ""
+
+    @property
+    def decided(self) -> bool:
+        """Whether nothing is left to play."""
+        return self.state in ("decided", "off")
+
+    @property
+    def scores(self) -> tuple[int, int]:
+        """Points of all games, by place."""
+        first, second = (
+            sum(
+                score
+                for game in self.games
+                for team, score in zip(game.teams, game.scores, strict=True)
+                if team == place
+            )
+            for place in self.teams
+        )
+        return first, second
+
+
+class Rules(msgspec.Struct, frozen=True, kw_only=True):
+    """What decides the matches of a stage."""
+
+    settings: Settings
+    entries: tuple[str, ...]
+    """By seeding."""
+    decisive: bool
+    """True: a match must have a winner."""
+    balanced: bool
+    """True: the team that sat left less often in this stage sits left in game 1."""
+
+
+def resolve(
+    pairings: Sequence[Pairing],
+    facts: Mapping[str, Sequence[OfMatch]],
+    gone: Collection[str],
+    rules: Rules,
+) -> dict[str, Match]:
+    """Work out all matches of a stage.
+
+    Args:
+        pairings: every pairing comes after those that its sources name.
+        facts: the facts of each pairing in their order.
+        gone: teams that have withdrawn or were disqualified.
+        rules: what decides the matches.
+
+    Returns:
+        The matches by the pairing's id, in the order of the pairings.
+    """
+    matches: dict[str, Match] = {}
+    left: dict[str, int] = {}
+    for pairing in pairings:
+        match = _match(pairing, matches, facts.get(pairing.id, ()), gone, rules, left)
+        matches[pairing.id] = match
+        for game in match.games:
+            left[game.teams[0]] = left.get(game.teams[0], 0) + 1
+            left[game.teams[1]] = left.get(game.teams[1], 0) - 1
+    return matches
+
+
+def _match(
+    pairing: Pairing,
+    matches: Mapping[str, Match],
+    facts: Sequence[OfMatch],
+    gone: Collection[str],
+    rules: Rules,
+    left: Mapping[str, int],
+) -> Match:
+    first, second = (_team(source, matches) for source in pairing.sources)
+    if condition := pairing.only_if_second_won:
+        before = matches[condition]
+        if before.decided and before.winner != before.teams[1]:
+            return Match(pairing=pairing, teams=(first, second), state="off")
+        if not before.decided:
+            return Match(pairing=pairing, teams=(None, None), state="waits")
+    if first is None or second is None:
+        return Match(pairing=pairing, teams=(first, second), state="waits")
+    teams = (first, second)
+    if NOBODY in teams:
+        return _decided(pairing, teams, (), first or second, "bye")
+    swapped = rules.balanced and left.get(first, 0) > left.get(second, 0)
+    return _between(pairing, teams, swapped, facts, gone, rules)
+
+
+def _between(
+    pairing: Pairing,
+    teams: tuple[str, str],
+    swapped: bool,
+    facts: Sequence[OfMatch],
+    gone: Collection[str],
+    rules: Rules,
+) -> Match:
+    """Work out the match of two teams."""
+    counted, is_void, absent = counting(teams, facts)
+    if is_void:
+        return _decided(pairing, teams, (), NOBODY, "void")
+    games: list[Game] = []
+    for number in range(1, rules.settings.games + rules.settings.extra_games + 1):
+        ended = _verdict(games, teams, rules)
+        if ended is not None:
+            return _decided(pairing, teams, games, *ended)
+        if number not in counted:
+            break
+        games.append(counted[number])
+    else:
+        ended = _verdict(games, teams, rules)
+        if ended is not None:
+            return _decided(pairing, teams, games, *ended)
+    missing = {team for team in teams if team in gone or team in absent}
+    if missing:
+        stays = [team for team in teams if team not in missing]
+        return _decided(pairing, teams, games, stays[0] if stays else NOBODY, "walkover")
+    number = len(games) + 1
+    seats = teams if swapped == (number % 2 == 0) else (teams[1], teams[0])
+    return Match(
+        pairing=pairing,
+        teams=teams,
+        state="open",
+        games=tuple(games),
+        next_game=number,
+        next_seats=seats,
+    )
+
+
+def counting(
+    teams: tuple[str, str], facts: Iterable[OfMatch]
+) -> tuple[dict[int, Game], bool, set[str]]:
+    """Find what counts of a match between two teams.
+
+    Facts about other teams are left out: they belong to a pairing that has changed since. Of two
+    results of the same game the first one counts, until a decision says otherwise.
+
+    Returns:
+        The games by number, whether the match is void, and the teams that did not appear.
+    """
+    games: dict[int, Game] = {}
+    is_void = False
+    absent: set[str] = set()
+    for fact in facts:
+        if isinstance(fact, NoShow):
+            absent |= {fact.team} & {*teams}
+        elif {*fact_teams(fact)} != {*teams}:
+            continue
+        elif isinstance(fact, Voided):
+            is_void = True
+        elif isinstance(fact, Replay):
+            games.pop(fact.game, None)
+            is_void = False
+            absent.clear()
+        elif isinstance(fact, Replaced):
+            games[fact.game] = _game(fact)
+        elif isinstance(fact, Played) and fact.outcome != "void":
+            games.setdefault(fact.game, _game(fact))
+    return games, is_void, absent
+
+
+def fact_teams(fact: OfMatch) -> tuple[str, ...]:
+    """Return the teams that a fact names."""
+    return getattr(fact, "teams", ())
+
+
+def _game(fact: Played | Replaced) -> Game:
+    return Game(
+        number=fact.game,
+        teams=fact.teams,
+        scores=fact.scores,
+        outcome=fact.outcome,
+        record=fact.record if isinstance(fact, Played) else "",
+        fact=fact.id,
+    )
+
+
+def _team(source: AnySource, matches: Mapping[str, Match]) -> Team:
+    if isinstance(source, Entry):
+        return source.team
+    if isinstance(source, WinnerOf):
+        return matches[source.pairing].winner
+    if isinstance(source, LoserOf):
+        return matches[source.pairing].loser
+    return NOBODY
+
+
+def _verdict(games: Sequence[Game], teams: tuple[str, str], rules: Rules) -> tuple[str, How] | None:
+    """Return the winner (NOBODY: a draw) and how it was decided; None: play goes on."""
+    first, second = (sum(game.winner == team for game in games) for team in teams)
+    left = rules.settings.games - len(games)
+    if abs(first - second) > max(left, 0):
+        return teams[first < second], "played" if left >= 0 else "extra"
+    if left > 0:
+        return None
+    if not rules.decisive:
+        return NOBODY, "played"
+    if left > -rules.settings.extra_games:
+        return None
+    totals = [sum(game.scores[game.teams.index(team)] for game in games) for team in teams]
+    if totals[0] != totals[1]:
+        return teams[totals[0] < totals[1]], "difference"
+    return min(teams, key=rules.entries.index), "seed"
+
+
+def _decided(
+    pairing: Pairing, teams: tuple[str, str], games: Iterable[Game], winner: str, how: How
+) -> Match:
+    """Make a decided match. A match without a winner sends nobody on."""
+    loser = next((team for team in teams if team != winner), NOBODY) if winner else NOBODY
+    return Match(
+        pairing=pairing,
+        teams=teams,
+        state="decided",
+        games=tuple(games),
+        winner=winner,
+        loser=NOBODY if how == "bye" else loser,
+        how=how,
+    )

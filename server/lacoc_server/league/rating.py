@@ -1,0 +1,87 @@
+"""Ratings of teams on the Elo scale, with intervals and the advantage of the left side."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import msgspec
+from whr import WHR
+
+_ELO = 400 / math.log(10)
+"""Elo of a natural unit."""
+_SIDE = "left"
+_Z95 = 1.959963984540054
+_PRECISION = 1e-3
+"""Largest gradient at which the fit ends, in natural units."""
+_BATCH, _MOST_BATCHES = 50, 20
+"""Newton steps between two looks at the gradient, and most such batches."""
+
+
+class Rated(NamedTuple):
+    """A game that counts for ratings."""
+
+    left: str
+    right: str
+    winner: str
+    """The team that won; "": a draw."""
+
+
+class Rating(msgspec.Struct, frozen=True, kw_only=True):
+    """How strong a team is."""
+
+    team: str
+    elo: float
+    """The mean of all teams is 0."""
+    interval_elo: float
+    """Half the width of the 95 % interval."""
+    games: int
+
+
+class Ratings(msgspec.Struct, frozen=True, kw_only=True):
+    """Ratings of all teams."""
+
+    teams: tuple[Rating, ...]
+    """The strongest first."""
+    side_elo: float
+    """What the left side is worth."""
+
+
+def ratings(games: Iterable[Rated]) -> Ratings:
+    """Fit a Bradley-Terry model with draws (Davidson) and an advantage of the left side.
+
+    It is the whole-history rating (Coulom 2008) of a single day: all games weigh the same,
+    whenever they were played. The games are sorted first, so their order does not matter.
+    """
+    played = sorted(games)
+    model = WHR(_draws(played))
+    for game in played:
+        result = "B" if game.winner == game.left else "W" if game.winner == game.right else "D"
+        model.create_game(game.left, game.right, result, 1, _SIDE)
+    if not played:
+        return Ratings(teams=(), side_elo=0.0)
+    for _ in range(_MOST_BATCHES):
+        model.iterate(_BATCH)
+        if model.max_gradient_norm() < _PRECISION:
+            break
+    days = {name: player.days[-1] for name, player in model.players.items()}
+    mean = sum(days[name].elo for name in sorted(days)) / len(days)
+    teams = [
+        Rating(
+            team=name,
+            elo=round(day.elo - mean, 1),
+            interval_elo=round(_Z95 * _ELO * math.sqrt(day.uncertainty), 1),
+            games=sum(name in (game.left, game.right) for game in played),
+        )
+        for name, day in days.items()
+    ]
+    return Ratings(
+        teams=tuple(sorted(teams, key=lambda one: (-one.elo, one.team))),
+        side_elo=round(_ELO * math.log(model.handicap_gamma[_SIDE]), 1),
+    )
+
+
+def _draws(games: Sequence[Rated]) -> dict[str, float]:
+    """Say what is assumed of draws where the games can't tell: none without one, else half."""
+    if all(game.winner for game in games):
+        return {"pinned_draw": 0.0}
+    return {} if any(game.winner for game in games) else {"draw_rate": 0.5}

@@ -1,0 +1,91 @@
+"""The schedule: which game goes to which free court, with rest for everybody and no conflicts."""
+
+from collections.abc import Iterator, Sequence
+
+import msgspec
+
+from lacoc_server.league.contest import Contest
+from lacoc_server.league.matches import Match
+
+
+class Assignment(msgspec.Struct, frozen=True, kw_only=True):
+    """A game for a court."""
+
+    court: str
+    pairing: str
+    game: int
+    teams: tuple[str, str]
+    """Who sits left and who sits right."""
+
+
+def playable(contest: Contest, first: Sequence[str] = ()) -> list[Match]:
+    """Return the matches whose next game can be played, the one to play first at the beginning.
+
+    A match that has begun goes on before others begin. Then come earlier stages and rounds.
+
+    Args:
+        contest: the contest.
+        first: pairings that a referee wants first, in this order.
+    """
+    running = {call.pairing for call in contest.running}
+    wanted = {pairing: place for place, pairing in enumerate(first)}
+    matches = [
+        match
+        for view in contest.stages
+        for match in view.matches
+        if match.state == "open" and match.pairing.id not in running
+    ]
+    return sorted(
+        matches,
+        key=lambda match: (wanted.get(match.pairing.id, len(wanted)), not match.games),
+    )
+
+
+def assign(
+    contest: Contest,
+    courts: Sequence[str],
+    now_ms: int,
+    least_rest_ms: int = 0,
+    first: Sequence[str] = (),
+) -> list[Assignment]:
+    """Give the next games to the free courts.
+
+    Args:
+        contest: the contest.
+        courts: courts that are there, in the order in which they are filled. Those with a running
+            game are not free.
+        now_ms: the time, in milliseconds since 1970, UTC.
+        least_rest_ms: shortest time between two matches of a team; games of one match follow each
+            other without it.
+        first: pairings that a referee wants first, in this order.
+
+    Returns:
+        At most one game for each free court, and for each team.
+    """
+    taken = {call.court for call in contest.running}
+    free = [court for court in dict.fromkeys(courts) if court not in taken]
+    return list(_assigned(contest, free, now_ms, least_rest_ms, first))
+
+
+def _assigned(
+    contest: Contest, free: list[str], now_ms: int, least_rest_ms: int, first: Sequence[str]
+) -> Iterator[Assignment]:
+    busy = {team for call in contest.running for team in call.teams}
+    for match in playable(contest, first):
+        if not free:
+            return
+        teams = match.next_seats
+        if teams is None or busy & {*teams} or rested_ms(contest, match, least_rest_ms) > now_ms:
+            continue
+        busy |= {*teams}
+        yield Assignment(
+            court=free.pop(0), pairing=match.pairing.id, game=match.next_game, teams=teams
+        )
+
+
+def rested_ms(contest: Contest, match: Match, least_rest_ms: int) -> int:
+    """Return from when on both teams of a match have rested."""
+    ends = (contest.ended_ms.get(team, (match.pairing.id, 0)) for team in match.teams if team)
+    return max(
+        (end + least_rest_ms for pairing, end in ends if pairing != match.pairing.id), default=0
+    )

@@ -1,0 +1,206 @@
+"""Standings: where everybody stands after some matches, with ties broken by a list of codes."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import msgspec
+
+from lacoc_server.league.matches import NOBODY, Match
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+WIN, DRAW = 2, 1
+"""Points of a match; a bye and a walkover count as a win."""
+
+
+class Counted(NamedTuple):
+    """A match that counts."""
+
+    teams: tuple[str, ...]
+    """The team alone: it had a bye."""
+    scores: tuple[int, ...]
+    """Points in the games, by team."""
+    winner: int | None
+    """Index of the winner; None: a draw."""
+    played: bool = True
+    """False: a bye or a walkover."""
+
+
+class Standing(msgspec.Struct, frozen=True, kw_only=True):
+    """Where a team stands."""
+
+    team: str
+    rank: int
+    """From 1. No two teams of a table share a rank, except in a knockout."""
+    won: int = 0
+    drawn: int = 0
+    lost: int = 0
+    points: int = 0
+    """2 for a match won, 1 for a draw."""
+    scored: int = 0
+    """Points in all its games."""
+    conceded: int = 0
+    """Points of its opponents in these games."""
+    tie_breaks: tuple[int, ...] = ()
+    """Values of the tie-breaks in the order of the table's codes."""
+    out: bool = False
+    """True: disqualified."""
+
+
+class Table(msgspec.Struct, frozen=True, kw_only=True):
+    """The standings of a stage or of one of its groups."""
+
+    section: str
+    tie_breaks: tuple[str, ...]
+    """Codes in the order in which they are asked."""
+    rows: tuple[Standing, ...]
+    """The best first."""
+
+
+class _Tally:
+    """What the matches come to, by team."""
+
+    def __init__(self, teams: Sequence[str], matches: Iterable[Counted]) -> None:
+        self.seed = {team: place for place, team in enumerate(teams)}
+        self.matches: dict[str, list[tuple[str, int, bool]]] = {team: [] for team in teams}
+        """By team: the opponent (NOBODY after a bye), the points (2, 1, 0), and whether played."""
+        self.won, self.drawn, self.lost = (dict.fromkeys(teams, 0) for _ in range(3))
+        self.scored, self.conceded = (dict.fromkeys(teams, 0) for _ in range(2))
+        for match in matches:
+            self._count(match)
+        self.points = {team: WIN * self.won[team] + DRAW * self.drawn[team] for team in teams}
+
+    def _count(self, match: Counted) -> None:
+        for seat, team in enumerate(match.teams):
+            count = (
+                self.drawn
+                if match.winner is None
+                else self.won
+                if match.winner == seat
+                else self.lost
+            )
+            count[team] += 1
+            self.scored[team] += match.scores[seat]
+            self.conceded[team] += sum(match.scores) - match.scores[seat]
+            points = DRAW if match.winner is None else WIN if match.winner == seat else 0
+            others = [other for other in match.teams if other != team]
+            self.matches[team].append(
+                (others[0] if len(others) == 1 else NOBODY, points, match.played)
+            )
+
+    def opponents(self, team: str) -> list[int]:
+        """Return the points of the team's opponents; one not played has the team's own points."""
+        return [
+            self.points[other] if played and other else self.points[team]
+            for other, _, played in self.matches[team]
+        ]
+
+    def sonneborn(self, team: str) -> int:
+        """Add up the points of beaten opponents twice, and those of drawn ones once."""
+        pairs = zip(self.opponents(team), self.matches[team], strict=True)
+        return sum(strength * points for strength, (_, points, _) in pairs)
+
+    def direct(self, team: str, tied: Collection[str]) -> int:
+        """Return the points from matches among tied teams; 0 unless they all have met."""
+        for one in tied:
+            if not {other for other, _, _ in self.matches[one]} >= {*tied} - {one}:
+                return 0
+        return sum(points for other, points, _ in self.matches[team] if other in tied)
+
+
+TIE_BREAKS: Mapping[str, Callable[[_Tally, str, Collection[str]], int]] = {
+    "points": lambda tally, team, tied: tally.points[team],
+    "wins": lambda tally, team, tied: tally.won[team],
+    "fewest-lost": lambda tally, team, tied: -tally.lost[team],
+    "direct": lambda tally, team, tied: tally.direct(team, tied),
+    "difference": lambda tally, team, tied: tally.scored[team] - tally.conceded[team],
+    "scored": lambda tally, team, tied: tally.scored[team],
+    "buchholz": lambda tally, team, tied: sum(tally.opponents(team)),
+    "buchholz-cut": lambda tally, team, tied: sum(sorted(tally.opponents(team))[1:]),
+    "sonneborn": lambda tally, team, tied: tally.sonneborn(team),
+    "seed": lambda tally, team, tied: -tally.seed[team],
+}
+"""The published tie-breaks by code (docs/contest.md); the larger value is the better one."""
+
+
+def standings(
+    teams: Sequence[str],
+    matches: Iterable[Counted],
+    order: Sequence[str],
+    last: Collection[str] = (),
+    section: str = "",
+) -> Table:
+    """Count who won, drew and lost, and rank the teams.
+
+    Args:
+        teams: the teams by seeding; the seeding breaks what is tied to the end.
+        matches: matches that count, in any order.
+        order: codes of `TIE_BREAKS` in the order in which they are asked; a later code orders only
+            those whom all earlier codes left equal.
+        last: teams that are ranked below all others.
+        section: names the table.
+
+    Raises:
+        UserError: if a code is unknown.
+    """
+    codes = (*order, "seed") if "seed" not in order else tuple(order)
+    if unknown := [code for code in codes if code not in TIE_BREAKS]:
+        raise UserError(say("league.unknown-tie-break", code=unknown[0], known=[*TIE_BREAKS]))
+    tally = _Tally(teams, matches)
+    values: dict[str, list[int]] = {team: [] for team in teams}
+    groups = [[team for team in teams if (team in last) is out] for out in (False, True)]
+    for code in codes:
+        groups = [part for group in groups for part in _split(group, code, tally, values)]
+    ranked = [team for group in groups for team in group]
+    return Table(
+        section=section,
+        tie_breaks=codes,
+        rows=tuple(
+            Standing(
+                team=team,
+                rank=rank,
+                won=tally.won[team],
+                drawn=tally.drawn[team],
+                lost=tally.lost[team],
+                points=tally.points[team],
+                scored=tally.scored[team],
+                conceded=tally.conceded[team],
+                tie_breaks=tuple(values[team]),
+                out=team in last,
+            )
+            for rank, team in enumerate(ranked, 1)
+        ),
+    )
+
+
+def _split(
+    group: Sequence[str], code: str, tally: _Tally, values: dict[str, list[int]]
+) -> list[list[str]]:
+    """Split teams that are equal so far by one more code, and note its values."""
+    value = {team: TIE_BREAKS[code](tally, team, group) for team in group}
+    for team in group:
+        values[team].append(value[team])
+    return [
+        [team for team in group if value[team] == one]
+        for one in sorted({*value.values()}, reverse=True)
+    ]
+
+
+def counted(matches: Iterable[Match]) -> list[Counted]:
+    """Return the matches that count for standings: the decided ones that are not void."""
+    return [line for match in matches for line in _counted(match)]
+
+
+def _counted(match: Match) -> list[Counted]:
+    if match.state != "decided" or match.how == "void":
+        return []
+    teams = tuple(team for team in match.teams if team)
+    if match.how == "bye":
+        return [Counted(teams, (0,), 0, played=False)] if teams else []
+    if match.how == "walkover":
+        winner = teams.index(match.winner) if match.winner else None
+        if winner is None:  # both stayed away, and both lost
+            return [Counted((team,), (0,), 1, played=False) for team in teams]
+        return [Counted(teams, match.scores, winner, played=False)]
+    winner = teams.index(match.winner) if match.winner else None
+    return [Counted(teams, match.scores, winner)]

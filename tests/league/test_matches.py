@@ -1,0 +1,360 @@
+"""What facts mean for matches, brackets and the schedule: one short table each."""
+
+import itertools
+from random import Random
+
+import pytest
+
+from lacoc_server.league.contest import Changes, Contest, changes, compute, next_round
+from lacoc_server.league.facts import (
+    AnyFact,
+    Called,
+    Disqualified,
+    Drawn,
+    Entered,
+    FilesChanged,
+    NoShow,
+    Planned,
+    Played,
+    Recalled,
+    Replaced,
+    Replay,
+    RoundDrawn,
+    Settings,
+    Voided,
+    Withdrawn,
+    decode,
+    encode,
+)
+from lacoc_server.league.formats.format import Stage
+from lacoc_server.league.formats.installed import FORMATS
+from lacoc_server.league.formats.knockout import double_bracket, single_bracket
+from lacoc_server.league.formats.round_robin import groups
+from lacoc_server.league.matches import Match
+from lacoc_server.league.pairing import Entry, WinnerOf
+from lacoc_server.league.schedule import assign
+from lacoc_shared.mistakes import UserError
+
+FIRST = "s:w1.1"
+
+
+class Facts(list[AnyFact]):
+    """Facts that number themselves."""
+
+    def __init__(self, how: str, teams: str, **settings: object) -> None:
+        super().__init__()
+        for team in teams:
+            self.add(Entered, team=team, files="f")
+        self.add(Planned, stage="s", format=how, settings=Settings(**settings))
+        self.add(Drawn, stage="s", entries=tuple(teams))
+
+    def add(self, kind: type[AnyFact], **values: object) -> "Facts":
+        number = len(self)
+        self.append(kind(id=f"f{number}", number=number, **{"at_ms": 1000 * number, **values}))
+        return self
+
+    def play(self, pairing: str, game: int, left: str, right: str, *scores: int) -> "Facts":
+        outcome = "draw" if scores[0] == scores[1] else "left" if scores[0] > scores[1] else "right"
+        return self.add(
+            Played, pairing=pairing, game=game, teams=(left, right), scores=scores, outcome=outcome
+        )
+
+    @property
+    def contest(self) -> Contest:
+        return compute(self, FORMATS)
+
+    def match(self, pairing: str = FIRST) -> Match:
+        (found,) = (one for one in self.contest.stage("s").matches if one.pairing.id == pairing)
+        return found
+
+
+ABOUT = {"pairing": FIRST, "teams": ("a", "b"), "reason": "why"}
+
+
+def test_best_of_three_swaps_sides_and_ends_early() -> None:
+    """After two games won of three no third one is played."""
+    facts = Facts("single-knockout", "ab", games=3)
+    assert facts.match().next_seats == ("a", "b")
+    facts.play(FIRST, 1, "a", "b", 3, 1)
+    assert (facts.match().next_game, facts.match().next_seats) == (2, ("b", "a"))
+    facts.play(FIRST, 2, "b", "a", 0, 5)
+    match = facts.match()
+    assert (match.winner, match.loser, match.how, match.scores) == ("a", "b", "played", (8, 1))
+    assert facts.contest.stage("s").over
+
+
+@pytest.mark.parametrize(
+    ("games", "winner", "how"),
+    [
+        ([(1, 1), (4, 3)], "b", "extra"),
+        ([(1, 1), (2, 2)], "a", "seed"),
+        ([(2, 0)], "a", "played"),
+    ],
+)
+def test_a_level_match_of_a_knockout(games: list[tuple[int, int]], winner: str, how: str) -> None:
+    """An extra game, then the difference of points, then the better seed decides."""
+    facts = Facts("single-knockout", "ab")
+    for number, scores in enumerate(games, 1):
+        seats = ("a", "b") if number % 2 else ("b", "a")
+        facts.play(FIRST, number, *seats, *scores)
+    assert (facts.match().winner, facts.match().how) == (winner, how)
+
+
+def test_difference_decides_before_the_seed() -> None:
+    """With one game won each, the difference of points decides."""
+    facts = Facts("single-knockout", "ab", games=2, extra_games=0)
+    facts.play(FIRST, 1, "a", "b", 1, 0).play(FIRST, 2, "b", "a", 5, 0)
+    assert (facts.match().winner, facts.match().how) == ("b", "difference")
+
+
+@pytest.mark.parametrize(
+    ("decision", "winner", "how", "state"),
+    [
+        (
+            (Replaced, {**ABOUT, "game": 1, "scores": (0, 1), "outcome": "right"}),
+            "b",
+            "played",
+            "decided",
+        ),
+        ((Replay, {**ABOUT, "game": 1}), None, "", "open"),
+        ((Voided, ABOUT), "", "void", "decided"),
+        ((NoShow, {"pairing": FIRST, "team": "b"}), "a", "played", "decided"),
+        ((Withdrawn, {"team": "a"}), "a", "played", "decided"),
+    ],
+)
+def test_decisions_about_a_played_match(
+    decision: tuple[type[AnyFact], dict[str, object]], winner: str, how: str, state: str
+) -> None:
+    """A decision replaces, reopens or voids a result; who leaves later keeps what was won."""
+    facts = Facts("single-knockout", "ab").play(FIRST, 1, "a", "b", 2, 0)
+    facts.add(decision[0], **decision[1])
+    match = facts.match()
+    assert (match.winner, match.how, match.state) == (winner, how, state)
+
+
+@pytest.mark.parametrize(
+    ("leaving", "winner"),
+    [
+        ([(Withdrawn, {"team": "a"})], "b"),
+        ([(Disqualified, {"team": "b"})], "a"),
+        ([(NoShow, {"pairing": FIRST, "team": "b"})], "a"),
+        ([(NoShow, {"pairing": FIRST, "team": team}) for team in "ab"], ""),
+    ],
+)
+def test_who_is_not_there_loses(
+    leaving: list[tuple[type[AnyFact], dict[str, object]]], winner: str
+) -> None:
+    """Whoever withdraws, is disqualified or does not appear loses what was not played."""
+    facts = Facts("single-knockout", "ab")
+    for kind, values in leaving:
+        facts.add(kind, **values)
+    assert (facts.match().winner, facts.match().how) == (winner, "walkover")
+
+
+def test_the_first_of_two_results_counts() -> None:
+    """A second result of a game changes nothing and is named; a void game is played again."""
+    facts = Facts("single-knockout", "ab")
+    facts.add(Played, pairing=FIRST, game=1, teams=("a", "b"), scores=(0, 0), outcome="void")
+    assert facts.match().next_game == 1
+    facts.play(FIRST, 1, "a", "b", 2, 0).play(FIRST, 1, "a", "b", 0, 2)
+    assert facts.match().winner == "a"
+    assert [one.why.code for one in facts.contest.unused] == ["league.result-replaced"] * 2
+
+
+def test_a_corrected_semi_final_reopens_the_final() -> None:
+    """Results of a pairing count only for the teams that meet there now."""
+    facts = Facts("single-knockout", "abcd")
+    facts.play("s:w1.1", 1, "a", "d", 2, 0).play("s:w1.2", 1, "b", "c", 2, 0)
+    facts.play("s:w2.1", 1, "a", "b", 2, 0)
+    before = facts.contest
+    assert before.stage("s").ranking[:2] == ("a", "b")
+    facts.add(
+        Replaced,
+        pairing="s:w1.1",
+        game=1,
+        teams=("a", "d"),
+        scores=(0, 1),
+        outcome="right",
+        reason="x",
+    )
+    final = facts.match("s:w2.1")
+    assert ({*final.teams}, final.state) == ({"d", "b"}, "open")
+    assert [one.why.code for one in facts.contest.unused] == [
+        "league.result-replaced",
+        "league.other-teams",
+    ]
+    what = changes(before, facts.contest)
+    assert [now.pairing.id for _, now in what.matches] == ["s:w1.1", "s:w2.1"]
+    assert ("s", "a", 1, 3) in what.ranks
+    assert changes(before, before) == Changes(matches=(), ranks=())
+
+
+def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:
+    """Who comes from the losers' bracket must win twice; places follow."""
+    facts = Facts("double-knockout", "abc")
+    facts.play("s:w1.2", 1, "b", "c", 1, 0).play("s:w2.1", 1, "a", "b", 1, 0)
+    facts.play("s:l2.1", 1, "b", "c", 1, 0)
+    once = Facts.__new__(Facts)
+    once.extend(facts)
+    once.play("s:f1.1", 1, "a", "b", 1, 0)
+    assert once.contest.stage("s").over
+    assert [row.team for row in once.contest.stage("s").tables[0].rows] == ["a", "b", "c"]
+
+    facts.play("s:f1.1", 1, "b", "a", 1, 0)
+    assert not facts.contest.stage("s").over
+    facts.play("s:f2.1", 1, "b", "a", 1, 0)
+    assert facts.contest.stage("s").over
+    assert [(row.team, row.rank) for row in facts.contest.stage("s").tables[0].rows] == [
+        ("b", 1),
+        ("a", 2),
+        ("c", 3),
+    ]
+
+
+@pytest.mark.parametrize("teams", [2, 3, 5, 8, 13, 200])
+@pytest.mark.parametrize("bracket", [single_bracket, double_bracket])
+def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> None:
+    """A bracket has the right number of pairings, and sources come first."""
+    stage = Stage(
+        name="s", settings=Settings(), entries=tuple(f"t{number}" for number in range(teams))
+    )
+    known: set[str] = set()
+    for pairing in bracket(stage):
+        for source in pairing.sources:
+            assert getattr(source, "pairing", None) in {None, *known}
+        assert pairing.id not in known
+        known.add(pairing.id)
+    size = 1 << (teams - 1).bit_length()
+    assert len(known) == (size - 1 if bracket is single_bracket else 2 * size - 1)
+
+
+def test_groups_are_dealt_in_snake_order() -> None:
+    """Groups are as strong as each other by seeding."""
+    stage = Stage(name="s", settings=Settings(groups=3), entries=tuple("abcdefgh"))
+    assert groups(stage) == {"a": ("a", "f", "g"), "b": ("b", "e", "h"), "c": ("c", "d")}
+
+
+def test_a_drawn_swiss_round_stays() -> None:
+    """A later correction changes the points, not who met."""
+    facts = Facts("swiss", "abcd", rounds=2)
+    for number in (1, 2):
+        pairs = next_round(facts.contest, "s", FORMATS)
+        facts.add(RoundDrawn, stage="s", round=number, pairs=pairs)
+        for order, (left, right) in enumerate(pairs, 1):
+            facts.play(f"s:r{number}.{order}", 1, left, right, 1, 0)
+    before = [match.teams for match in facts.contest.stage("s").matches]
+    assert {*map(frozenset, before)} >= {frozenset("ac"), frozenset("bd")}
+    facts.add(Voided, pairing="s:r1.1", teams=before[0], reason="x")
+    assert [match.teams for match in facts.contest.stage("s").matches] == before
+    with pytest.raises(UserError, match="No round"):
+        next_round(facts.contest, "s", FORMATS)
+
+
+def test_schedule() -> None:
+    """Games go to free courts in order; teams rest between matches, not between games."""
+    facts = Facts("round-robin", "abcd", games=2)
+    given = assign(facts.contest, ["x", "y", "z"], now_ms=0)
+    assert [one.court for one in given] == ["x", "y"]
+    assert assign(facts.contest, ["x"], 0, first=[given[1].pairing])[0].pairing == given[1].pairing
+
+    one = given[0]
+    facts.add(Called, pairing=one.pairing, game=1, teams=one.teams, court="x")
+    assert [two.teams for two in assign(facts.contest, ["x", "y"], 0)] == [given[1].teams]
+    facts.play(one.pairing, 1, *one.teams, 1, 0)
+    now_ms = facts[-1].at_ms
+    again = assign(facts.contest, ["x"], now_ms, 60_000)
+    assert [(two.pairing, two.game) for two in again] == [(one.pairing, 2)]
+    facts.play(one.pairing, 2, *again[0].teams, 1, 0)
+    after = assign(facts.contest, ["x", "y"], facts[-1].at_ms, 60_000)
+    assert [two.pairing for two in after] == [given[1].pairing]
+
+    facts.add(Called, pairing=given[1].pairing, game=1, teams=given[1].teams, court="y")
+    facts.add(Recalled, pairing=given[1].pairing, game=1)
+    assert facts.contest.running == ()
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "code"),
+    [
+        (Entered, {"team": "a"}, "league.entered-twice"),
+        (Withdrawn, {"team": "z"}, "league.unknown-team"),
+        (FilesChanged, {"team": "z", "files": "g", "reason": "x"}, "league.unknown-team"),
+        (Planned, {"stage": "s", "format": "swiss"}, "league.drawn-already"),
+        (Drawn, {"stage": "s", "entries": ("a", "b")}, "league.drawn-already"),
+        (Drawn, {"stage": "t", "entries": ("a", "b")}, "league.not-planned"),
+        (RoundDrawn, {"stage": "t", "round": 1, "pairs": ()}, "league.not-drawn"),
+        (RoundDrawn, {"stage": "s", "round": 2, "pairs": ()}, "league.other-round"),
+        (RoundDrawn, {"stage": "s", "round": 1, "pairs": (("a", "z"),)}, "league.wrong-pairs"),
+        (NoShow, {"pairing": "s:r9.9", "team": "a"}, "league.unknown-pairing"),
+    ],
+)
+def test_facts_that_change_nothing(
+    kind: type[AnyFact], values: dict[str, object], code: str
+) -> None:
+    """A fact that does not fit is left out, and named with the reason."""
+    facts = Facts("swiss", "abcd").add(kind, **values)
+    assert [one.why.code for one in facts.contest.unused] == [code]
+
+
+def test_wrong_facts_are_refused() -> None:
+    """Two facts with one id, an unknown format and wrong JSON are refused with what to do."""
+    facts = Facts("swiss", "ab")
+    with pytest.raises(UserError, match="f0"):
+        compute([*facts, Entered(id="f0", number=0, team="other")], FORMATS)
+    with pytest.raises(UserError, match="chess"):
+        _ = Facts("chess", "ab").contest
+    data = encode(facts)
+    assert decode(data) == tuple(facts)
+    for wrong in (
+        b"",
+        b"[]",
+        b"{}",
+        data[:-1],
+        data.replace(b'"version":1', b'"version":2'),
+        data.replace(b'"entered"', b'"stolen"'),
+    ):
+        with pytest.raises(UserError):
+            decode(wrong)
+
+
+def test_every_team_meets_every_other() -> None:
+    """A round robin of any size has each pair once, with sides that differ by at most one."""
+    for teams in range(2, 12):
+        names = tuple(f"t{number}" for number in range(teams))
+        stage = Stage(name="s", settings=Settings(), entries=names)
+        pairings = FORMATS["round-robin"].pairings(stage)
+        met = [frozenset(source.team for source in pairing.sources) for pairing in pairings]
+        assert {*met} == {frozenset(pair) for pair in itertools.combinations(names, 2)}
+        assert len(met) == len({*met})
+        for name in names:
+            sides = [
+                [one.team for one in pairing.sources].index(name)
+                for pairing in pairings
+                if name in [one.team for one in pairing.sources]
+            ]
+            assert abs(2 * sum(sides) - len(sides)) <= 1
+
+
+@pytest.mark.parametrize("teams", [8, 16, 32, 64])
+def test_losers_meet_again_late(teams: int) -> None:
+    """In the first half of the losers' bracket nobody meets again, whoever wins."""
+    names = tuple(f"t{number}" for number in range(teams))
+    stage = Stage(name="s", settings=Settings(), entries=names)
+    half = teams.bit_length() - 2  # of the rounds of the losers' bracket
+    for seed in range(30):
+        random = Random(seed)
+        won: dict[str, str] = {}
+        lost: dict[str, str] = {}
+        met: set[frozenset[str]] = set()
+        for pairing in double_bracket(stage):
+            pair = [
+                source.team
+                if isinstance(source, Entry)
+                else (won if isinstance(source, WinnerOf) else lost)[source.pairing]
+                for source in pairing.sources
+            ]
+            if pairing.section == "l" and pairing.round <= half:
+                assert frozenset(pair) not in met
+            met.add(frozenset(pair))
+            random.shuffle(pair)
+            won[pairing.id], lost[pairing.id] = pair

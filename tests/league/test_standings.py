@@ -1,0 +1,80 @@
+"""Standings count matches and break ties by the published codes, in their order."""
+
+import pytest
+
+from lacoc_server.league.standings import Counted, standings
+from lacoc_shared.mistakes import UserError
+
+ABCD = ("a", "b", "c", "d")
+
+
+def won(winner: str, loser: str, score: int = 1, against: int = 0) -> Counted:
+    return Counted((winner, loser), (score, against), 0)
+
+
+def drawn(one: str, other: str, each: int = 0) -> Counted:
+    return Counted((one, other), (each, each), None)
+
+
+CIRCLE = [won("a", "b", 3), won("b", "c", 2), won("c", "a", 4), *(won(one, "d") for one in "abc")]
+"""a, b and c beat each other in a circle, and d."""
+
+
+@pytest.mark.parametrize(
+    ("matches", "order", "ranked"),
+    [
+        ([], ("points",), "abcd"),
+        ([won("d", "a")], ("points",), "dabc"),
+        ([won("c", "b"), drawn("a", "d")], ("points",), "cadb"),
+        (
+            [drawn("b", "d"), won("d", "a"), won("b", "a"), won("d", "b")],
+            ("points", "direct"),
+            "dbac",
+        ),
+        (
+            [won("b", "a"), won("a", "c", 9), won("b", "d", 9), won("a", "d")],
+            ("points", "direct"),
+            "bacd",
+        ),
+        (CIRCLE, ("points", "direct"), "abcd"),
+        (CIRCLE, ("points", "direct", "difference"), "cabd"),
+        (CIRCLE, ("points", "direct", "scored"), "cabd"),
+        ([drawn("b", "c", 7), drawn("a", "d", 2)], ("points", "scored"), "bcad"),
+        ([won("b", "a"), drawn("c", "a"), drawn("c", "d")], ("points", "wins"), "bcad"),
+        ([won("b", "a"), drawn("c", "d"), drawn("d", "c")], ("points", "fewest-lost"), "bcda"),
+        ([won("a", "c"), won("b", "d"), won("d", "c")], ("points", "buchholz"), "bdac"),
+        ([won("a", "c"), won("b", "d"), won("d", "c")], ("points", "sonneborn"), "badc"),
+    ],
+)
+def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str) -> None:
+    """Each code orders those whom the earlier ones left equal; the seeding orders the rest."""
+    found = standings(ABCD, matches, order)
+
+    assert "".join(row.team for row in found.rows) == ranked
+    assert [row.rank for row in found.rows] == [1, 2, 3, 4]
+    assert found.tie_breaks == (*order, "seed")
+    assert standings(ABCD, matches[::-1], order) == found
+
+
+def test_bye_counts_as_a_win_and_own_points_as_opponent() -> None:
+    """A bye is worth two points; in Buchholz its opponent has the team's own points."""
+    bye = Counted(("a",), (0,), 0, played=False)
+
+    row = standings(ABCD, [bye, won("b", "a")], ("points", "buchholz")).rows[0]
+
+    assert (row.team, row.won, row.lost, row.points) == ("a", 1, 1, 2)
+    assert row.tie_breaks[:2] == (2, 2 + 2)
+
+
+def test_disqualified_are_last() -> None:
+    """Who is disqualified is ranked last, whatever it won."""
+    found = standings(ABCD, [won("a", "b"), won("a", "c")], ("points",), last=["a"])
+
+    assert [row.team for row in found.rows] == ["b", "c", "d", "a"]
+    assert [row.out for row in found.rows] == [False, False, False, True]
+
+
+def test_unknown_code() -> None:
+    """An unknown tie-break is refused by its name."""
+    with pytest.raises(UserError, match="chance"):
+        standings(ABCD, [], ("points", "chance"))

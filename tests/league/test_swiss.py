@@ -1,0 +1,182 @@
+"""Swiss pairings: legal, as others pair them, and without a fault wherever that can be had."""
+
+import itertools
+from collections.abc import Iterator, Sequence
+from random import Random
+
+import networkx
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lacoc_server.league.formats.swiss import (
+    LARGEST,
+    Player,
+    dutch,
+    faults,
+    fewest_faults,
+    paired,
+    seated,
+)
+
+
+def rounds(random: Random, teams: int, number: int, leaving: float = 0.0) -> Iterator[list[Player]]:
+    """Yield the players before each round; the results come from `random`."""
+    players = [Player(team=f"t{place}", number=place) for place in range(1, teams + 1)]
+    for round_number in range(1, number + 1):
+        yield players
+        before = {player.number: player.points for player in players}
+        for pair in paired(players, round_number):
+            play(random, pair, before)
+        players = [player for player in players if random.random() >= leaving]
+        if len(players) < 2:
+            return
+
+
+def play(random: Random, pair: Sequence[Player], before: dict[int, int]) -> None:
+    """Add a random result to both players."""
+    if len(pair) == 1:
+        pair[0].had_bye = True
+        pair[0].points += 2
+        pair[0].floats.append("down")
+        return
+    left = seated(pair[0], pair[1])[0]
+    points = random.choice([0, 1, 2])
+    for player, other, won in ((*pair, points), (pair[1], pair[0], 2 - points)):
+        apart = before[player.number] - before[other.number]
+        player.floats.append("down" if apart > 0 else "up" if apart < 0 else "none")
+        player.points += won
+        player.met.add(other.team)
+        player.sides.append(1 if player.team == left else -1)
+
+
+def as_numbers(pairs: Sequence[Sequence[Player]]) -> set[frozenset[int]]:
+    return {frozenset(player.number for player in pair) for pair in pairs}
+
+
+def total_faults(pairs: Sequence[Sequence[Player]]) -> tuple[int, ...]:
+    return tuple(map(sum, zip(*map(faults, pairs), strict=True)))
+
+
+def can_do_without_faults(players: Sequence[Player]) -> bool:
+    """Ask a graph of faultless pairs for a matching of all."""
+    graph = networkx.Graph()
+    graph.add_nodes_from(range(len(players)))
+    for (one, first), (two, second) in itertools.combinations(enumerate(players), 2):
+        if not any(faults((first, second))):
+            graph.add_edge(one, two)
+    if len(players) % 2:
+        graph.add_edges_from(("bye", at) for at, one in enumerate(players) if not one.had_bye)
+    return 2 * len(networkx.max_weight_matching(graph, True)) == len(players) + len(players) % 2
+
+
+def check_round(players: Sequence[Player], round_number: int) -> None:
+    """Check that everybody is paired once, without a fault if that is possible."""
+    pairs = paired(players, round_number)
+    assert sorted(one.number for pair in pairs for one in pair) == [one.number for one in players]
+    assert sum(len(pair) == 1 for pair in pairs) == len(players) % 2
+    found = total_faults(pairs)
+    if any(found):
+        assert not can_do_without_faults(players)
+        assert found == total_faults(fewest_faults(players))
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    teams=st.integers(2, 24),
+    number=st.integers(1, 8),
+    leaving=st.sampled_from([0.0, 0.05]),
+    seed=st.integers(0, 2**32),
+)
+def test_every_round_is_legal(teams: int, number: int, leaving: float, seed: int) -> None:
+    """Nobody meets twice, has two byes or a third side too many where it can be avoided."""
+    for round_number, players in enumerate(rounds(Random(seed), teams, number, leaving), 1):
+        check_round(players, round_number)
+
+
+@settings(max_examples=8, deadline=None)
+@given(teams=st.integers(4, 16).map(lambda half: 2 * half), seed=st.integers(0, 2**32))
+def test_sides_differ_by_at_most_one(teams: int, seed: int) -> None:
+    """In a stage with not too many rounds nobody sits on one side twice more than on the other.
+
+    Among n teams that all play, rounds up to n/4 + 1 can always be paired so (by Hall's theorem).
+    """
+    for players in rounds(Random(seed), teams, teams // 4 + 2):
+        assert all(abs(player.balance) <= 1 for player in players)
+        assert all(len(player.met) == len(player.sides) for player in players)
+
+
+@pytest.mark.parametrize("teams", [LARGEST + 1, pytest.param(200, marks=pytest.mark.long)])
+def test_large_stages(teams: int) -> None:
+    """Stages that are too large for the engine are paired without faults too."""
+    for players in rounds(Random(teams), teams, 5):
+        pairs = fewest_faults(players)
+        assert total_faults(pairs) == (0, 0, 0)
+        assert all(abs(player.balance) <= 1 for player in players)
+
+
+def brute_force(players: Sequence[Player]) -> tuple[int, ...]:
+    """Return the fewest faults of all possible pairings."""
+
+    def pairings(left: tuple[Player, ...]) -> Iterator[tuple[tuple[Player, ...], ...]]:
+        if len(left) < 2:
+            yield (left,) if left else ()
+            return
+        for at in range(1, len(left)):
+            for rest in pairings((*left[1:at], *left[at + 1 :])):
+                yield ((left[0], left[at]), *rest)
+        if len(left) % 2:
+            for rest in pairings(left[1:]):
+                yield ((left[0],), *rest)
+
+    return min(total_faults(one) for one in pairings(tuple(players)))
+
+
+@settings(max_examples=15, deadline=None)
+@given(teams=st.integers(2, 7), seed=st.integers(0, 2**32))
+def test_fewest_faults(teams: int, seed: int) -> None:
+    """The matching has as few faults as the best of all pairings, also when rounds run out."""
+    for players in rounds(Random(seed), teams, 10):
+        assert total_faults(fewest_faults(players)) == brute_force(players)
+
+
+@pytest.mark.parametrize(
+    "least_rounds", [60, pytest.param(1000, marks=pytest.mark.long)], ids=["some", "many"]
+)
+def test_second_source(least_rounds: int) -> None:
+    """py4swiss, a port of the FIDE-endorsed bbpPairings, finds the same pairs in random rounds."""
+    pytest.importorskip("py4swiss", reason="there is no wheel of py4swiss for this machine")
+    import second_swiss
+
+    compared = 0
+    for seed in itertools.count():
+        random = Random(seed)
+        for number, players in enumerate(rounds(random, random.randint(6, 24), 6), 1):
+            theirs = second_swiss.pairs(players, number) if can_do_without_faults(players) else None
+            if theirs is None:
+                continue
+            found = as_numbers(dutch(players, number))
+            if not same_bye(players, found, theirs):
+                continue
+            assert found == theirs, (seed, number)
+            compared += 1
+        if compared >= least_rounds:
+            return
+
+
+def same_bye(
+    players: Sequence[Player], found: set[frozenset[int]], theirs: set[frozenset[int]]
+) -> bool:
+    """Say whether both gave the bye to the same team.
+
+    Where they differ, ours has fewer points: since February 2026 the rules want the fewest.
+    """
+    points = {player.number: player.points for player in players}
+    ours, others = ({*pair} for pair in (alone(found), alone(theirs)))
+    assert ours == others or points[min(ours)] < points[min(others)]
+    return ours == others
+
+
+def alone(pairs: set[frozenset[int]]) -> frozenset[int]:
+    """Return the team that has a bye, if there is one."""
+    return next((pair for pair in pairs if len(pair) == 1), frozenset())
