@@ -31,7 +31,7 @@ import msgspec
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_server.keys.make import make_keys
+from lacoc_server.doors.keys.make import make_keys
 from lacoc_shared import seal
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.command import cli

@@ -4,7 +4,7 @@ import pytest
 from page_client import PageClient, Refused
 from venue import REFEREE, Venue
 
-from lacoc_server.keys.make import make_keys
+from lacoc_server.doors.keys.make import make_keys
 
 pytestmark = pytest.mark.slow
 

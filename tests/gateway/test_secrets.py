@@ -14,7 +14,7 @@ from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.wire import Kind
-from lacoc_server.keys.make import make_keys
+from lacoc_server.doors.keys.make import make_keys
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.invitation import invitation_text

@@ -4,8 +4,8 @@ import itertools
 from collections.abc import Iterator
 from random import Random
 
-from lacoc_server.league.contest import Contest, compute, next_round
-from lacoc_server.league.facts import (
+from lacoc_server.contest.league.contest import Contest, compute, next_round
+from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Disqualified,
@@ -22,9 +22,9 @@ from lacoc_server.league.facts import (
     Voided,
     Withdrawn,
 )
-from lacoc_server.league.formats.installed import FORMATS
-from lacoc_server.league.matches import Match
-from lacoc_server.league.schedule import Assignment, assign
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.schedule import Assignment, assign
 
 LEAST_REST_MS = 60_000
 GAME_MS = 180_000

@@ -14,7 +14,7 @@ from py4swiss.engines.dutch.player import Player as TheirPlayer
 from py4swiss.engines.dutch.validity_matcher import ValidityMatcher
 from py4swiss.trf.results import ColorToken
 
-from lacoc_server.league.formats.swiss import Player
+from lacoc_server.contest.league.formats.swiss import Player
 
 FLOATS = {"down": Float.DOWN, "up": Float.UP, "none": Float.NONE}
 

@@ -8,11 +8,11 @@ from chance_event import GAME_MS, LEAST_REST_MS, Event
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lacoc_server.league.bracket import bracket
-from lacoc_server.league.contest import Contest, compute
-from lacoc_server.league.facts import Played, decode, encode
-from lacoc_server.league.formats.installed import FORMATS
-from lacoc_server.league.schedule import Assignment
+from lacoc_server.contest.league.bracket import bracket
+from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.facts import Played, decode, encode
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.schedule import Assignment
 
 FORMAT_NAMES = ("round-robin", "swiss", "single-knockout", "double-knockout")
 

@@ -5,8 +5,8 @@ from random import Random
 
 import pytest
 
-from lacoc_server.league.contest import Changes, Contest, changes, compute, next_round
-from lacoc_server.league.facts import (
+from lacoc_server.contest.league.contest import Changes, Contest, changes, compute, next_round
+from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Disqualified,
@@ -26,13 +26,13 @@ from lacoc_server.league.facts import (
     decode,
     encode,
 )
-from lacoc_server.league.formats.format import Stage
-from lacoc_server.league.formats.installed import FORMATS
-from lacoc_server.league.formats.knockout import double_bracket, single_bracket
-from lacoc_server.league.formats.round_robin import groups
-from lacoc_server.league.matches import Match
-from lacoc_server.league.pairing import Entry, WinnerOf
-from lacoc_server.league.schedule import assign
+from lacoc_server.contest.league.formats.format import Stage
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.formats.knockout import double_bracket, single_bracket
+from lacoc_server.contest.league.formats.round_robin import groups
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import Entry, WinnerOf
+from lacoc_server.contest.league.schedule import assign
 from lacoc_shared.mistakes import UserError
 
 FIRST = "s:w1.1"

@@ -6,7 +6,7 @@ from random import Random
 import msgspec
 import pytest
 
-from lacoc_server.league.rating import Rated, ratings
+from lacoc_server.contest.league.rating import Rated, ratings
 
 SIDE_ELO = 60.0
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lacoc_server.league.standings import Counted, standings
+from lacoc_server.contest.league.standings import Counted, standings
 from lacoc_shared.mistakes import UserError
 
 ABCD = ("a", "b", "c", "d")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lacoc_server.league.formats.swiss import (
+from lacoc_server.contest.league.formats.swiss import (
     LARGEST,
     Player,
     dutch,

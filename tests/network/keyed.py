@@ -6,8 +6,8 @@ from pathlib import Path
 import msgspec
 from court_stub import TOKENS, WHISTLE, CourtStub
 
-from lacoc_server.keys.make import make_keys
-from lacoc_server.keys.protection import protection
+from lacoc_server.doors.keys.make import make_keys
+from lacoc_server.doors.keys.protection import protection
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.invitation import Access

@@ -19,7 +19,7 @@ from court_stub import CourtStub, until
 from keyed import KeyedCourt, keyed_file
 
 from lacoc_client.controller import Controller, Hold
-from lacoc_server.keys.certificates import LIFE, Authority, utc_now
+from lacoc_server.doors.keys.certificates import LIFE, Authority, utc_now
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.invitation import Access, invitation_text

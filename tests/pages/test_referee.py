@@ -12,7 +12,7 @@ from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.gateway.browser import unseen
-from lacoc_server.keys.make import make_keys
+from lacoc_server.doors.keys.make import make_keys
 
 pytestmark = pytest.mark.slow
 

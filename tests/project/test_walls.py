@@ -59,6 +59,7 @@ CONTRACT = "What all share has the contract below everything else"
 PURE = "What decides is pure: time and chance come in as arguments"
 MUJOCO = "Only models, fields and the world know MuJoCo"
 ZENOH = "Only the session knows Zenoh"
+LEAGUE = "A league knows facts, not robots"
 CLIENT = "A client needs nothing of a court's"
 
 
@@ -82,8 +83,12 @@ CLIENT = "A client needs nothing of a court's"
         ("server/lacoc_server/doors/inbox.py", "import lacoc_server.match.match", {BEAT}),
         ("server/lacoc_server/doors/inbox.py", "import secrets", {PURE}),
         ("server/lacoc_server/court/health.py", "import time", {PURE}),
-        ("server/lacoc_server/league/schedule.py", "import time", {PURE}),
-        ("server/lacoc_server/league/facts.py", "import lacoc_server.match.match", {BEAT}),
+        ("server/lacoc_server/contest/league/schedule.py", "import time", {PURE}),
+        (
+            "server/lacoc_server/contest/league/facts.py",
+            "import lacoc_server.match.match",
+            {LEAGUE},
+        ),
         ("shared/lacoc_shared/messages.py", "import lacoc_shared.gait.tables", {CONTRACT}),
         ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
         ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),

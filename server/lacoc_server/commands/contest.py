@@ -146,7 +146,7 @@ def keys(
     If you run this command again, it adds what is new (a court, a token, a host). Invitations that
     were handed out stay valid. Courts that are running use the new keys after a restart.
     """
-    from lacoc_server.keys.make import make_keys  # needs packages that the base install lacks
+    from lacoc_server.doors.keys.make import make_keys  # needs packages that the base install lacks
 
     made = make_keys(file, host or (), renew)
     if made.kept is not None:

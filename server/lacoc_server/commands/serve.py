@@ -16,9 +16,9 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.keys.protection import protection
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.keys.protection import protection
 from lacoc_server.match.entry import Admission
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter

@@ -12,10 +12,11 @@ from rich.table import Table
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.stand_test import try_standing
-from lacoc_server.commands.matches import Job, interrupted_by_signals, play_all
+from lacoc_server.contest.league.formats.round_robin import circle_round
+from lacoc_server.contest.league.standings import Counted, Standing, standings
+from lacoc_server.contest.pool import Job, interrupted_by_signals, play_all
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player
-from lacoc_server.simulate.league import Played, Standing, pairings, standings
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.record.schema import Result
@@ -25,6 +26,8 @@ app = typer.Typer()
 
 _LATE_TICKS = 7
 """Ticks by which the bots start later each time that two players meet in the same seats."""
+_ORDER = ("wins", "fewest-lost", "scored")
+"""Codes of the tie-breaks that rank the players."""
 
 
 @app.command(name="simulate")
@@ -119,14 +122,14 @@ def simulate_command(
     if json:
         screen.print_json({"kind": "begin", "players": fit, "matches": len(work)})
     results: dict[str, Result] = {}
-    table: list[Standing] = []
+    table: Sequence[Standing] = ()
     with interrupted_by_signals(), closing(play_all(work, jobs)) as playing:
         for job, result in playing:
             results[job.match_id] = result
             table = _standings(fit, work, results, seats)
             if json:
                 screen.print_json(_match_line(job, result, seats))
-                screen.print_json({"kind": "standings", "done": len(results), "standings": table})
+                screen.print_json(_standings_line(len(results), table))
     if json:
         return
     screen.show(_results_table([results[job.match_id] for job in work], seats))
@@ -214,7 +217,9 @@ def _pairs(
     players: int, seats: int, both_sides: bool, rounds: int | None
 ) -> Sequence[tuple[int, ...]]:
     if rounds is not None:
-        pairs: Sequence[tuple[int, ...]] = pairings(players, rounds)
+        pairs: Sequence[tuple[int, ...]] = [
+            pair for number in range(rounds) for pair in circle_round(players, number)
+        ]
     elif seats == 1:
         return [(index,) for index in range(players)]
     elif players > seats:
@@ -240,16 +245,24 @@ def _winner(result: Result, seats: Sequence[str]) -> int | None:
 
 def _standings(
     players: Sequence[str], work: Sequence[Job], results: Mapping[str, Result], seats: Sequence[str]
-) -> list[Standing]:
+) -> Sequence[Standing]:
+    """Rank the players; those who are equal stay in the order in which they were named."""
     ended = ((job, results[job.match_id]) for job in work if job.match_id in results)
-    return standings(
-        players,
-        [
-            Played(job.players, result.scores, _winner(result, seats))
-            for job, result in ended
-            if result.official != "void"
-        ],
-    )
+    counted = [
+        Counted(job.players, result.scores, _winner(result, seats))
+        for job, result in ended
+        if result.official != "void"
+    ]
+    return standings([*dict.fromkeys(players)], counted, _ORDER).rows
+
+
+def _standings_line(done: int, table: Sequence[Standing]) -> dict[str, Any]:
+    rows = [
+        {"name": row.team, "won": row.won, "drawn": row.drawn, "lost": row.lost}
+        | {"points": row.scored}
+        for row in table
+    ]
+    return {"kind": "standings", "done": done, "standings": rows}
 
 
 def _results_table(results: Sequence[Result], seats: Sequence[str]) -> Table:
@@ -270,7 +283,7 @@ def _results_table(results: Sequence[Result], seats: Sequence[str]) -> Table:
     return table
 
 
-def _standings_table(standings: Sequence[Standing]) -> Table:
+def _standings_table(rows: Sequence[Standing]) -> Table:
     table = screen.table(
         say("fact.player"),
         say("fact.won"),
@@ -278,6 +291,6 @@ def _standings_table(standings: Sequence[Standing]) -> Table:
         say("fact.lost"),
         say("fact.points"),
     )
-    for one in standings:
-        table.add_row(one.name, *map(str, (one.won, one.drawn, one.lost, one.points)))
+    for one in rows:
+        table.add_row(one.team, *map(str, (one.won, one.drawn, one.lost, one.scored)))
     return table

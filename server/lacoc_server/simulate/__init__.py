@@ -1,7 +1,4 @@
-"""Matches without a network, as fast as the machine can.
-
-`headless` plays one match. `league` says who meets whom and where everybody stands (pure).
-"""
+"""Matches without a network, as fast as the machine can."""
 
 from lacoc_server.simulate.headless import SETTLE_BEATS, Player, player, simulate
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_server.keys.certificates import Authority, Pair, hosts_of, utc_now
+from lacoc_server.doors.keys.certificates import Authority, Pair, hosts_of, utc_now
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from lacoc_server.league.formats.format import Format
+from lacoc_server.contest.league.formats.format import Format
 from lacoc_shared.command import plugins
 
 _GROUP = "lacoc.formats"

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import msgspec
 
-from lacoc_server.league.matches import How, Match, State, Team
-from lacoc_server.league.pairing import AnySource
+from lacoc_server.contest.league.matches import How, Match, State, Team
+from lacoc_server.contest.league.pairing import AnySource
 
 
 class Line(msgspec.Struct, frozen=True, kw_only=True):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from lacoc_server.league.matches import NOBODY, Match
+from lacoc_server.contest.league.matches import NOBODY, Match
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 

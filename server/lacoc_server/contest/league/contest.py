@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
-from lacoc_server.league.draws import Team, drawn_stages, entered_teams
-from lacoc_server.league.facts import (
+from lacoc_server.contest.league.draws import Team, drawn_stages, entered_teams
+from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     NoShow,
@@ -15,9 +15,9 @@ from lacoc_server.league.facts import (
     Replaced,
     ordered,
 )
-from lacoc_server.league.formats.format import Format, Pair, Stage
-from lacoc_server.league.matches import Match, Rules, counting, fact_teams, resolve
-from lacoc_server.league.standings import Table
+from lacoc_server.contest.league.formats.format import Format, Pair, Stage
+from lacoc_server.contest.league.matches import Match, Rules, counting, fact_teams, resolve
+from lacoc_server.contest.league.standings import Table
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 

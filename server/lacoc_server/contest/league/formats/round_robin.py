@@ -2,10 +2,10 @@
 
 from collections.abc import Collection, Iterator, Mapping
 
-from lacoc_server.league.formats.format import Pair, Stage
-from lacoc_server.league.matches import Match
-from lacoc_server.league.pairing import Entry, Pairing
-from lacoc_server.league.standings import Table, counted, standings
+from lacoc_server.contest.league.formats.format import Pair, Stage
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import Entry, Pairing
+from lacoc_server.contest.league.standings import Table, counted, standings
 
 ORDER = ("points", "direct", "difference", "scored", "wins", "seed")
 

@@ -4,10 +4,10 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
-from lacoc_server.league.formats.format import Pair, Stage
-from lacoc_server.league.matches import Match
-from lacoc_server.league.pairing import AnySource, Bye, Entry, LoserOf, Pairing, WinnerOf
-from lacoc_server.league.standings import Standing, Table, counted, standings
+from lacoc_server.contest.league.formats.format import Pair, Stage
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import AnySource, Bye, Entry, LoserOf, Pairing, WinnerOf
+from lacoc_server.contest.league.standings import Standing, Table, counted, standings
 
 ORDER = ("seed",)
 """What orders teams that went out in the same round; they share the rank."""

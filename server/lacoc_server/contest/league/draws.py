@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from lacoc_server.league.facts import (
+from lacoc_server.contest.league.facts import (
     AnyFact,
     Disqualified,
     Drawn,
@@ -14,7 +14,7 @@ from lacoc_server.league.facts import (
     RoundDrawn,
     Withdrawn,
 )
-from lacoc_server.league.formats.format import Format, Stage
+from lacoc_server.contest.league.formats.format import Format, Stage
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 

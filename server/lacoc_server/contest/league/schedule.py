@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import msgspec
 
-from lacoc_server.league.contest import Contest
-from lacoc_server.league.matches import Match
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.matches import Match
 
 
 class Assignment(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,4 +1,4 @@
-"""Tests of pairings and standings: everybody plays equally often, on both sides."""
+"""Tests of the circle method: everybody plays equally often, on both sides."""
 
 from collections import Counter
 from itertools import combinations
@@ -6,10 +6,14 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.simulate.league import Played, Standing, pairings, standings
+from lacoc_server.contest.league.formats.round_robin import circle_round
 
 PLAYERS = st.integers(2, 33)
 ROUNDS = st.integers(1, 80)
+
+
+def pairings(players: int, rounds: int) -> list[tuple[int, int]]:
+    return [pair for number in range(rounds) for pair in circle_round(players, number)]
 
 
 @given(PLAYERS, ROUNDS)
@@ -54,27 +58,3 @@ def test_pairs_that_meet_twice_swap_seats(players: int, rounds: int) -> None:
 def test_more_rounds_only_add_matches(players: int, rounds: int) -> None:
     """Pairings are the same each time; further rounds come after the earlier ones."""
     assert pairings(players, rounds + 1)[: rounds * (players // 2)] == pairings(players, rounds)
-
-
-def test_standings_count_matches_then_points() -> None:
-    """More matches won come first, then fewer lost, then more points; equal players keep order."""
-    matches = [
-        Played(("anna", "ben"), (20, 16), 0),
-        Played(("chie", "anna"), (18, 18), None),
-        Played(("ben", "chie"), (30, 6), 0),
-        Played(("dai", "ben"), (1, 35), 1),
-    ]
-    assert standings(["anna", "ben", "chie", "dai", "emi", "fumi"], matches) == [
-        Standing(name="ben", won=2, drawn=0, lost=1, points=81),
-        Standing(name="anna", won=1, drawn=1, lost=0, points=38),
-        Standing(name="emi", won=0, drawn=0, lost=0, points=0),
-        Standing(name="fumi", won=0, drawn=0, lost=0, points=0),
-        Standing(name="chie", won=0, drawn=1, lost=1, points=24),
-        Standing(name="dai", won=0, drawn=0, lost=1, points=1),
-    ]
-
-
-def test_a_rules_winner_may_have_fewer_points() -> None:
-    """The winner is who won by the result, not who has more points."""
-    table = standings(["anna", "ben"], [Played(("anna", "ben"), (3, 20), 0)])
-    assert [(one.name, one.won, one.lost) for one in table] == [("anna", 1, 0), ("ben", 0, 1)]

@@ -13,10 +13,10 @@ import msgspec
 import networkx
 from caissify_pairings.engines.dutch import DutchEngine
 
-from lacoc_server.league.formats.format import Pair, Stage
-from lacoc_server.league.matches import Match
-from lacoc_server.league.pairing import Bye, Entry, Pairing
-from lacoc_server.league.standings import DRAW, WIN, Table, counted, standings
+from lacoc_server.contest.league.formats.format import Pair, Stage
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import Bye, Entry, Pairing
+from lacoc_server.contest.league.standings import DRAW, WIN, Table, counted, standings
 
 ORDER = ("points", "buchholz-cut", "buchholz", "sonneborn", "direct", "difference", "seed")
 

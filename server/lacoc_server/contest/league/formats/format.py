@@ -5,10 +5,10 @@ from typing import Protocol
 
 import msgspec
 
-from lacoc_server.league.facts import Settings
-from lacoc_server.league.matches import Match
-from lacoc_server.league.pairing import Pairing
-from lacoc_server.league.standings import Table
+from lacoc_server.contest.league.facts import Settings
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import Pairing
+from lacoc_server.contest.league.standings import Table
 
 Pair = tuple[str, ...]
 """The left team and the right team of a pairing that is drawn; a team alone has a bye."""

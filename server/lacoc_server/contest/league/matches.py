@@ -5,7 +5,7 @@ from typing import Literal
 
 import msgspec
 
-from lacoc_server.league.facts import (
+from lacoc_server.contest.league.facts import (
     NoShow,
     OfMatch,
     Outcome,
@@ -15,7 +15,7 @@ from lacoc_server.league.facts import (
     Settings,
     Voided,
 )
-from lacoc_server.league.pairing import AnySource, Entry, LoserOf, Pairing, WinnerOf
+from lacoc_server.contest.league.pairing import AnySource, Entry, LoserOf, Pairing, WinnerOf
 
 NOBODY = ""
 """Stands for the team of a place that is empty for ever."""
