@@ -10,6 +10,7 @@ from lacoc_server.contest.league.facts import (
     Called,
     NoShow,
     OfMatch,
+    Planned,
     Played,
     Recalled,
     Replaced,
@@ -25,13 +26,17 @@ from lacoc_shared.words import Phrase, say
 class StageView(msgspec.Struct, frozen=True, kw_only=True):
     """A stage with its matches and tables."""
 
-    name: str
-    format: str
+    plan: Planned
     stage: Stage
     matches: tuple[Match, ...]
     tables: tuple[Table, ...]
     rounds_to_draw: int
     """Rounds that are still to be drawn."""
+
+    @property
+    def name(self) -> str:
+        """Name of the stage."""
+        return self.stage.name
 
     @property
     def may_draw(self) -> bool:
@@ -81,6 +86,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """In the order in which they entered."""
     stages: tuple[StageView, ...]
     """In the order in which they were drawn."""
+    planned: tuple[Planned, ...]
+    """The plans of stages that are not drawn yet, in the order in which they were first made."""
     running: tuple[Called, ...]
     """Games that are on a court now."""
     ended_ms: dict[str, tuple[str, int]]
@@ -159,16 +166,15 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
     for fact in known:
         if isinstance(fact, OfMatch):
             by_pairing.setdefault(fact.pairing, []).append(fact)
-    stages = [
-        _view(name, stage, formats[name], teams, by_pairing)
-        for name, stage in drawn_stages(known, teams, formats, unused)
-    ]
+    drawn, planned = drawn_stages(known, teams, formats, unused)
+    stages = [_view(plan, stage, formats[plan.format], teams, by_pairing) for plan, stage in drawn]
     matches = {match.pairing.id: match for view in stages for match in view.matches}
     for pairing, about in by_pairing.items():
         _note_unused(matches.get(pairing), about, unused)
     return Contest(
         teams=tuple(teams.values()),
         stages=tuple(stages),
+        planned=tuple(planned),
         running=_running(known, matches),
         ended_ms=_ended(known),
         unused=tuple(
@@ -188,11 +194,11 @@ def next_round(contest: Contest, name: str, formats: Mapping[str, Format]) -> tu
         raise UserError(say("league.no-round", stage=name))
     gone = {team.name for team in contest.teams if team.gone}
     matches = {match.pairing.id: match for match in view.matches}
-    return formats[view.format].next_round(view.stage, matches, gone)
+    return formats[view.plan.format].next_round(view.stage, matches, gone)
 
 
 def _view(
-    format_name: str,
+    plan: Planned,
     stage: Stage,
     how: Format,
     teams: Mapping[str, Team],
@@ -205,8 +211,7 @@ def _view(
     )
     matches = resolve(how.pairings(stage), by_pairing, gone, rules)
     return StageView(
-        name=stage.name,
-        format=format_name,
+        plan=plan,
         stage=stage,
         matches=tuple(matches.values()),
         tables=how.tables(stage, matches, out),

@@ -25,6 +25,8 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     name: str
     files: str
     """Hash of the files that it plays with."""
+    bot: str = ""
+    """Name of the bot that plays for it; "": people play."""
     withdrawn: bool = False
     disqualified: bool = False
 
@@ -47,7 +49,7 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
             if fact.team in teams:
                 unused[fact.id] = say("league.entered-twice", team=fact.team)
             else:
-                teams[fact.team] = Team(name=fact.team, files=fact.files)
+                teams[fact.team] = Team(name=fact.team, files=fact.files, bot=fact.bot)
         elif isinstance(fact, Withdrawn | Disqualified | FilesChanged):
             if fact.team not in teams:
                 unused[fact.id] = say("league.unknown-team", team=fact.team)
@@ -68,10 +70,10 @@ def drawn_stages(
     teams: Mapping[str, Team],
     formats: Mapping[str, Format],
     unused: dict[str, Phrase],
-) -> list[tuple[str, Stage]]:
-    """Return what is drawn: each stage with the name of its format, in the order of the draws."""
+) -> tuple[list[tuple[Planned, Stage]], list[Planned]]:
+    """Return the stages that are drawn, in the order of the draws, and the plans of the others."""
     plans: dict[str, Planned] = {}
-    stages: dict[str, tuple[str, Stage]] = {}
+    stages: dict[str, tuple[Planned, Stage]] = {}
     for fact in facts:
         if isinstance(fact, Planned):
             if fact.stage in stages:
@@ -87,16 +89,16 @@ def drawn_stages(
             if plan.format not in formats:
                 raise UserError(say("league.unknown-format", format=plan.format, known=[*formats]))
             stage = Stage(name=fact.stage, settings=plan.settings, entries=fact.entries)
-            stages[fact.stage] = (plan.format, stage)
+            stages[fact.stage] = (plan, stage)
         elif isinstance(fact, RoundDrawn):
             why = _cannot_draw_round(fact, stages, formats)
             if why is not None:
                 unused[fact.id] = why
                 continue
-            format_name, stage = stages[fact.stage]
+            plan, stage = stages[fact.stage]
             drawn = (*stage.drawn, fact.pairs)
-            stages[fact.stage] = (format_name, msgspec.structs.replace(stage, drawn=drawn))
-    return [*stages.values()]
+            stages[fact.stage] = (plan, msgspec.structs.replace(stage, drawn=drawn))
+    return [*stages.values()], [plan for name, plan in plans.items() if name not in stages]
 
 
 def _cannot_draw(
@@ -118,12 +120,12 @@ def _cannot_draw(
 
 
 def _cannot_draw_round(
-    fact: RoundDrawn, stages: Mapping[str, tuple[str, Stage]], formats: Mapping[str, Format]
+    fact: RoundDrawn, stages: Mapping[str, tuple[Planned, Stage]], formats: Mapping[str, Format]
 ) -> Phrase | None:
     if fact.stage not in stages:
         return say("league.not-drawn", stage=fact.stage)
-    name, stage = stages[fact.stage]
-    if fact.round != len(stage.drawn) + 1 or fact.round > formats[name].rounds(stage):
+    plan, stage = stages[fact.stage]
+    if fact.round != len(stage.drawn) + 1 or fact.round > formats[plan.format].rounds(stage):
         return say("league.other-round", stage=fact.stage, round=fact.round)
     teams = [team for pair in fact.pairs for team in pair]
     if len({*teams}) != len(teams) or not {*teams} <= {*stage.entries}:

@@ -5,7 +5,7 @@ more than once: `ordered` gives the same facts again. docs/contest.md says what 
 """
 
 from collections.abc import Iterable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
@@ -36,7 +36,9 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
 
     team: Name
     files: str = ""
-    """Hash of the robot file and the gait files."""
+    """Hash of the robot file, the gait files and the bot."""
+    bot: str = ""
+    """Name of the bot that plays for the team; "": people play."""
 
 
 class Withdrawn(Fact, frozen=True, kw_only=True, tag="withdrawn"):
@@ -88,6 +90,14 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     stage: Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,31}$")]
     format: Name
     settings: Settings = Settings()
+    after: str = ""
+    """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
+    teams: Annotated[int, msgspec.Meta(ge=0)] = 0
+    """The best so many take part; 0: all."""
+    arena: str = ""
+    """The game."""
+    arena_settings: dict[str, Any] = {}
+    """Entries that replace those of the arena file."""
 
 
 class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
@@ -135,7 +145,9 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     """Points of the left and of the right seat."""
     outcome: Outcome
     record: str = ""
-    """Hash of the court's record."""
+    """File name of the court's record."""
+    record_hash: str = ""
+    """Hash of that file (`lacoc_server.contest.folder.file_hash`)."""
 
 
 class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):
@@ -178,6 +190,14 @@ OfTeam = Entered | Withdrawn | Disqualified | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow
 OfStage = Planned | Drawn | RoundDrawn
 AnyFact = OfTeam | OfMatch | OfStage
+
+
+_Kind = TypeVar("_Kind", bound=Fact)
+
+
+def new(kind: type[_Kind], **values: Any) -> _Kind:
+    """Make a fact that has no place among the facts yet; a store gives it one."""
+    return kind(id="new", number=0, **values)
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,0 +1,99 @@
+"""The sheet of a contest: everything that is public about it, for pages and for whoever checks it.
+
+It is computed from the facts alone, so the same facts give the same bytes.
+"""
+
+from collections.abc import Iterable, Mapping
+
+import msgspec
+
+from lacoc_server.contest.league.contest import Contest, StageView, Unused, compute
+from lacoc_server.contest.league.draws import Team
+from lacoc_server.contest.league.facts import AnyFact, Called, Planned
+from lacoc_server.contest.league.formats.format import Format
+from lacoc_server.contest.league.rating import Rated, Rating, ratings
+from lacoc_server.contest.league.schedule import playable
+
+VERSION = 1
+"""Version of the layout of a sheet."""
+
+
+class Coming(msgspec.Struct, frozen=True, kw_only=True):
+    """A game that can be played as soon as a court is free."""
+
+    pairing: str
+    game: int
+    teams: tuple[str, str]
+    """Who will sit left and right."""
+
+
+class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
+    """What is public about a contest."""
+
+    version: int = VERSION
+    name: str
+    teams: tuple[Team, ...]
+    """In the order in which they entered."""
+    stages: tuple[StageView, ...]
+    """The stages that were drawn, in the order of their draws."""
+    planned: tuple[Planned, ...]
+    """The stages that are not drawn yet."""
+    running: tuple[Called, ...]
+    """The games that are on a court now."""
+    coming: tuple[Coming, ...]
+    """The games that can be played next, in their order."""
+    ratings: tuple[Rating, ...]
+    """The strongest first; teams that have played no game are not among them."""
+    side_elo: float
+    """Advantage of the left side."""
+    unused: tuple[Unused, ...]
+    """Facts that change nothing, and why."""
+
+
+def sheet_of(name: str, facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> ContestSheet:
+    """Compute the sheet of a contest.
+
+    Args:
+        name: the contest's name.
+        facts: in any order.
+        formats: the known formats by name.
+
+    Raises:
+        UserError: if the facts contradict each other, or name an unknown format or tie-break.
+    """
+    return sheet(name, compute(facts, formats))
+
+
+def sheet(name: str, contest: Contest) -> ContestSheet:
+    """Make the sheet of a computed contest."""
+    games = [game for view in contest.stages for match in view.matches for game in match.games]
+    rated = ratings(Rated(*game.teams, game.winner) for game in games)
+    return ContestSheet(
+        name=name,
+        teams=contest.teams,
+        stages=contest.stages,
+        planned=contest.planned,
+        running=contest.running,
+        coming=tuple(
+            Coming(pairing=match.pairing.id, game=match.next_game, teams=match.next_seats)
+            for match in playable(contest)
+            if match.next_seats is not None
+        ),
+        ratings=rated.teams,
+        side_elo=rated.side_elo,
+        unused=contest.unused,
+    )
+
+
+def encode(sheet: ContestSheet) -> bytes:
+    """Return a sheet as JSON; the same facts give the same bytes."""
+    return msgspec.json.encode(sheet, order="deterministic")
+
+
+def decode(data: bytes) -> ContestSheet:
+    """Read a sheet from JSON.
+
+    Raises:
+        msgspec.MsgspecError: if it is not the JSON of a sheet.
+    """
+    return msgspec.json.decode(data, type=ContestSheet)
