@@ -168,4 +168,4 @@ def test_a_full_disk_forgets_later(tmp_path: Path) -> None:
     """If the disk is full, a student is not forgotten, goes on, and can be forgotten later."""
     words = [sys.executable, "-c", FULL, str(tmp_path / CLASS_FILE)]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["class.no-room", "3", "0"]
+    assert done.stdout.split() == ["database.no-room", "3", "0"]

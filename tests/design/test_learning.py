@@ -161,4 +161,4 @@ def test_a_file_that_cannot_be_kept_is_told_and_disturbs_nobody(
         page.ask("edit", table=changed(table, 1, 0, 20.0), by="hand", guess="forward")
         page.until(lambda: page.phases["phases"][0]["share"] > 0)
 
-        assert page.phases["trouble"]["code"] == "class.in-use"
+        assert page.phases["trouble"]["code"] == "database.in-use"

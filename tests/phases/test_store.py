@@ -126,7 +126,7 @@ def test_one_program_at_a_time_has_a_class(path: Path) -> None:
         for again in (ClassStore, forget):
             with pytest.raises(UserError) as refused:
                 again(path)
-            assert refused.value.phrase.code == "class.in-use"
+            assert refused.value.phrase.code == "database.in-use"
         assert store.add("Ada", GUESS, 1.0).result() == 1
 
 
@@ -223,7 +223,7 @@ def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
         [sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True
     )
 
-    assert done.stdout.splitlines() == ["class.no-room class.no-room", "2 None"]
+    assert done.stdout.splitlines() == ["database.no-room database.no-room", "2 None"]
     with ClassStore(path) as store:
         hands = [one.evidence for one in store.evidence().result()]
         assert hands == [Hand(up=True), Hand(up=True)]
@@ -240,7 +240,7 @@ def test_another_programs_database_is_left_alone(path: Path) -> None:
     for use in (ClassStore, ClassFile, forget):
         with pytest.raises(UserError) as refused:
             use(path)
-        assert refused.value.phrase.code == "class.newer"
+        assert refused.value.phrase.code == "database.newer"
     assert path.read_bytes() == before
     assert names(path) == {path.name}
 

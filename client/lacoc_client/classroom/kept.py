@@ -5,9 +5,10 @@ from pathlib import Path
 
 from lacoc_client.design.learning.draft import NAME as DRAFT
 from lacoc_client.design.learning.draft import read_draft
-from lacoc_client.phases.class_file import ClassFile, Damaged, Document
+from lacoc_client.phases.class_file import ClassFile, Document
 from lacoc_client.phases.export import evidence_csv, tables_zip
 from lacoc_client.seat_files import USUAL_NAMES
+from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.words import say
 
@@ -44,7 +45,7 @@ def export(path: Path) -> dict[str, bytes]:
     try:
         file = ClassFile(path)
     except Damaged as error:
-        raise UserError(say("class.cannot-open", file=text_of(path), why=str(error))) from None
+        raise UserError(say("database.cannot-open", file=text_of(path), why=str(error))) from None
     try:
         return {
             EVIDENCE: evidence_csv(file.evidence()),

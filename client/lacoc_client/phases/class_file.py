@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lacoc_client.phases.evidence import Evidence, Voted, from_json, to_json
+from lacoc_shared.command import database
+from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
@@ -31,10 +33,6 @@ CREATE TABLE votes (
     PRIMARY KEY (poll, choice)
 ) WITHOUT ROWID;
 """
-
-
-class Damaged(Exception):
-    """The file is damaged: SQLite can't read it as a database."""
 
 
 class Kept(NamedTuple):
@@ -76,20 +74,7 @@ class ClassFile:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        try:
-            self._db = sqlite3.connect(
-                path, timeout=0, isolation_level="IMMEDIATE", check_same_thread=False
-            )
-        except sqlite3.Error as error:
-            raise self.problem(error, opening=True) from None
-        try:
-            self._set_up()
-        except sqlite3.Error as error:
-            self._db.close()
-            raise self.problem(error, opening=True) from None
-        except Exception:
-            self._db.close()
-            raise
+        self._db = database.connect(path, _APPLICATION, _VERSION, _TABLES, alone=True)
 
     def add(
         self, student: str, evidence: Evidence, at_s: float, documents: Iterable[Document] = ()
@@ -162,22 +147,9 @@ class ClassFile:
         """Close the file."""
         self._db.close()
 
-    def problem(self, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
-        """Return the exception that an error of SQLite stands for.
-
-        Args:
-            error: the error.
-            opening: whether the error came while the file was opened.
-        """
-        file, why = text_of(self._path.name), str(error)
-        match getattr(error, "sqlite_errorcode", 0) & 0xFF:
-            case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
-                return Damaged(why)
-            case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED:
-                return UserError(say("class.in-use", file=file))
-        if opening:
-            return UserError(say("class.cannot-open", file=text_of(self._path), why=why))
-        return UserError(say("class.no-room", file=file, why=why))
+    def problem(self, error: sqlite3.Error) -> Damaged | UserError:
+        """Return the exception that an error of SQLite stands for."""
+        return database.problem(self._path, error)
 
     def _write_documents(self, documents: Iterable[Document]) -> None:
         self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", documents)
@@ -188,31 +160,6 @@ class ClassFile:
             (student, at_s, *_row(evidence)),
         )
         return int(added.lastrowid or 0)
-
-    def _set_up(self) -> None:
-        db = self._db
-        db.execute("PRAGMA locking_mode = EXCLUSIVE")
-        application, version = self._number("application_id"), self._number("user_version")
-        if self._number("schema_version") and (application, version) != (_APPLICATION, _VERSION):
-            raise UserError(say("class.newer", file=text_of(self._path)))
-        db.execute("PRAGMA journal_mode = WAL")
-        db.execute("PRAGMA secure_delete = ON")  # what is forgotten can't be read in the file
-        db.execute("PRAGMA synchronous = FULL")  # a commit is on the disk, also if power fails
-        # One transaction makes all tables or none. A file without tables counts as a new one.
-        with db:
-            db.execute("BEGIN IMMEDIATE")  # takes the lock, which is held until the file is closed
-            if not application:
-                for statement in filter(str.strip, _TABLES.split(";")):
-                    db.execute(statement)
-                db.execute(f"PRAGMA application_id = {_APPLICATION}")
-                db.execute(f"PRAGMA user_version = {_VERSION}")
-        (found,) = db.execute("PRAGMA quick_check(1)").fetchone()
-        if found != "ok":
-            raise Damaged(found)
-
-    def _number(self, name: str) -> int:
-        (number,) = self._db.execute(f"PRAGMA {name}").fetchone()
-        return int(number)
 
 
 def set_aside(path: Path) -> Path:
@@ -234,7 +181,7 @@ def set_aside(path: Path) -> Path:
         path.rename(kept)
     except OSError as error:
         why = error.strerror or str(error)
-        raise UserError(say("class.cannot-open", file=text_of(path), why=why)) from None
+        raise UserError(say("database.cannot-open", file=text_of(path), why=why)) from None
     return kept
 
 

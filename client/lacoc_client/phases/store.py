@@ -9,8 +9,9 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, TypeVar
 
-from lacoc_client.phases.class_file import ClassFile, Damaged, Document, Kept, set_aside
+from lacoc_client.phases.class_file import ClassFile, Document, Kept, set_aside
 from lacoc_client.phases.evidence import Evidence
+from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import Phrase, say
 

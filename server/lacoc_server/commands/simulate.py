@@ -4,6 +4,7 @@ import itertools
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +17,7 @@ from lacoc_server.contest.league.formats.round_robin import circle_round
 from lacoc_server.contest.league.standings import Counted, Standing, standings
 from lacoc_server.contest.pool import Job, interrupted_by_signals, play_all
 from lacoc_server.match.entry import weigh_in
-from lacoc_server.simulate import player
+from lacoc_server.simulate import player, seated
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.record.schema import Result
@@ -113,11 +114,21 @@ def simulate_command(
         raise _all_of(out)
     if out and not json:
         _show_left_out(out)
+    matches = dict(
+        enumerate(_matches(fit, len(seats), both_sides, rounds, repeat), _first_number(record))
+    )
+    sit = cache(lambda seat, name: seated(loaded, seat, name, robot))
+    names = {_match_id(number): who for number, (who, _) in matches.items()}
     work = [
-        Job(f"simulated-{number:03d}", arena, overrides, robot, names, late_ticks, _text(record))
-        for number, (names, late_ticks) in enumerate(
-            _matches(fit, len(seats), both_sides, rounds, repeat), _first_number(record)
+        Job(
+            match_id=_match_id(number),
+            arena=arena,
+            overrides=overrides,
+            players=tuple(sit(seat, name) for seat, name in enumerate(who)),
+            late_ticks=late_ticks,
+            folder=_text(record),
         )
+        for number, (who, late_ticks) in matches.items()
     ]
     if json:
         screen.print_json({"kind": "begin", "players": fit, "matches": len(work)})
@@ -126,9 +137,9 @@ def simulate_command(
     with interrupted_by_signals(), closing(play_all(work, jobs)) as playing:
         for job, result in playing:
             results[job.match_id] = result
-            table = _standings(fit, work, results, seats)
+            table = _standings(fit, names, results, seats)
             if json:
-                screen.print_json(_match_line(job, result, seats))
+                screen.print_json(_match_line(job, names[job.match_id], result, seats))
                 screen.print_json(_standings_line(len(results), table))
     if json:
         return
@@ -229,10 +240,16 @@ def _pairs(
     return [seated for pair in pairs for seated in (pair, pair[::-1])] if both_sides else pairs
 
 
-def _match_line(job: Job, result: Result, seats: Sequence[str]) -> dict[str, Any]:
+def _match_id(number: int) -> str:
+    return f"simulated-{number:03d}"
+
+
+def _match_line(
+    job: Job, names: Sequence[str], result: Result, seats: Sequence[str]
+) -> dict[str, Any]:
     return {
         "kind": "match",
-        "players": job.players,
+        "players": names,
         "winner": _winner(result, seats),
         "record": job.record and job.record.name,
         "result": result,
@@ -244,13 +261,15 @@ def _winner(result: Result, seats: Sequence[str]) -> int | None:
 
 
 def _standings(
-    players: Sequence[str], work: Sequence[Job], results: Mapping[str, Result], seats: Sequence[str]
+    players: Sequence[str],
+    names: Mapping[str, tuple[str, ...]],
+    results: Mapping[str, Result],
+    seats: Sequence[str],
 ) -> Sequence[Standing]:
     """Rank the players; those who are equal stay in the order in which they were named."""
-    ended = ((job, results[job.match_id]) for job in work if job.match_id in results)
     counted = [
-        Counted(job.players, result.scores, _winner(result, seats))
-        for job, result in ended
+        Counted(names[match_id], result.scores, _winner(result, seats))
+        for match_id, result in results.items()
         if result.official != "void"
     ]
     return standings([*dict.fromkeys(players)], counted, _ORDER).rows

@@ -2,16 +2,19 @@
 
 import os
 import signal
+import tempfile
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import msgspec
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.simulate import player, simulate
+from lacoc_arenas import brains
+from lacoc_arenas.bot import BotFactory
+from lacoc_server.simulate import Player, Seated, simulate
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
 from lacoc_shared.messages import Frame
@@ -26,21 +29,37 @@ _LONGEST_S = 86_400.0
 _LOOK_S = 0.5
 
 
-class Job(msgspec.Struct, frozen=True):
-    """A match to play; a worker process can take it."""
+class Job(msgspec.Struct, frozen=True, kw_only=True):
+    """A match to play; a process, also on another machine, can take it."""
 
     match_id: str
     arena: str
     overrides: dict[str, Any]
-    robot: str
-    players: tuple[str, ...]
+    players: tuple[Seated, ...]
     late_ticks: int
-    folder: str | None
+    limits: dict[str, float] = {}
+    folder: str | None = None
+    """Folder of the record; None: there is none."""
+    brings_record: bool = False
+    """Whether the record comes back as bytes; it is in no folder then."""
 
     @property
     def record(self) -> Path | None:
-        """The file of the match's record; None: it is not recorded."""
+        """The file of the match's record; None: it is in no folder."""
         return files.packed_path(Path(self.folder), self.match_id) if self.folder else None
+
+    @property
+    def teams(self) -> tuple[str, ...]:
+        """Names of the teams, by seat."""
+        return tuple(one.join.team for one in self.players)
+
+
+class Ended(NamedTuple):
+    """A match that was played."""
+
+    result: Result
+    record: bytes | None
+    """The record, if the job brings it."""
 
 
 @contextmanager
@@ -51,6 +70,50 @@ def interrupted_by_signals() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+class Pool:
+    """Plays matches in processes of this machine; used as a context manager.
+
+    When it is closed, no half record of a match is left.
+
+    Args:
+        jobs: number of processes; None: one for each core.
+    """
+
+    def __init__(self, jobs: int | None = None) -> None:
+        self._workers = Workers(jobs or os.cpu_count() or 1, background=True, limit_s=_LONGEST_S)
+        self._playing: dict[Future[Ended | Phrase], Job] = {}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._workers.close()
+        for future, job in self._playing.items():
+            if future.done() and not future.cancelled() and _is_lost(future):
+                _remove_half_record(job)
+
+    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+        """Play a match when a process is free; its result is read with `ended`."""
+        future = self._workers.submit(attempt, job)
+        self._playing[future] = job
+        return future
+
+
+def ended(job: Job, future: "Future[Ended | Phrase]") -> Ended:
+    """Return what a match that is over came to.
+
+    Raises:
+        UserError: if its files or its record have a mistake, or its process died.
+    """
+    try:
+        found = future.result()
+    except WorkerDied:
+        raise UserError(say("simulate.died", players=job.teams)) from None
+    if isinstance(found, Phrase):
+        raise UserError(found)
+    return found
 
 
 def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Result], None, None]:
@@ -69,47 +132,42 @@ def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Resu
     if len(work) == 1:
         yield work[0], _play_one(work[0])
         return
-    playing: dict[Future[Result | Phrase], Job] = {}
-    workers = Workers(
-        min(jobs or os.cpu_count() or 1, len(work)), background=True, limit_s=_LONGEST_S
-    )
-    try:
-        with screen.progress() as progress, workers:
-            task = progress.add_task(render(say("simulate.matches")), total=len(work))
-            playing = {workers.submit(_attempt, job): job for job in work}
-            waiting = set(playing)
-            while waiting:
-                # A wait without an end could not be interrupted on Windows.
-                ended, waiting = wait(waiting, _LOOK_S, FIRST_COMPLETED)
-                for future in ended:
-                    progress.advance(task)
-                    yield playing[future], _result(playing[future], future)
-    finally:
-        for future, job in playing.items():
-            if future.done() and not future.cancelled() and _is_lost(future):
-                _remove_half_record(job)
+    workers = min(jobs or os.cpu_count() or 1, len(work))
+    with Pool(workers) as pool, screen.progress() as progress:
+        task = progress.add_task(render(say("simulate.matches")), total=len(work))
+        playing = {pool.submit(job): job for job in work}
+        waiting = set(playing)
+        while waiting:
+            done, waiting = first_done(waiting)
+            for future in done:
+                progress.advance(task)
+                yield playing[future], ended(playing[future], future).result
 
 
-def _result(job: Job, future: "Future[Result | Phrase]") -> Result:
-    try:
-        found = future.result()
-    except WorkerDied:
-        raise UserError(say("simulate.died", players=job.players)) from None
-    if isinstance(found, Phrase):
-        raise UserError(found)
-    return found
+def first_done(
+    futures: "set[Future[Ended | Phrase]]",
+) -> "tuple[set[Future[Ended | Phrase]], set[Future[Ended | Phrase]]]":
+    """Wait at most half a second for matches; return those that are over, and the others."""
+    # A wait without an end could not be interrupted on Windows.
+    return wait(futures, _LOOK_S, FIRST_COMPLETED)
 
 
-def _is_lost(future: "Future[Result | Phrase]") -> bool:
-    return isinstance(future.exception(), WorkerDied)
-
-
-def _attempt(job: Job) -> Result | Phrase:
+def attempt(job: Job) -> Ended | Phrase:
     """Play a match in a worker process; an error that a user can correct is returned."""
     try:
-        return _play(job)
+        if not job.brings_record:
+            return Ended(_play(job), None)
+        with tempfile.TemporaryDirectory() as folder:
+            here = msgspec.structs.replace(job, folder=folder)
+            result = _play(here)
+            assert here.record is not None
+            return Ended(result, here.record.read_bytes())
     except UserError as error:
         return error.phrase
+
+
+def _is_lost(future: "Future[Ended | Phrase]") -> bool:
+    return isinstance(future.exception(), WorkerDied)
 
 
 def _remove_half_record(job: Job) -> None:
@@ -128,19 +186,25 @@ def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Result:
         match=1,
         arena=arena.name,
         settings=arena.settings,
-        limits={},
+        limits=job.limits,
     )
-    seated = [
-        player(arena, seat, name, job.robot, late_ticks=job.late_ticks)
-        for seat, name in enumerate(job.players)
-    ]
-    return simulate(setup, seated, Path(job.folder) if job.folder else None, watch, arena.folder)
+    players = [Player(one.join, _bot(arena, one), job.late_ticks) for one in job.players]
+    return simulate(setup, players, Path(job.folder) if job.folder else None, watch, arena.folder)
+
+
+def _bot(arena: arenas.Arena, seated: Seated) -> BotFactory:
+    if seated.program is None:
+        return brains.find(arena, seated.bot)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "bot.py")
+        file.write_bytes(seated.program)
+        return brains.find(arena, str(file))
 
 
 def _play_one(job: Job) -> Result:
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
     with screen.progress() as progress:
-        task = progress.add_task(" : ".join(job.players), total=round(duration_s))
+        task = progress.add_task(" : ".join(job.teams), total=round(duration_s))
 
         def watch(frame: Frame) -> None:
             if frame.beat % BEATS_PER_S == 0:

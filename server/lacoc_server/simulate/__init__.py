@@ -1,5 +1,5 @@
 """Matches without a network, as fast as the machine can."""
 
-from lacoc_server.simulate.headless import SETTLE_BEATS, Player, player, simulate
+from lacoc_server.simulate.headless import SETTLE_BEATS, Player, Seated, player, seated, simulate
 
-__all__ = ["SETTLE_BEATS", "Player", "player", "simulate"]
+__all__ = ["SETTLE_BEATS", "Player", "Seated", "player", "seated", "simulate"]

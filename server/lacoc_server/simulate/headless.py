@@ -37,6 +37,17 @@ SETTLE_BEATS = BEATS_PER_S
 """How long robots stand in READY before the start [beats]."""
 
 
+class Seated(msgspec.Struct, frozen=True):
+    """A player of a seat that another process can take: files, and the name of a bot."""
+
+    join: JoinSeat
+    """The join; its `seat` is the player's seat."""
+    bot: str
+    """Name of the bot as in `brains.find`; with a program, a name for messages."""
+    program: bytes | None = None
+    """Python source of the bot; None: the name says where the bot is."""
+
+
 @dataclass(frozen=True)
 class Player:
     """A player of a seat: files and a bot."""
@@ -56,7 +67,24 @@ def player(
     team: str | None = None,
     late_ticks: int = 0,
 ) -> Player:
-    """Make a player: a bot, or the ghost of a record with the files that it played with.
+    """Make a player: `seated` with its bot; arguments and errors are those of `seated`.
+
+    Args:
+        arena: the arena.
+        seat: index of the seat.
+        bot: name of the bot.
+        robot: an installed robot, or a robot file.
+        team: name of the team.
+        late_ticks: see `Player`.
+    """
+    one = seated(arena, seat, bot, robot, team)
+    return Player(one.join, brains.find(arena, one.bot), late_ticks)
+
+
+def seated(
+    arena: arenas.Arena, seat: int, bot: str, robot: str = "hexapod", team: str | None = None
+) -> Seated:
+    """Seat a bot, or the ghost of a record with the files that it played with.
 
     Args:
         arena: the arena.
@@ -65,7 +93,6 @@ def player(
             folder: gait files, and `robot.toml` if there is one.
         robot: an installed robot, or a robot file with its gait beside it; a ghost has its own.
         team: name of the team; None: the folder's name, or the bot's.
-        late_ticks: see `Player`.
 
     Raises:
         UserError: if there is no such bot, robot, folder, gait or record.
@@ -79,7 +106,7 @@ def player(
         files = _of_folder(arena, Path(folder), robot) if brought else _of_robot(arena, robot)
         team = team or text_of(Path(folder).resolve().name) if brought else team
     join = JoinSeat(seat, team or text_of(Path(bot).stem), *files, token_hash="")
-    return Player(join, brains.find(arena, bot), late_ticks)
+    return Seated(join, bot)
 
 
 def _of_robot(arena: arenas.Arena, robot: str) -> _Files:
