@@ -1,0 +1,94 @@
+"""The file of a contest's facts: they are appended, and none is ever changed."""
+
+import sqlite3
+import time
+from pathlib import Path
+from typing import Self
+
+import msgspec
+
+from lacoc_server.contest.league.facts import AnyFact
+from lacoc_shared.command import database
+from lacoc_shared.command.database import Damaged
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import say
+
+_APPLICATION, _VERSION = 0x4C434654, 1
+"""Numbers in the file's header that mark facts: "LCFT" in ASCII, and the version of `_TABLES`."""
+_TABLES = """
+CREATE TABLE facts (number INTEGER PRIMARY KEY, at_ms INTEGER NOT NULL, body TEXT NOT NULL);
+CREATE TRIGGER no_change BEFORE UPDATE ON facts BEGIN SELECT RAISE(ABORT, 'a fact stays'); END;
+CREATE TRIGGER no_loss BEFORE DELETE ON facts BEGIN SELECT RAISE(ABORT, 'a fact stays'); END
+"""
+
+
+class FactStore:
+    """The facts of a contest on the disk; several programs can use one file.
+
+    When `append` returns, its facts are on the disk, all or none of them. Used as a context manager.
+
+    Args:
+        path: the file; it is made if there is none.
+
+    Raises:
+        UserError: if it is damaged, a database of something else, or can't be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            self._db = database.connect(path, _APPLICATION, _VERSION, _TABLES, alone=False)
+        except Damaged as damage:
+            raise UserError(
+                say("event.damaged", file=text_of(path), why=str(damage))
+            ) from None
+        self._known: list[AnyFact] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._db.close()
+
+    def append(self, *facts: AnyFact) -> None:
+        """Append facts; they get their places, ids and times here.
+
+        Raises:
+            UserError: if the file can't be written; nothing is appended then.
+        """
+        now_ms = time.time_ns() // 1_000_000
+        try:
+            with self._db:
+                (last,) = self._db.execute("SELECT ifnull(max(number), 0) FROM facts").fetchone()
+                for number, fact in enumerate(facts, last + 1):
+                    placed = msgspec.structs.replace(
+                        fact, id=f"f{number}", number=number, at_ms=now_ms
+                    )
+                    row = (number, now_ms, msgspec.json.encode(placed).decode())
+                    self._db.execute("INSERT INTO facts VALUES (?, ?, ?)", row)
+        except sqlite3.Error as error:
+            raise self._problem(error) from None
+
+    def facts(self) -> tuple[AnyFact, ...]:
+        """Read all facts in their order, also those that other programs have appended.
+
+        Raises:
+            UserError: if the file can't be read, or a fact in it is not one of this version.
+        """
+        last = self._known[-1].number if self._known else 0
+        try:
+            rows = self._db.execute(
+                "SELECT body FROM facts WHERE number > ? ORDER BY number", (last,)
+            ).fetchall()
+            self._known += [msgspec.json.decode(body, type=AnyFact) for (body,) in rows]
+        except sqlite3.Error as error:
+            raise self._problem(error) from None
+        except msgspec.MsgspecError as error:
+            raise UserError(say("league.wrong-facts", error=str(error))) from None
+        return tuple(self._known)
+
+    def _problem(self, error: sqlite3.Error) -> UserError:
+        found = database.problem(self._path, error)
+        if isinstance(found, UserError):
+            return found
+        return UserError(say("event.damaged", file=text_of(self._path), why=str(found)))

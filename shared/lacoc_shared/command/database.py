@@ -1,0 +1,95 @@
+"""Files of SQLite: opened, recognised and checked in the same way for whoever keeps data in one."""
+
+import sqlite3
+from pathlib import Path
+
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import say
+
+
+class Damaged(Exception):
+    """The file is damaged: SQLite can't read it as a database."""
+
+
+def connect(
+    path: Path, application: int, version: int, tables: str, *, alone: bool
+) -> sqlite3.Connection:
+    """Open a database file; it is made if there is none.
+
+    What was committed is on the disk, also if the power fails.
+
+    Args:
+        path: the file.
+        application: number in the file's header that marks this kind of file.
+        version: version of its tables.
+        tables: SQL statements that make the tables of a new file.
+        alone: True: no other program can open the file meanwhile.
+
+    Raises:
+        Damaged: if SQLite can't read the file as a database.
+        UserError: if another program has the file for itself, if it is a database of something
+            else, or if it can't be opened.
+    """
+    try:
+        db = sqlite3.connect(
+            path, timeout=0 if alone else 10, isolation_level="IMMEDIATE", check_same_thread=False
+        )
+    except sqlite3.Error as error:
+        raise problem(path, error, opening=True) from None
+    try:
+        _set_up(db, path, (application, version), tables, alone)
+    except sqlite3.Error as error:
+        db.close()
+        raise problem(path, error, opening=True) from None
+    except Exception:
+        db.close()
+        raise
+    return db
+
+
+def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
+    """Return the exception that an error of SQLite stands for.
+
+    Args:
+        path: the database file.
+        error: the error.
+        opening: whether the error came while the file was opened.
+    """
+    file, why = text_of(path.name), str(error)
+    match getattr(error, "sqlite_errorcode", 0) & 0xFF:
+        case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
+            return Damaged(why)
+        case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED:
+            return UserError(say("database.in-use", file=file))
+    if opening:
+        return UserError(say("database.cannot-open", file=text_of(path), why=why))
+    return UserError(say("database.no-room", file=file, why=why))
+
+
+def _set_up(
+    db: sqlite3.Connection, path: Path, kind: tuple[int, int], tables: str, alone: bool
+) -> None:
+    if alone:
+        db.execute("PRAGMA locking_mode = EXCLUSIVE")
+    found = (_number(db, "application_id"), _number(db, "user_version"))
+    if _number(db, "schema_version") and found != kind:
+        raise UserError(say("database.newer", file=text_of(path)))
+    db.execute("PRAGMA journal_mode = WAL")
+    db.execute("PRAGMA secure_delete = ON")  # what is deleted can't be read in the file
+    db.execute("PRAGMA synchronous = FULL")
+    # One transaction makes all tables or none. A file without tables counts as a new one.
+    with db:
+        db.execute("BEGIN IMMEDIATE")  # with `alone`, the lock is held until the file is closed
+        if not _number(db, "application_id"):
+            for statement in filter(str.strip, tables.split(";")):
+                db.execute(statement)
+            db.execute(f"PRAGMA application_id = {kind[0]}")
+            db.execute(f"PRAGMA user_version = {kind[1]}")
+    (whole,) = db.execute("PRAGMA quick_check(1)").fetchone()
+    if whole != "ok":
+        raise Damaged(whole)
+
+
+def _number(db: sqlite3.Connection, name: str) -> int:
+    (number,) = db.execute(f"PRAGMA {name}").fetchone()
+    return int(number)
