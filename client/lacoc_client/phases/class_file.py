@@ -17,22 +17,30 @@ _APPLICATION, _VERSION = 0x4C41434F, 1
 """Numbers in the file's header that mark a class: "LACO" in ASCII, and the version of `_TABLES`."""
 _BESIDE = ("", "-wal", "-shm", "-journal")
 """Endings of the names of the files that SQLite keeps for one database."""
-_TABLES = """
-CREATE TABLE evidence (
-    number INTEGER PRIMARY KEY AUTOINCREMENT,
-    student TEXT NOT NULL, at_s REAL NOT NULL, kind TEXT NOT NULL, body TEXT NOT NULL
-);
-CREATE INDEX evidence_of_student ON evidence (student, number);
-CREATE TABLE tables (
-    student TEXT NOT NULL, name TEXT NOT NULL,
-    version TEXT NOT NULL, at_s REAL NOT NULL, content BLOB NOT NULL,
-    PRIMARY KEY (student, name)
-) WITHOUT ROWID;
-CREATE TABLE votes (
-    poll TEXT NOT NULL, choice TEXT NOT NULL, votes INTEGER NOT NULL,
-    PRIMARY KEY (poll, choice)
-) WITHOUT ROWID;
-"""
+_TABLES = (
+    """
+    CREATE TABLE evidence (
+        number INTEGER PRIMARY KEY AUTOINCREMENT,
+        student TEXT NOT NULL, at_s REAL NOT NULL, kind TEXT NOT NULL, body TEXT NOT NULL
+    )
+    """,
+    """
+    CREATE INDEX evidence_of_student ON evidence (student, number)
+    """,
+    """
+    CREATE TABLE tables (
+        student TEXT NOT NULL, name TEXT NOT NULL,
+        version TEXT NOT NULL, at_s REAL NOT NULL, content BLOB NOT NULL,
+        PRIMARY KEY (student, name)
+    ) WITHOUT ROWID
+    """,
+    """
+    CREATE TABLE votes (
+        poll TEXT NOT NULL, choice TEXT NOT NULL, votes INTEGER NOT NULL,
+        PRIMARY KEY (poll, choice)
+    ) WITHOUT ROWID
+    """,
+)
 
 
 class Kept(NamedTuple):

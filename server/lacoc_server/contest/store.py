@@ -15,17 +15,17 @@ from lacoc_shared.words import say
 
 _APPLICATION, _VERSION = 0x4C434654, 1
 """Numbers in the file's header that mark facts: "LCFT" in ASCII, and the version of `_TABLES`."""
-_TABLES = """
-CREATE TABLE facts (number INTEGER PRIMARY KEY, at_ms INTEGER NOT NULL, body TEXT NOT NULL);
-CREATE TRIGGER no_change BEFORE UPDATE ON facts BEGIN SELECT RAISE(ABORT, 'a fact stays'); END;
-CREATE TRIGGER no_loss BEFORE DELETE ON facts BEGIN SELECT RAISE(ABORT, 'a fact stays'); END
-"""
+_TABLES = (
+    "CREATE TABLE facts (number INTEGER PRIMARY KEY, at_ms INTEGER NOT NULL, body TEXT NOT NULL)",
+    "CREATE TRIGGER unchanged BEFORE UPDATE ON facts BEGIN SELECT RAISE(ABORT, 'facts stay'); END",
+    "CREATE TRIGGER kept BEFORE DELETE ON facts BEGIN SELECT RAISE(ABORT, 'facts stay'); END",
+)
 
 
 class FactStore:
     """The facts of a contest on the disk; several programs can use one file.
 
-    When `append` returns, its facts are on the disk, all or none of them. Used as a context manager.
+    Used as a context manager. When `append` returns, its facts are on the disk, or none of them.
 
     Args:
         path: the file; it is made if there is none.
@@ -40,7 +40,7 @@ class FactStore:
             self._db = database.connect(path, _APPLICATION, _VERSION, _TABLES, alone=False)
         except Damaged as damage:
             raise UserError(
-                say("event.damaged", file=text_of(path), why=str(damage))
+                say("contest.facts-damaged", file=text_of(path), why=str(damage))
             ) from None
         self._known: list[AnyFact] = []
 
@@ -91,4 +91,4 @@ class FactStore:
         found = database.problem(self._path, error)
         if isinstance(found, UserError):
             return found
-        return UserError(say("event.damaged", file=text_of(self._path), why=str(found)))
+        return UserError(say("contest.facts-damaged", file=text_of(self._path), why=str(found)))

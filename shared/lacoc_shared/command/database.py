@@ -1,6 +1,7 @@
 """Files of SQLite: opened, recognised and checked in the same way for whoever keeps data in one."""
 
 import sqlite3
+from collections.abc import Sequence
 from pathlib import Path
 
 from lacoc_shared.mistakes import UserError, text_of
@@ -12,7 +13,7 @@ class Damaged(Exception):
 
 
 def connect(
-    path: Path, application: int, version: int, tables: str, *, alone: bool
+    path: Path, application: int, version: int, tables: Sequence[str], *, alone: bool
 ) -> sqlite3.Connection:
     """Open a database file; it is made if there is none.
 
@@ -67,7 +68,7 @@ def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged 
 
 
 def _set_up(
-    db: sqlite3.Connection, path: Path, kind: tuple[int, int], tables: str, alone: bool
+    db: sqlite3.Connection, path: Path, kind: tuple[int, int], tables: Sequence[str], alone: bool
 ) -> None:
     if alone:
         db.execute("PRAGMA locking_mode = EXCLUSIVE")
@@ -81,7 +82,7 @@ def _set_up(
     with db:
         db.execute("BEGIN IMMEDIATE")  # with `alone`, the lock is held until the file is closed
         if not _number(db, "application_id"):
-            for statement in filter(str.strip, tables.split(";")):
+            for statement in tables:
                 db.execute(statement)
             db.execute(f"PRAGMA application_id = {kind[0]}")
             db.execute(f"PRAGMA user_version = {kind[1]}")
