@@ -24,7 +24,7 @@ class Outbox:
         self._waiting.put((publisher, payload))
 
     def send_newest(self, publisher: Publisher, payload: bytes) -> None:
-        """Send a message, unless a newer one replaces it while it still waits."""
+        """Send a message, unless a newer one of the same publisher comes while it still waits."""
         self._newest[publisher] = payload
         self._waiting.put((publisher, payload))
 
