@@ -27,7 +27,7 @@ _LOOK_S = 0.5
 
 
 class Job(msgspec.Struct, frozen=True):
-    """A match to play; a worker process can take it."""
+    """A match to play; it can be sent to a worker process."""
 
     match_id: str
     arena: str
@@ -56,12 +56,13 @@ def interrupted_by_signals() -> Iterator[None]:
 def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Result], None, None]:
     """Play all matches; yield each with its result when it has ended.
 
-    If the caller ends early, or a worker process dies, no half record is left. Close the iterator
-    in this case (`contextlib.closing`).
+    If the caller stops early, or a worker process dies, no half record is left. For this the caller
+    must close the iterator (`contextlib.closing`).
 
     Args:
         work: the matches.
-        jobs: number of processes; None: one for each core.
+        jobs: largest number of processes; None: one for each core. One match alone is played in
+            this process.
 
     Raises:
         UserError: if a record can't be written, or a worker process dies.
@@ -113,7 +114,7 @@ def _attempt(job: Job) -> Result | Phrase:
 
 
 def _remove_half_record(job: Job) -> None:
-    """Remove what a match whose process was ended has recorded: it can be played again."""
+    """Remove the unfinished record of a match whose process died; it can be played again."""
     if (record := job.record) is not None:
         segments = files.segment_paths(record.parent, job.match_id)
         for path in (*segments, record.with_name(f"{record.name}.part")):

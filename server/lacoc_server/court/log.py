@@ -43,7 +43,7 @@ class CourtLog:
         _write(write, fields.pop("said"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
-        """Log what went wrong since the last call: refusals, slow beats, the disk."""
+        """Log what is new in a health message: refusals, slow beats, and trouble with the disk."""
         write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
         for (seat, why), count in _grown(refused, self._refused).items():
