@@ -1,4 +1,4 @@
-"""The records of finished matches: closed and packed on another thread than the beat's.
+"""The records of finished matches: closed and packed on another thread than the court's loop.
 
 A disk may need seconds until it has stored what was written. By then the next match is open.
 """

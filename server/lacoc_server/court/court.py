@@ -1,4 +1,4 @@
-"""A court: the loop that gives a match its beats. No other module of it reads the monotonic clock.
+"""A court: the loop that gives a match its beats. No other part reads the monotonic clock.
 
 The loop, the outbox that sends, the stand tests, and the archive that stores the records of
 finished matches each have a thread. A beat takes what arrived, passes it to the match and records

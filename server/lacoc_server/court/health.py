@@ -28,7 +28,7 @@ repeats and the next 9.
 
 
 class _Link:
-    """One seat's link during PLAYING."""
+    """Counts of one seat's link during PLAYING."""
 
     def __init__(self, before: LinkVerdict | None) -> None:
         self.silences = before.silences if before else 0
@@ -138,7 +138,7 @@ class MatchHealth:
             for link in self._links:
                 link.pause()
             return
-        # The first beat of PLAYING does not count: it began before anybody could play.
+        # The first beat of PLAYING, also after a halt, does not count: it began before PLAYING.
         if self._playing_since is not None:
             self._beats += 1
             self._took_s += (self._now_s - self._playing_since) * self._speed

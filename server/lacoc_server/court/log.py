@@ -84,7 +84,7 @@ def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None
 
 
 def _grown(now: Counter[_Refused], before: Counter[_Refused]) -> Counter[_Refused]:
-    """Return by how much counts have grown; one that is smaller began again for another team."""
+    """Return by how much counts have grown; a smaller count has begun again, for another team."""
     return now - Counter({which: count for which, count in before.items() if now[which] >= count})
 
 

@@ -88,7 +88,7 @@ class Links:
         self._delay_beats = 0
         self._match, self._beat = 1, 0
         self._tick = 0
-        """Number of beats over all matches."""
+        """Number of beats so far, in all matches of the court."""
         self._begun_s: deque[float] = deque([0.0, 0.0], maxlen=2)
         self._frames: deque[_Frame] = deque(maxlen=WINDOW_BEATS)
 

@@ -90,7 +90,7 @@ class RecordedPhysics:
     def take(self) -> Step | None:
         """Return this beat's requests to physics and its frame; None if it has neither.
 
-        The requests of the next beat are then noted from the beginning.
+        The requests are then forgotten, so that those of the next beat can be noted.
         """
         record, frame = self._record, self._record.frame
         places, angles, asked = tuple(self._places), self._angles, self._asked
@@ -110,7 +110,7 @@ class RecordedPhysics:
 
 
 class Recorded:
-    """The recorded messages of one beat after another."""
+    """The recorded messages of one beat; `move` goes to another beat."""
 
     def __init__(self, record: Record) -> None:
         self.seats = 0
@@ -354,7 +354,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
-    """Return whether two sheets are equal, apart from the software that wrote them."""
+    """Return whether two sheets are equal, apart from the versions of software and protocol."""
     if recorded is None:
         return False
     return replace(recorded, version=again.version, protocol=again.protocol) == again
@@ -374,7 +374,7 @@ def _frame_differences(recorded: Frame, again: Frame) -> list[str]:
 
 
 def _near(one: object, other: object) -> bool:
-    """Return whether two scenes, or parts of them, differ by at most `_SCENE_BOUND` in a number."""
+    """Return whether two scenes, or parts of them, are equal, up to `_SCENE_BOUND` in a float."""
     if isinstance(one, msgspec.Struct) and type(one) is type(other):
         return all(_near(getattr(one, f), getattr(other, f)) for f in one.__struct_fields__)
     if isinstance(one, tuple) and isinstance(other, tuple):

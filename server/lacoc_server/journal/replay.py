@@ -25,7 +25,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import say
 
 _SECTIONS_PER_PROCESS = 4
-"""Fewest sections for each process: starting one takes as long as simulating two or three."""
+"""Fewest sections for each process: its start takes as long as simulating two or three sections."""
 
 
 def verify(

@@ -32,7 +32,7 @@ FRAME_FIELDS = (
     "scene",
     "state-hash",
 )
-"""Names of the fields of a frame (`differs.*`), in its order."""
+"""Names of the fields of a frame (`differs.*`), in the order of `Frame`."""
 
 BOUND = 1e-5
 """Largest distance from the record [m, rad] that another arithmetic may reach in a section."""
@@ -246,8 +246,8 @@ def _apart(recorded: bytes, poses: bytes) -> float:
 def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> bool:
     """Return whether recorded touches can be true if no distance differs by more than `bound` [m].
 
-    Each robot must have touched every marker that it touches more deeply than `bound` here, and no
-    marker from which it is farther than `bound`.
+    Each robot must have touched every marker that it touches more deeply than `bound` in `world`,
+    and no marker from which it is farther than `bound` there.
     """
     surely, perhaps = world.touched(gap_m=-bound), world.touched(gap_m=bound)
     return len(recorded) == len(surely) and all(

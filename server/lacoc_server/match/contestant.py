@@ -74,9 +74,9 @@ def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
 
 
 def leave(match: MatchState, seat: Seat) -> Done:
-    """Free a seat in LOBBY or READY; in other phases let its robot stand.
+    """Free a seat in LOBBY or READY; in a later phase let its robot stand.
 
-    In these phases the contestant keeps the seat for this match. The next match begins without
+    In a later phase the contestant keeps the seat for this match. The next match begins without
     them, unless they come back.
     """
     if match.phase in _BEFORE:
@@ -120,9 +120,10 @@ def heard(match: MatchState, seat: Seat) -> Done:
 
 
 def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
-    """Apply a digit or [x] to its seat, or refuse it; frames show which.
+    """Apply a digit or [x] to its seat, or refuse it.
 
-    After an [x] the seat's keys are refused for `restart_freeze_s` of the clock.
+    Frames show the seat's newest applied and its newest refused command. After an [x] the seat's
+    keys are refused for `restart_freeze_s` of the clock.
     """
     why = No.NOT_PLAYING
     if match.phase is Phase.PLAYING:

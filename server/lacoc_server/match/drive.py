@@ -1,8 +1,8 @@
 """The drive: it turns the newest key into commanded angles, tick by tick (rules 3).
 
 It is pure and exact. It knows only commanded angles, never measured ones, so its results can be
-checked with pencil and paper. A `Drive` is made from a seat's robot and gait and never changes; a
-`DriveState` is what a tick changes.
+checked with pencil and paper. A `Drive` is made from a seat's robot and gait and never changes.
+Each key and each tick makes a new `DriveState` from the one before.
 """
 
 from typing import Literal

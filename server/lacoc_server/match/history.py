@@ -69,7 +69,7 @@ class History:
         """The newest state after a tick, and why the game was over in it; None: it was not."""
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
-        """Judge one tick; number its events from `next_number` on."""
+        """Judge one tick and return its events; they get the numbers from `next_number` on."""
         before = self.state
         self.state, events = self._game.step(before, observation, BEAT_S)
         numbers = tuple(range(next_number, next_number + len(events))) if events else ()

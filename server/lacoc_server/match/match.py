@@ -222,7 +222,7 @@ class Match(MatchState):
 
     def _frame(self) -> Frame:
         game, state = self.game, self.history.state
-        if state is not self._shown[0]:  # it changes seldom, and there are many frames
+        if state is not self._shown[0]:  # the state changes seldom, and there are many frames
             self._shown = (state, pack_states(game.board(state)), game.score(state))
         _, board, points = self._shown
         seats, scores, ticks = self.seats, self._adjusted(points), self.ticks

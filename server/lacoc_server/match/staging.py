@@ -20,7 +20,7 @@ _BODY = struct.Struct("<7f")
 
 
 class Staging:
-    """Physics, and what the rules and the frames see of it.
+    """Holds the physics of a match, and reads from it what the rules and the frames need.
 
     Args:
         arena: the field and its game.
@@ -68,7 +68,7 @@ class Staging:
         """Observe a tick for the rules.
 
         Returns:
-            The observation, and the part of it that is not in the poses, if there is any.
+            The observation, and the part of it that is not in the poses; None: all of it is there.
         """
         touched, placed = self.physics.touched(), self._placed
         if not (any(touched) or any(placed)):
@@ -85,8 +85,8 @@ class Staging:
         going = [seat for seat in seats if seat.restarting]
         if not going:
             return
-        # Robots that are put back together do not block each other: each goes to its own side. So
-        # no seat has an advantage.
+        # Robots that are put back in the same beat do not block each other: each goes to its own
+        # side. So no seat has an advantage.
         staying = [seat for seat in seats if not seat.restarting]
         for seat in going:
             place = self._free_place(seat, staying)

@@ -178,7 +178,11 @@ def _before(folder: KeyFolder) -> list[str]:
 
 
 def _set_aside(path: Path) -> Path | None:
-    """Add the first free number to a folder's name; return its new path, None if it is missing."""
+    """Rename a folder: add the first free number to its name.
+
+    Returns:
+        The folder's new path; None if there is no such folder.
+    """
     if not path.exists():
         return None
     numbered = (path.with_name(f"{path.name}.{number}") for number in itertools.count(1))
