@@ -56,8 +56,8 @@ def interrupted_by_signals() -> Iterator[None]:
 def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Result], None, None]:
     """Play all matches; yield each with its result when it has ended.
 
-    If the caller stops early, or a worker process dies, no half record is left. For this the caller
-    must close the iterator (`contextlib.closing`).
+    No half record is left if a worker process dies, or if the caller stops early and closes the
+    iterator (`contextlib.closing`).
 
     Args:
         work: the matches.

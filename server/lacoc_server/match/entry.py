@@ -124,7 +124,7 @@ class Admission:
             held: the seat's present join; None: nobody has the seat.
 
         Returns:
-            The join with the files that it uses. If it brought none, also a note on which these are.
+            The join with the files that it uses. If it brought none, also a note about them.
 
         Raises:
             FileRefused: with every mistake of every file.
