@@ -86,9 +86,9 @@ def circle_round(players: int, number: int) -> Iterator[tuple[int, int]]:
 
     The players sit on a circle; of an even number, the last one sits outside. In each round another
     player on the circle is the pivot. Two players at the same distance from the pivot meet. The
-    pivot meets the player outside, or rests. A player's distance changes by one in each round, and
-    the seats depend on whether it is odd. So each player changes the seat each time. The pivot
-    takes the left seat in even rounds, which keeps its matches in both seats equally many.
+    pivot meets the player outside, or rests. The seats depend on the distance and on the side of
+    the pivot. So a player changes the seat in each round, not counting the round as pivot. In that
+    round the player takes the left seat if the round's number is even, else the right one.
 
     Args:
         players: number of players.
