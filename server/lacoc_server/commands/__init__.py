@@ -1,1 +1,1 @@
-"""The subcommands of `lacoc` that need a court."""
+"""The subcommands of `lacoc` that need this package: courts, simulated matches, trials, keys."""

@@ -193,7 +193,10 @@ def _show_others(
 
 @contextmanager
 def _trials(task: Task) -> Iterator[tuple[Trials, Tell]]:
-    """Run trials in processes, and show how far a search is; Ctrl-C stops it."""
+    """Give trials that run in processes, and a function that shows how far the search is.
+
+    Ctrl-C stops the search.
+    """
     with screen.progress() as progress, Workers() as workers, _stop_on_interrupt() as stop:
         bar = progress.add_task("", total=1.0)
 
@@ -209,7 +212,7 @@ def _trials(task: Task) -> Iterator[tuple[Trials, Tell]]:
 
 @contextmanager
 def _stop_on_interrupt() -> Iterator[threading.Event]:
-    """Make Ctrl-C set an event, so that the search ends and its best gait is kept."""
+    """Give an event that Ctrl-C sets, so that the search ends and its best gait is kept."""
     stop = threading.Event()
     before = signal.signal(signal.SIGINT, lambda *_: stop.set())
     try:

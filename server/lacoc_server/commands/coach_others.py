@@ -1,4 +1,4 @@
-"""What `lacoc coach` prints and writes of a map of gaits and of variants."""
+"""Prints and writes the map of gaits, or the variants, that `lacoc coach` found."""
 
 import contextlib
 from collections.abc import Mapping, Sequence
@@ -25,7 +25,10 @@ _WAYS_SHOWN = 3
 
 
 def map_table(reply: MapReply) -> Table:
-    """Draw a map: speed to the right, arousal up."""
+    """Make a table of a map of gaits: speed grows to the right, arousal upward.
+
+    A cell has the gait's speed and, in brackets, the number of changed angles.
+    """
     table = screen.table(say("coach.arousal"))
     for speed_mm_s in reply.speeds_mm_s:
         table.add_column(f"{speed_mm_s:.0f}")
@@ -45,7 +48,7 @@ def map_table(reply: MapReply) -> Table:
 
 
 def variants_table(reply: VariantsReply) -> Table:
-    """List variants with what is easiest to see."""
+    """Make a table of variants: how each looks, its speed, its period and its foot clearance."""
     table = screen.table(
         say("coach.variant"),
         say("coach.looks"),
@@ -73,7 +76,7 @@ def variants_table(reply: VariantsReply) -> Table:
 
 
 def named_gaits(reply: MapReply | VariantsReply) -> dict[str, OtherGait]:
-    """Name the files of all gaits that were found."""
+    """Return all gaits that were found, each by the name of its file."""
     if isinstance(reply, VariantsReply):
         return {f"variant-{number}.txt": one for number, one in enumerate(reply.variants, 1)}
     return {
@@ -106,7 +109,7 @@ def written(task: Task, gait: Gait, digit: int, angles: Angles) -> bytes:
 
 
 def kept_tables(files: Sequence[Path], robot: RobotSpec, task: Task, digit: int) -> list[Angles]:
-    """Read the tables to breed from.
+    """Read the tables from which new variants are bred.
 
     Raises:
         UserError: if a file can't be read, or its key has another sequence than the task's.

@@ -84,13 +84,17 @@ def demo_command(
             raise UserError(say("demo.not-same"))
         # Without a browser here, somebody may have opened the address elsewhere.
         if served and sys.stdout.isatty():
-            with suppress(KeyboardInterrupt):  # it may come as soon as the note is read
+            with suppress(KeyboardInterrupt):  # Ctrl-C may come as soon as the note is read
                 screen.note(say("demo.page"))
                 threading.Event().wait()
 
 
 def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> tuple[bool, bool]:
-    """Start a gateway and open its page; say whether there is a page, and whether a browser is."""
+    """Start a gateway; return whether it has pages, and whether a browser shows one of them.
+
+    Raises:
+        UserError: if the gateway ends at once.
+    """
     words = ("web", "--json", "--recordings", str(recordings), "--open", *where)
     gateway = processes.enter_context(_process(*words, output=subprocess.PIPE))
     assert gateway.stdout is not None
@@ -104,7 +108,11 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
 
 
 class _Court:
-    """A court's process and what it prints."""
+    """A court's process and what it prints.
+
+    Raises:
+        UserError: if the process ends before the court is open.
+    """
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._said: Queue[dict[str, Any] | None] = Queue()
@@ -119,7 +127,7 @@ class _Court:
         self.referee: str = opened["referee"]
 
     def hear(self, timeout_s: float) -> dict[str, Any] | None:
-        """Return the next event; None if none comes in time.
+        """Return the next line that the court printed; None if none comes in time.
 
         Raises:
             UserError: if the court has ended.
@@ -143,7 +151,7 @@ class _Court:
 
 
 def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bool) -> str:
-    """Show events until the result is official; return the sentence of the result.
+    """Show events until the match is official or void; return the sentence of the result.
 
     Raises:
         UserError: if a process that the match needs fails.
@@ -196,7 +204,10 @@ def _ended(process: subprocess.Popen[str]) -> Iterator[subprocess.Popen[str]]:
 
 
 def _lacoc(*words: str, output: int | None = None, token: str = "") -> subprocess.Popen[str]:
-    """Start a subcommand; its token goes into the environment, which other users can't read."""
+    """Start `lacoc` with these words; a token is passed in the environment.
+
+    Other users can't read the environment of a process.
+    """
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     if token:
         environment["LACOC_TOKEN"] = token

@@ -96,7 +96,7 @@ def serve_command(
     left = None if fresh else unfinished(folder, name, loaded)
     levels = {*loaded.match.open_levels}
     if left is not None:
-        levels |= {*left.match.rules.open_levels}  # the match that is on has the last word
+        levels |= {*left.match.rules.open_levels}  # the match that goes on keeps its own levels
         screen.note(say("serve.goes-on", match=left.match.setup.match_id))
         if left.match.setup.settings != loaded.settings:
             screen.note(say("serve.old-settings"))

@@ -158,7 +158,10 @@ def _check_number(players: Sequence[str], seats: int, rounds: int | None) -> Non
 def _cannot_play(
     arena: arenas.Arena, players: Sequence[str], robot: str
 ) -> dict[str, FileRefused | UserError]:
-    """Return the players who can't play, each with the reason, before anything begins."""
+    """Return the players who can't play, each with the reason.
+
+    The reason is a wrong name, mistakes in files, or a robot that does not stand.
+    """
     levels = arena.match.open_levels
     out: dict[str, FileRefused | UserError] = {}
     for name in dict.fromkeys(players):
@@ -203,7 +206,7 @@ def _show_left_out(out: Mapping[str, FileRefused | UserError]) -> None:
 
 
 def _first_number(record: Path | None) -> int:
-    """Return the first number after the records in the folder, so that none is overwritten."""
+    """Return the number after the highest of the folder's records, so that none is overwritten."""
     known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
     return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
 

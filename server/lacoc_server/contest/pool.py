@@ -119,12 +119,13 @@ def ended(job: Job, future: "Future[Ended | Phrase]") -> Ended:
 def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Result], None, None]:
     """Play all matches; yield each with its result when it has ended.
 
-    If the caller ends early, or a worker process dies, no half record is left. Close the iterator
-    in this case (`contextlib.closing`).
+    No half record is left if a worker process dies, or if the caller stops early and closes the
+    iterator (`contextlib.closing`).
 
     Args:
         work: the matches.
-        jobs: number of processes; None: one for each core.
+        jobs: largest number of processes; None: one for each core. One match alone is played in
+            this process.
 
     Raises:
         UserError: if a record can't be written, or a worker process dies.
@@ -171,7 +172,7 @@ def _is_lost(future: "Future[Ended | Phrase]") -> bool:
 
 
 def _remove_half_record(job: Job) -> None:
-    """Remove what a match whose process was ended has recorded: it can be played again."""
+    """Remove the unfinished record of a match whose process died; it can be played again."""
     if (record := job.record) is not None:
         segments = files.segment_paths(record.parent, job.match_id)
         for path in (*segments, record.with_name(f"{record.name}.part")):

@@ -1,4 +1,4 @@
-"""The records of finished matches: closed and packed on another thread than the beat's.
+"""The records of finished matches: closed and packed on another thread than the court's loop.
 
 A disk may need seconds until it has stored what was written. By then the next match is open.
 """
@@ -30,7 +30,11 @@ class Archive:
         self._packing: list[subprocess.Popen[bytes]] = []
 
     def pack(self, match_id: str) -> None:
-        """Pack the records that an earlier court left; the log names `match_id`, the open match."""
+        """Pack the records of finished matches that an earlier court of this name left.
+
+        Args:
+            match_id: the open match; the log names it if something can't be packed.
+        """
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: RecordWriter | None) -> None:
@@ -55,9 +59,10 @@ class Archive:
         self._pack(match_id)
 
     def _pack(self, match_id: str) -> None:
-        """Pack all finished matches, in a separate process.
+        """Pack the records of all finished matches of the court, in a separate process.
 
-        What can't be packed now is tried again at the next match's end or court's start.
+        A record that can't be packed now is tried again when the next match ends or the court is
+        started again.
         """
         if self._folder is None:
             return

@@ -1,9 +1,9 @@
-"""A court: the loop that gives a match its beats. No other code of it reads the monotonic clock.
+"""A court: the loop that gives a match its beats. No other part reads the monotonic clock.
 
-The loop, an outbox that sends, and an archive that stores the records of finished matches each have
-a thread. A beat takes what arrived, passes it to the match and records it, and only then answers
-and publishes: everything that anybody is told is on disk (docs/architecture.md). While the disk
-fails, the court waits and no beat passes.
+The loop, the outbox that sends, the stand tests, and the archive that stores the records of
+finished matches each have a thread. A beat takes what arrived, passes it to the match and records
+it, and only then answers and publishes: everything that anybody is told is on disk
+(docs/architecture.md). While the disk refuses writes, the court waits and no beat passes.
 """
 
 import hashlib
@@ -51,13 +51,13 @@ class CourtSettings:
     recordings: Path | None
     """Folder of the records; None: no record."""
     speed: float = 1.0
-    """Multiple of real time: at 1 a beat takes 20 ms. A demonstration may run faster."""
+    """Multiple of real time: at 1 a beat takes 20 ms, at 2 it takes 10 ms."""
     health: HealthLimits = field(default_factory=HealthLimits)
     """Limits beyond which a match should be played again."""
 
 
 class _Made(NamedTuple):
-    """A beat that has been computed, with what is to be sent about it."""
+    """A computed beat, with its frame and the outcomes of its arrivals, which are to be sent."""
 
     beat: Beat
     frame: bytes
@@ -94,7 +94,7 @@ class Court:
         self._made: _Made | None = None
         """A computed beat that has not been sent yet."""
         self._frame = b""
-        """The newest published frame, encoded."""
+        """The newest published frame, encoded; empty before the first."""
         self._trouble: Phrase | None = None
         """The problem with the record's disk (`record.*`); None: there is none."""
         self._waits = 0
@@ -162,9 +162,10 @@ class Court:
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
 
     def _wait(self, now_s: float, trouble: Phrase) -> None:
-        """Skip a beat: nobody may be told what is not on disk.
+        """Skip a beat, because nobody may be told what is not on disk.
 
-        The last frame is published again, so that nobody thinks the court is dead.
+        The last frame is published again, so that nobody thinks the court is dead. Requests are
+        refused with the disk's trouble.
         """
         self._trouble = trouble
         self._network.turn_away(trouble)
@@ -205,7 +206,7 @@ class Court:
         self._inputs = list(match.next_joins())
 
     def _follow(self) -> list[Input]:
-        """Return the court's own decisions that follow a recorded beat."""
+        """Return the court's own inputs that follow a recorded beat: decisions, or its advice."""
         match, before = self._journal.match, self._trouble
         self._trouble = now = self._journal.trouble
         why = before or now
@@ -249,7 +250,7 @@ class Court:
         return Journal(match, settings.recordings, segment, self._health.measure)
 
     def _close(self) -> None:
-        """Finish the record of this match."""
+        """Have the archive finish the record of this match."""
         self._archive.take(self.match_id, self._journal.writer)
 
     def _say_health(self, now_s: float) -> None:
@@ -277,6 +278,7 @@ class Court:
 def _offset_s(locators: tuple[str, ...]) -> float:
     """Return the fraction of a second by which a court's beats are shifted.
 
-    It comes from the addresses: two courts on a machine may share a name, but never an address.
+    The fraction is made from the court's addresses: two courts on a machine may share a name, but
+    never an address.
     """
     return int.from_bytes(hashlib.blake2b(repr(locators).encode(), digest_size=4).digest()) / 2**32

@@ -22,13 +22,13 @@ from lacoc_shared.words import Phrase, say
 _LEAST_FACTOR = 1e-4
 """Smallest real-time factor that is used; it avoids a division by zero."""
 _CARRIED = 2
-"""Most repeats above ten in a second that count for the next second. With jitter one second has 11
+"""Most commands above ten in a second that count for the next second: with jitter one second has 11
 repeats and the next 9.
 """
 
 
 class _Link:
-    """One seat's link during PLAYING."""
+    """Counts of one seat's link during PLAYING."""
 
     def __init__(self, before: LinkVerdict | None) -> None:
         self.silences = before.silences if before else 0
@@ -38,7 +38,7 @@ class _Link:
         self.refused = Counter(before.refused if before else {})
         self._silent = False
         self._heard: int | None = None
-        """Valid commands counted when this second of PLAYING began."""
+        """Valid commands counted when this second of PLAYING began; None: no second has begun."""
         self._counted = 0
         """Beats of this second so far."""
         self._carried = 0
@@ -72,7 +72,7 @@ class MatchHealth:
         limits: limits beyond which the match should be played again.
         doors: counts of each seat's door before this match.
         speed: speed of the court; at 2 two beats pass in 20 ms.
-        before: the verdict before the court was killed, if it was.
+        before: the newest verdict before the court was killed; None: there is none.
         resumptions: how many times the match went on after its court was killed.
     """
 
@@ -94,7 +94,7 @@ class MatchHealth:
         self._doors = doors
         self._now_s = self._late_s = 0.0
         self._playing_since: float | None = None
-        """When the last beat began, if it was a beat of PLAYING."""
+        """When the last beat began [s], if it was a beat of PLAYING; else None."""
         self._beats = before.played_beats if before else 0
         factor = max(before.real_time_factor, _LEAST_FACTOR) if before else 1.0
         # Scaled to speed 1, so that a court of another speed can go on with it.
@@ -120,6 +120,7 @@ class MatchHealth:
 
         Returns:
             The verdict when the record needs one: every second of PLAYING, and with each result.
+            Otherwise None.
         """
         self._count(inputs, beat)
         playing = beat.frame.phase == Phase.PLAYING
@@ -137,7 +138,7 @@ class MatchHealth:
             for link in self._links:
                 link.pause()
             return
-        # The first beat of PLAYING does not count: it began before anybody could play.
+        # The first beat of PLAYING, also after a halt, does not count: it began before PLAYING.
         if self._playing_since is not None:
             self._beats += 1
             self._took_s += (self._now_s - self._playing_since) * self._speed

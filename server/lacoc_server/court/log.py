@@ -43,7 +43,7 @@ class CourtLog:
         _write(write, fields.pop("said"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
-        """Log what went wrong since the last call: refusals, slow beats, the disk."""
+        """Log what is new in a health message: refusals, slow beats, and trouble with the disk."""
         write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
         for (seat, why), count in _grown(refused, self._refused).items():
@@ -84,7 +84,7 @@ def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None
 
 
 def _grown(now: Counter[_Refused], before: Counter[_Refused]) -> Counter[_Refused]:
-    """Return by how much counts have grown; one that is smaller began again for another team."""
+    """Return by how much counts have grown; a smaller count has begun again, for another team."""
     return now - Counter({which: count for which, count in before.items() if now[which] >= count})
 
 

@@ -41,11 +41,11 @@ class CourtMetrics(Collector):
         self._sum_s += took_s
 
     def health(self, match_id: str, health: Health, doors: Sequence[Door]) -> None:
-        """Take the health message, as it is published twice a second."""
+        """Keep the newest health message and the counts of each seat's door for the next scrape."""
         self._said = match_id, health, doors
 
     def collect(self) -> Iterator[Metric]:
-        """Return all metric families; called by a scrape."""
+        """Yield all metric families; a scrape calls this."""
         yield self._durations()
         if self._said is None:
             return

@@ -8,9 +8,9 @@ from collections import deque
 from lacoc_shared.seat import BEAT_S
 
 CATCH_UP_BEATS = 5
-"""Most beats that follow a stall without a pause; time lost beyond them is not made up."""
+"""Most beats by which the court catches up after a stall; time lost beyond them is not made up."""
 SLOW_S = BEAT_S
-"""A beat that starts later than this is a slow beat."""
+"""A beat that begins later than it was due by more than this [s] is a slow beat."""
 _WINDOW_BEATS = 250
 
 
@@ -30,12 +30,12 @@ class Pace:
         self._due_s = now_s + (offset_s - now_s) % self._beat_s
         self._starts_s: deque[float] = deque(maxlen=_WINDOW_BEATS)
         self.late_s = 0.0
-        """How late the newest beat began."""
+        """How late the newest beat began [s]; negative: early."""
         self.slow_beats = 0
         self.worst_late_s = 0.0
 
     def wait_s(self, now_s: float) -> float:
-        """Return the time to wait for the next beat; 0 if it is due."""
+        """Return the time to wait for the next beat [s]; 0 if it is due."""
         return max(0.0, self._due_s - now_s)
 
     def begin(self, now_s: float) -> None:

@@ -1,7 +1,7 @@
 """Decisions of a court in a match without a referee (`start = "ready"`, rules 7).
 
-Each is a decision like a referee's. The record has it with the court's name, so a replay needs
-nothing but the record.
+Each is a decision like a referee's, taken by `THE_COURT`. The record has it, so a replay does not
+need to know why the court took it.
 """
 
 from collections.abc import Callable, Sequence

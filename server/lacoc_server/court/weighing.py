@@ -1,4 +1,7 @@
-"""Weighing in at a court's door: the loop reads the files, another thread tries the robots."""
+"""Weighs in robots and gaits at a court's door.
+
+The court's loop reads the files; another thread tries whether the robots stand.
+"""
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor

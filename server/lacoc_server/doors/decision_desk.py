@@ -1,4 +1,4 @@
-"""The door for referees' requests: it checks token, form and sane numbers.
+"""The door for referees' requests: it checks the token, the form and the size of numbers.
 
 The match itself decides whether a decision is legal now.
 """
@@ -53,7 +53,7 @@ class DecisionDesk:
         return self._check_token(payload, Enter) or Done()
 
     def decision(self, name: str, payload: bytes) -> Decide | Refusal:
-        """Check a request.
+        """Check a request for a decision: its token, form, referee's name and numbers.
 
         Args:
             name: the decision's name, from the key expression of the request.

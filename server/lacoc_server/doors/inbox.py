@@ -44,8 +44,8 @@ COMMANDS_PER_BEAT = 16
 LOOKED_AT_PER_BEAT = 64
 """Most messages for a seat that are checked in one beat, whoever sent them."""
 COMMANDS_HZ = 200.0
-"""Most commands of a seat per second, on average. A controller sends 10 and the pressed keys, a bot
-60.
+"""Most commands of a seat per second, on average. A controller sends 10 repeats and the pressed
+keys, a bot 60 in all.
 """
 NAME_MAX = 24
 FILE_NAME_MAX = 100
@@ -202,7 +202,11 @@ class Inbox:
         return inputs
 
     def join(self, index: int, payload: bytes) -> JoinSeat | Refusal | Later:
-        """Check a join; call `seated` once the match has accepted it."""
+        """Check a join; call `seated` once the match has accepted it.
+
+        Returns:
+            The input for the match, or a refusal, or a `Later` while the files are weighed in.
+        """
         seat = self._seats[index]
         try:
             protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
@@ -233,7 +237,8 @@ class Inbox:
     def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
         """Check a join's files; return None while they are being weighed in.
 
-        Bad files keep nobody out of a match that goes on without them.
+        Bad files keep no team out of its seat in a match that has begun: the join then has the
+        files of the seat, and notes say what is wrong.
         """
         held = self._held[seat.index]
         seat.asking = join.name
@@ -327,7 +332,7 @@ class Inbox:
         )
 
     def _own(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Command]:
-        """Return the newest commands that the seat itself sealed, the oldest first.
+        """Return the newest commands that the seat's holder sealed, the oldest of them first.
 
         Messages of others use up nothing of the seat's allowance.
         """

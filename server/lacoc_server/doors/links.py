@@ -88,7 +88,7 @@ class Links:
         self._delay_beats = 0
         self._match, self._beat = 1, 0
         self._tick = 0
-        """Number of beats over all matches."""
+        """Number of beats so far, in all matches of the court."""
         self._begun_s: deque[float] = deque([0.0, 0.0], maxlen=2)
         self._frames: deque[_Frame] = deque(maxlen=WINDOW_BEATS)
 
@@ -102,7 +102,7 @@ class Links:
         return self._links[seat].trip
 
     def late(self, seat: int) -> int:
-        """Return how many of a seat's keys came after the end of the common delay."""
+        """Return how many of a seat's keys came after the common delay had ended."""
         return self._links[seat].late
 
     def begin(self, now_s: float, match: int, beat: int) -> None:
@@ -125,7 +125,7 @@ class Links:
         return (command.match, command.seen) > (self._match, self._beat - 1)
 
     def heard(self, seat: int, command: Command) -> bool:
-        """Take a round trip from a command that names a newer frame than the last one did.
+        """Take a round trip from a command that names a newer frame than all before it.
 
         Returns:
             Whether the command proves that its sender is there: it names a newer frame than before,
@@ -205,7 +205,10 @@ class Links:
         link.trip = Trip(trips_s[p50], trips_s[p95])
 
     def _agree(self) -> None:
-        """Set the common delay to the seats' longest p95; lower it by at least `LOWER_BEATS`."""
+        """Set the common delay to the seats' longest p95, up to the longest delay allowed.
+
+        A change that would lower the delay by less than `LOWER_BEATS` is not made.
+        """
         longest_s = max((link.trip.p95_s for link in self._links if link.trip), default=0.0)
         wanted = min(math.ceil(longest_s / BEAT_S), self._most_beats)
         if not self._delay_beats - LOWER_BEATS < wanted <= self._delay_beats:

@@ -122,7 +122,8 @@ class CourtNetwork:
     def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
         """Take in what arrived since the last beat.
 
-        A request that a door refuses is answered at once and is not among the arrivals.
+        A request that a door refuses is answered at once and is not among the arrivals. The same is
+        true of a request that only shows a referee's token.
 
         Args:
             now_s: monotonic time.
@@ -140,7 +141,7 @@ class CourtNetwork:
         return arrivals
 
     def turn_away(self, why: Phrase) -> None:
-        """Refuse the requests that arrived, because no beat can take them in.
+        """Refuse requests that arrived, because no beat can take them in; still serve fetches.
 
         Args:
             why: sentence for the senders.
@@ -153,7 +154,7 @@ class CourtNetwork:
         self._serve_fetches()
 
     def publish_frame(self, frame: bytes, now_s: float) -> None:
-        """Send an encoded frame; a slow receiver misses it.
+        """Send an encoded frame; a slow receiver may miss it.
 
         Args:
             frame: frame of the beat.
@@ -167,7 +168,7 @@ class CourtNetwork:
         self._outbox.send_newest(self._frame, frame)
 
     def publish_event(self, event: Event) -> None:
-        """Send an event, and keep it for clients that come late or missed it."""
+        """Send an event; keep the match's newest `EVENTS_LISTED` for clients that missed them."""
         if self._log and self._log[0].match != event.match:
             self._log.clear()
         self._log.append(event)
@@ -188,12 +189,12 @@ class CourtNetwork:
 
     @property
     def newest_event(self) -> int:
-        """Number of the last event that was sent; 0: none."""
+        """Number of the newest event that was published; 0: none."""
         return self._log[-1].number if self._log else 0
 
     @property
     def sheet_hash(self) -> bytes:
-        """Hash of the last sheet that was sent."""
+        """Hash of the newest sheet that was published."""
         return message_hash(self._sheet_bytes)
 
     def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:

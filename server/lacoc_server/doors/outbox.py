@@ -11,7 +11,7 @@ from lacoc_shared.network.session import Publisher
 
 
 class Outbox:
-    """Sends in the order of the court's calls; close it before the session."""
+    """Sends in the order of the court's calls; close it before the network session."""
 
     def __init__(self) -> None:
         self._waiting: SimpleQueue[tuple[Publisher, bytes] | None] = SimpleQueue()
@@ -20,11 +20,11 @@ class Outbox:
         self._thread.start()
 
     def send(self, publisher: Publisher, payload: bytes) -> None:
-        """Send a message that must arrive."""
+        """Send a message that no newer one replaces."""
         self._waiting.put((publisher, payload))
 
     def send_newest(self, publisher: Publisher, payload: bytes) -> None:
-        """Send a message, unless a newer one replaces it while it still waits."""
+        """Send a message, unless a newer one of the same publisher comes while it still waits."""
         self._newest[publisher] = payload
         self._waiting.put((publisher, payload))
 

@@ -1,4 +1,4 @@
-"""The sessions of a court: which one holds which seat, and why one ended."""
+"""The sessions of a court: which session holds which seat, and why the others ended."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ _REMEMBERED = 64
 
 
 class Why(StrEnum):
-    """Reasons why a message was refused. The texts `count.*` tell a referee how often each was."""
+    """Reasons why a message was refused. The texts `count.*` show a referee the count of each."""
 
     BAD_BYTES = "bad-bytes"
     TOO_LONG = "too-long"
@@ -40,7 +40,7 @@ class _Held:
 
 
 class Sessions:
-    """The sessions of a court; at most one holds a seat.
+    """The sessions of a court; a seat is held by at most one.
 
     Args:
         random_bytes: returns as many random bytes as asked.
@@ -54,7 +54,7 @@ class Sessions:
         """Seat of each ended session and why it ended; only the newest are kept."""
 
     def begin(self, seat: int) -> tuple[int, bytes]:
-        """Start a session that holds a seat; it replaces an older one.
+        """Start a session that holds a seat; an older session of the seat ends as `REPLACED`.
 
         Returns:
             The session's number and its secret.
@@ -67,7 +67,7 @@ class Sessions:
         return number, secret
 
     def end(self, seat: int, why: Why) -> None:
-        """End the session that holds a seat, if there is one."""
+        """End the session that holds a seat, if there is one, and remember why."""
         number = self.holder(seat)
         if number:
             del self._held[number]

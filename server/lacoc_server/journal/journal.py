@@ -1,8 +1,8 @@
 """A match with its record: a beat's messages go to the disk before anybody is answered.
 
-Only a snapshot is written after the frame of its beat, so a beat with its frame is complete. A beat
-in which nothing happened may have no frame. Other messages without the frame of their beat come
-from a court that was killed in that beat.
+The frame of a beat is written after all its other messages except a snapshot. So a beat whose frame
+is there is complete. A beat in which nothing happened may have no messages at all. A beat with
+messages but no frame comes from a court that was killed in that beat.
 """
 
 import platform
@@ -24,10 +24,10 @@ from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase
 
 SNAPSHOT_TICKS = 250
-"""Ticks between two full snapshots: one every 5 s of physics."""
+"""Ticks between two full snapshots, 5 s of physics. The first comes after the first tick."""
 
 Measure = Callable[[Sequence[Input], Beat], HealthVerdict | None]
-"""Measures how well a beat was held; returns a verdict on the match when one is due."""
+"""Measures how well a beat was held; returns a verdict on the match when one is due, else None."""
 
 
 class Journal:
@@ -64,7 +64,7 @@ class Journal:
         """Let one beat pass and record it.
 
         Returns:
-            What the beat made, and its frame as it is recorded and published.
+            The results of the beat, and its frame encoded as it is published.
         """
         match, writer = self.match, self.writer
         beat = match.beat(inputs)
@@ -98,7 +98,7 @@ class Journal:
         return beat, encoded
 
     def flush(self) -> None:
-        """Write all beats so far to the file.
+        """Write what still waits in memory to the file.
 
         Raises:
             UserError: if the disk refuses them.
@@ -108,21 +108,21 @@ class Journal:
 
     @property
     def trouble(self) -> Phrase | None:
-        """Disk error of earlier writes; None while there is none."""
+        """The error that the disk reported about data already written; None: there was none."""
         return None if self.writer is None else self.writer.sync_trouble
 
     def close(self) -> None:
-        """Finish the record of a match that is over."""
+        """Finish and close the record, because the match is over."""
         if self.writer is not None:
             self.writer.close()
 
     def leave(self) -> None:
-        """Leave the record unfinished: the next start of its court goes on with the match."""
+        """Close the record without an end: the next start of its court goes on with the match."""
         if self.writer is not None:
             self.writer.leave()
 
     def _new(self, frame: Frame) -> bool:
-        """Return whether a frame differs from the one before it in more than the time."""
+        """Return whether a frame's phase, seats, markers, poses or clock differ from the last's."""
         content = (frame.phase, frame.seats, frame.markers, frame.poses, frame.clock_ticks)
         new, self._last = content != self._last, content
         return new

@@ -2,7 +2,8 @@
 
 The rules judged exactly the poses that frames carry. So judging them again is exact on any machine
 and needs no physics. What the match asked of physics is cut into sections, which are simulated
-separately. A last beat without its frame was never answered and does not count (`journal`).
+separately. If a record was cut off, its last beat does not count without a frame: the court
+answered nobody in it (`journal`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,7 +31,9 @@ from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.words import say
 
 _SCENE_BOUND = 1e-9
-"""Largest difference of a drawn length [m] in a model built on another kind of machine."""
+"""Largest difference of a number between two scenes that differ only by the machines that built
+them; most of these numbers are lengths [m].
+"""
 
 
 class RecordedPhysics:
@@ -71,21 +74,24 @@ class RecordedPhysics:
         return self._record.fault
 
     def save(self) -> bytes:
-        """Return the recorded snapshot of this beat; empty if there is none."""
+        """Return the recorded snapshot of this beat; empty if it has none."""
         return self._record.snapshot or b""
 
     def poses(self) -> bytes:
-        """Return the poses in the newest frame; without a frame, those of `world`."""
+        """Return the poses in the newest recorded frame; if it has none, those of `world`."""
         frame = self._record.frame
         return frame.poses if frame and frame.poses else self.world.poses()
 
     def touched(self) -> Sequence[tuple[int, ...]]:
-        """Return the recorded touches."""
+        """Return the recorded touches of this beat, and note that the match asked for them."""
         self._asked = True
         return self._record.touched
 
     def take(self) -> Step | None:
-        """Return this beat's requests to physics and its frame; None if it has neither."""
+        """Return this beat's requests to physics and its frame; None if it has neither.
+
+        The requests are then forgotten, so that those of the next beat can be noted.
+        """
         record, frame = self._record, self._record.frame
         places, angles, asked = tuple(self._places), self._angles, self._asked
         self._places, self._angles, self._asked = [], None, False
@@ -104,7 +110,7 @@ class RecordedPhysics:
 
 
 class Recorded:
-    """The recorded messages of one beat after another."""
+    """The recorded messages of one beat; `move` goes to another beat."""
 
     def __init__(self, record: Record) -> None:
         self.seats = 0
@@ -131,7 +137,7 @@ class Recorded:
 
     @property
     def touched(self) -> tuple[tuple[int, ...], ...]:
-        """For each seat the markers that it touched in this beat."""
+        """For each seat the markers that its robot touched in this beat."""
         touch = self._touches.get(self.beat)
         return touch.touched if touch else ((),) * self.seats
 
@@ -150,18 +156,23 @@ class Judge:
         snapshots: snapshots by beat, at which sections begin and end.
 
     Raises:
-        UserError: if the record does not describe a match.
+        UserError: if the record does not describe a match, or the arena is not installed and no
+            folder was named.
     """
 
     def __init__(self, record: Record, folder: Path | None, snapshots: Mapping[int, bytes]) -> None:
         self.worlds = Worlds()
         """Keeps the world that was built last."""
         self.section: Section | None = None
-        """The section that is being filled; just after a snapshot it has no steps."""
+        """The section that is being filled; just after a snapshot it has no steps. None: the field
+        is empty.
+        """
         self.difference: Difference | None = None
-        """The first difference; judging stops at it."""
+        """The first difference, at which judging stops; None: none was found so far."""
         self.other_model: Difference | None = None
-        """Where this machine first builds a model with other bits than the recorded one."""
+        """Where this machine first builds a model with other bits than the recorded one; None:
+        nowhere so far.
+        """
         self.beats = self.frames = 0
         """Number of beats judged, and of frames compared."""
         self._record = record
@@ -228,7 +239,10 @@ class Judge:
         return differs
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Make the physics of a match; without robots it is the world itself."""
+        """Make the physics of a match: recorded physics, with which a new section begins.
+
+        Without robots it is a world instead, because nothing moves there.
+        """
         world = World(arena, entries)
         scene, model_hash = self._other_model(world)
         if not entries:
@@ -250,7 +264,7 @@ class Judge:
 
         Returns:
             The recorded scene and the recorded hash of the model if they differ in this way, else
-            (None, None).
+            (None, None). Either is also None if the beat did not record it.
         """
         beat = max(0, self._beat)
         made_by = header_at(self._record, beat).arithmetic.get("model")
@@ -340,7 +354,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
-    """Return whether two sheets are equal, apart from the software that wrote them."""
+    """Return whether two sheets are equal, apart from the versions of software and protocol."""
     if recorded is None:
         return False
     return replace(recorded, version=again.version, protocol=again.protocol) == again
@@ -360,7 +374,7 @@ def _frame_differences(recorded: Frame, again: Frame) -> list[str]:
 
 
 def _near(one: object, other: object) -> bool:
-    """Return whether two scenes are equal, apart from the last bits of their numbers."""
+    """Return whether two scenes, or parts of them, are equal, up to `_SCENE_BOUND` in a float."""
     if isinstance(one, msgspec.Struct) and type(one) is type(other):
         return all(_near(getattr(one, f), getattr(other, f)) for f in one.__struct_fields__)
     if isinstance(one, tuple) and isinstance(other, tuple):

@@ -19,9 +19,9 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
-"""Phases in which the court halts a match after a restart."""
+"""Phases in which a court halts its match after a restart, and when its disk fails or recovers."""
 _OPENING_BYTES = 1 << 14
-"""A file without a header and smaller than this [bytes] is skipped: its court was killed while it
+"""A file smaller than this [bytes] that holds no match is skipped: its court was killed while it
 opened the match.
 """
 
@@ -40,17 +40,17 @@ class Unfinished:
     token_hashes: dict[str, str]
     """Hash of the token of each held seat, by seat."""
     health: HealthVerdict | None
-    """The verdict until the court was killed."""
+    """The newest verdict before the court was killed; None: there is none."""
     cut: Phrase | None
     """Where the match's record ends early and why; None if it is whole."""
     other_arithmetic: Phrase | None = None
-    """How this machine computes differently from the machine that made the record; None: both
-    compute the same.
+    """How this machine computes differently from the machine that made the record; None: both gave
+    the same bits.
     """
 
     @property
     def inputs(self) -> list[Input]:
-        """Inputs of the first beat after the restart: a match in play is halted."""
+        """Inputs of the first beat after the restart: a halt of a match in play, else none."""
         if self.match.phase in IN_PLAY:
             why = say("reason.court-restarted")
             if self.other_arithmetic:
@@ -62,8 +62,8 @@ class Unfinished:
 def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     """Find the newest match of a court, if it was left unfinished; else None.
 
-    It skips a match that a running court of this name holds. It also skips a match without a
-    header: its court was killed while it opened.
+    It skips a match whose files a running process holds, such as another court of this name. It
+    also skips a small file without a header: its court was killed while it opened the match.
 
     Args:
         folder: folder of the records.

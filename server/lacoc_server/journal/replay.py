@@ -25,7 +25,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import say
 
 _SECTIONS_PER_PROCESS = 4
-"""Fewest sections for each process: starting one takes as long as simulating two or three."""
+"""Fewest sections for each process: its start takes as long as simulating two or three sections."""
 
 
 def verify(
@@ -41,14 +41,15 @@ def verify(
         folder: folder of its arena, if the arena is not installed.
         bound: largest distance from the record that another arithmetic may reach in a section [m,
             rad].
-        processes: number of processes that simulate; 1: only this one; None: one for each core.
+        processes: number of processes that simulate; 1: only this one; None: at most one for each
+            core, and fewer for a short record.
 
     Yields:
         The number of beats simulated so far (for a progress bar); at the end the `Verdict`.
 
     Raises:
-        UserError: if the arena is not installed, another version of MuJoCo made the record, or it
-            is too damaged to describe a match.
+        UserError: if the arena is not installed, if another version of MuJoCo or of the robots'
+            model made the record, or if it is too damaged to describe a match.
     """
     _same_physics(record)
     judge = Judge(record, folder, dict(record.snapshots))
@@ -83,8 +84,8 @@ class Resumed:
 def resume(record: Record, at: int | None = None, folder: Path | None = None) -> Resumed:
     """Continue a match where its record ends.
 
-    Up to the newest snapshot the recorded poses stand in for physics; only the rest is simulated.
-    There another arithmetic must stay within `BOUND` of the record.
+    Up to the newest snapshot the recorded poses take the place of physics; only the rest is
+    simulated. There another arithmetic must stay within `BOUND` of the record.
 
     Args:
         record: record of a court that was killed; it may be cut anywhere.
@@ -95,9 +96,9 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
         The match after its last recorded beat, with its physics ready to go on.
 
     Raises:
-        UserError: if the arena is not installed or another version of MuJoCo made the record. Also
-            if the resulting match differs from the record: it is damaged, or other software wrote
-            it.
+        UserError: if the arena is not installed, or another version of MuJoCo or of the robots'
+            model made the record. Also if the resulting match differs from the record: the record
+            is damaged, or other software wrote it.
     """
     _same_physics(record)
     judge = Judge(
@@ -128,7 +129,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
 
 
 def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
-    """Simulate each section of a record as soon as `judge` has reached it; keep their order."""
+    """Simulate each section of a record as soon as `judge` has reached it; yield in their order."""
     if processes <= 1:
         worlds = Worlds()
         for section in judge.sections():

@@ -1,4 +1,4 @@
-"""A section of a match: the beats from one snapshot to the next, as physics sees them.
+"""A section of a match: the beats from a snapshot, or from new robots, to the next snapshot.
 
 A section holds everything that its simulation needs, so sections can be simulated side by side. A
 simulation reports two comparisons with the record: where bits first differ, and where the distance
@@ -32,13 +32,13 @@ FRAME_FIELDS = (
     "scene",
     "state-hash",
 )
-"""Names of the fields of a frame (`differs.*`), in its order."""
+"""Names of the fields of a frame (`differs.*`), in the order of `Frame`."""
 
 BOUND = 1e-5
 """Largest distance from the record [m, rad] that another arithmetic may reach in a section."""
 
 _ROUNDING = 2.0**-23
-"""Rounding error of a recorded pose, a float32."""
+"""Added to the bound, because poses are recorded as float32 [m, rad]."""
 _NO_DIGEST = bytes(8)
 """Digest before the first tick."""
 
@@ -82,18 +82,18 @@ class Step:
     touched: tuple[tuple[int, ...], ...] | None
     """Markers that each seat's robot touches; None: the rules did not ask."""
     poses: bytes | None
-    """Poses in the frame; None: this beat has no frame."""
+    """Poses in the beat's frame; None: it has no frame."""
     digest: bytes
     """Digest of the frame, or of the last frame before it."""
 
 
 @dataclass
 class Section:
-    """The beats after a snapshot, up to the next snapshot."""
+    """The beats after a snapshot, or after robots were built, up to the next snapshot."""
 
     build: Build
     start: bytes | None
-    """The snapshot that it starts from; None: it starts with the robots as built."""
+    """The snapshot that the section starts from; None: it starts with the robots as built."""
     digest: bytes
     """The last recorded digest before the section's first step."""
     steps: list[Step] = field(default_factory=list)
@@ -102,12 +102,12 @@ class Section:
 
     @property
     def first_beat(self) -> int:
-        """Number of its first beat."""
+        """Number of the section's first beat."""
         return self.steps[0].beat
 
     @property
     def last_beat(self) -> int:
-        """Number of its last beat."""
+        """Number of the section's last beat."""
         return self.steps[-1].beat
 
 
@@ -125,7 +125,13 @@ class Finding:
     """Largest distance from the record, in frames and at the section's end [m, rad]."""
 
     def differ(self, beat: int, what: str, far: bool) -> None:
-        """Note what differs in a beat, and whether it is too far."""
+        """Note what differs in a beat; of several beats, only the first is kept.
+
+        Args:
+            beat: the beat.
+            what: name of what differs (`differs.*`).
+            far: whether the difference is too large for another arithmetic.
+        """
         self.bits = _joined(self.bits, beat, what)
         if far:
             self.beyond = _joined(self.beyond, beat, what)
@@ -162,7 +168,8 @@ def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
     Args:
         section: what to simulate.
         worlds: gives the section's world, which afterwards is in the state of the section's end.
-        bound: largest distance that another arithmetic may reach [m, rad].
+        bound: largest distance that another arithmetic may reach [m, rad]; where the simulation is
+            farther from the record, it stops.
     """
     found = Finding(section.first_beat, section.last_beat)
     try:
@@ -206,9 +213,10 @@ def _step(step: Step, before: bytes, world: World, found: Finding, bound: float)
 def _end(
     saved: bytes, step: Step, before: bytes, world: World, found: Finding, bound: float
 ) -> None:
-    """Compare the world with the snapshot at the end, and the snapshot with its frame.
+    """Compare the world with the snapshot at the end, and the snapshot with the frame of its beat.
 
-    The frame has the hash of the snapshot's state, so any machine can check that part.
+    The frame has the hash of the snapshot's state, so any machine can check that part exactly. The
+    world is then in the state of the snapshot.
     """
     if world.save() != saved:
         apart = world.apart(saved)
@@ -225,7 +233,10 @@ def _end(
 
 
 def _apart(recorded: bytes, poses: bytes) -> float:
-    """Return the largest difference between two frames' poses; infinite if their sizes differ."""
+    """Return the largest difference between two frames' poses [m, rad].
+
+    It is infinite if the frames' sizes differ or a number is not finite.
+    """
     if len(recorded) != len(poses):
         return float("inf")
     gaps = np.abs(np.frombuffer(recorded, "<f4").astype(float) - np.frombuffer(poses, "<f4"))
@@ -233,7 +244,11 @@ def _apart(recorded: bytes, poses: bytes) -> float:
 
 
 def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> bool:
-    """Return whether robots up to `bound` away from here can have touched these markers."""
+    """Return whether recorded touches can be true if no distance differs by more than `bound` [m].
+
+    Each robot must have touched every marker that it touches more deeply than `bound` in `world`,
+    and no marker from which it is farther than `bound` there.
+    """
     surely, perhaps = world.touched(gap_m=-bound), world.touched(gap_m=bound)
     return len(recorded) == len(surely) and all(
         set(sure) <= set(marked) <= set(maybe)

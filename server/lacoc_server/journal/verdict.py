@@ -40,13 +40,15 @@ class Verdict:
     differs_at: int | None = None
     """First beat that differs; None: no beat does."""
     distance: float = 0.0
-    """Distance of the worst section from the record [m, rad]."""
+    """Distance of the worst section from the record [m, rad]; 0 if the record differs."""
     worst: tuple[int, int] | None = None
-    """First and last beat of the worst section; None: all bits are the same."""
+    """First and last beat of the worst section; None: no section has other bits, or the record
+    differs.
+    """
 
     @property
     def same(self) -> bool:
-        """True if the record is what its inputs give, on any machine's arithmetic."""
+        """True if the record is what its inputs give, with this or another arithmetic."""
         return self.kind is not Kind.DIFFERS
 
 
@@ -68,9 +70,9 @@ def conclude(
         headers: headers of the record's segments.
         beats: number of beats judged.
         frames: number of frames compared.
-        judged: differences between the games.
+        judged: differences found by judging the games again; None stands for no difference.
         findings: result of each section's simulation.
-        other_model: where this machine built a model with other bits.
+        other_model: where this machine first built a model with other bits; None: nowhere.
         bound: largest distance that another arithmetic may reach [m, rad].
     """
     found = [difference for difference in judged if difference is not None]
@@ -112,7 +114,10 @@ def conclude(
 
 
 def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
-    """Return whether a section may have other bits: another arithmetic recorded some of it."""
+    """Return whether a section may have other bits than here.
+
+    It may if another arithmetic, or one that is not named, recorded some of its beats.
+    """
     here = arithmetic.here()
     ends = [header.first_beat for header in headers[1:]] + [finding.last_beat + 1]
     return not all(

@@ -1,7 +1,7 @@
 """Contestants' requests to a match (join, ready, leave, keys), and their silence.
 
-Each request is legal in some phases (rules 3 and 4). A refused request changes nothing, and the
-refusal says why.
+Some requests are legal only in some phases (rules 3 and 4). A refusal says why. A refused request
+changes nothing, except that frames show the newest refused key.
 """
 
 from typing import Any
@@ -20,7 +20,11 @@ _BEFORE = frozenset({Phase.LOBBY, Phase.READY})
 
 
 def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
-    """Take a seat, or come back to it; during a match new files wait for the next match."""
+    """Take a seat, or come back to it.
+
+    From the countdown on, a seat keeps its files for this match, and new ones wait for the next
+    one. A join for a seat that nobody has is then refused until the match is official or void.
+    """
     seat = match.seats[item.seat]
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)
@@ -54,7 +58,7 @@ def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
 
 
 def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
-    """Mark a seat as ready, or take that back."""
+    """Mark a seat as ready, or take that back; refuse it after READY or if nobody has the seat."""
     if match.phase not in _BEFORE:
         return Refusal(say("refused.match-on", phase=match.phase.word))
     if seat.join is None:
@@ -70,7 +74,11 @@ def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
 
 
 def leave(match: MatchState, seat: Seat) -> Done:
-    """Free a seat; during a match the contestant keeps it, and the robot stands."""
+    """Free a seat in LOBBY or READY; in a later phase let its robot stand.
+
+    In a later phase the contestant keeps the seat for this match. The next match begins without
+    them, unless they come back.
+    """
     if match.phase in _BEFORE:
         said = say("event.left-seat", team=seat.team, seat=seat.id)
         match.tell("leave", said, seat=seat.index)
@@ -112,14 +120,18 @@ def heard(match: MatchState, seat: Seat) -> Done:
 
 
 def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
-    """Apply a digit or [x] to its seat, or refuse it."""
+    """Apply a digit or [x] to its seat, or refuse it.
+
+    Frames show the seat's newest applied and its newest refused command. After an [x] the seat's
+    keys are refused for `restart_freeze_s` of the clock.
+    """
     why = No.NOT_PLAYING
     if match.phase is Phase.PLAYING:
         why = seat.why_not(item, match.ticks, match.rules.open_levels)
     if why is not No.NONE:
         seat.refused = (item.seq, why)
         return Refusal(WHY_NO[why])
-    # A digit may come after a newer [x]: a tick takes each seat's [x] first (rules 3).
+    # A beat takes each seat's [x] first (rules 3), so a digit may follow an [x] of a higher number.
     seat.applied = (max(item.seq, seat.applied[0]), match.beats)
     if item.key == RESTART_KEY:
         seat.restart()

@@ -1,7 +1,8 @@
 """The drive: it turns the newest key into commanded angles, tick by tick (rules 3).
 
-Pure and exact: it knows only commanded angles, never measured ones, so drives can be checked with
-pencil and paper. `DriveState` is what changes; a `Drive` is made from a seat's robot and gait.
+It is pure and exact. It knows only commanded angles, never measured ones, so its results can be
+checked with pencil and paper. A `Drive` is made from a seat's robot and gait and never changes.
+Each key and each tick makes a new `DriveState` from the one before.
 """
 
 from typing import Literal
@@ -22,7 +23,9 @@ class DriveState(msgspec.Struct, frozen=True):
     posture: int
     """Index of the target posture in the digit's sequence."""
     ticks: int
-    """advance "reached": ticks in a row at the target; advance "time": ticks since the command."""
+    """With advance "reached": ticks in a row at the target, up to the number that is needed. With
+    advance "time": ticks since the sequence began.
+    """
     angles: Posture
     """(joints,) commanded angles [rad], by joint id."""
     stands: bool = False
@@ -37,7 +40,8 @@ class Drive:
         start: (joints,) start posture [rad]; the robot stands in it at a level without a key 0.
         ang_min_rad_s: AngMin, the speed of every commanded angle [rad/s].
         advance: when a sequence goes on: when its posture is "reached", or by "time".
-        hold_us: how long a reached posture is held, or the time of each posture [us].
+        hold_us: with "reached", how long a reached posture is held; with "time", how long each
+            posture is commanded [us].
         repeat: whether a sequence begins again after its last posture.
     """
 
@@ -59,24 +63,30 @@ class Drive:
         self._repeat = repeat
 
     def begin(self, level: Level) -> DriveState:
-        """Return the state of a robot that stands at a level, in the start posture."""
+        """Return the state of a robot that stands at a level.
+
+        It begins in the start posture. Ticks then move it to the first posture of key 0.
+        """
         return DriveState(level, 0, 0, 0, self._start, stands=True)
 
     def stand(self, state: DriveState) -> DriveState:
-        """Let the robot stand: it takes the first posture of key 0 at the same level (rules 3)."""
+        """Return the state from which the robot moves to the first posture of key 0 (rules 3).
+
+        The level stays. A state in which the robot stands already is returned as it is.
+        """
         if state.stands:
             return state
         return DriveState(state.level, 0, 0, 0, state.angles, stands=True)
 
     def has(self, level: Level, digit: int) -> bool:
-        """Return whether a digit does something at a level."""
+        """Return whether the gait has postures for a digit at a level."""
         return self._gait.sequence(level, digit) is not None
 
     def press(self, state: DriveState, level: Level, digit: int) -> DriveState:
-        """Take a command; its sequence begins with this tick.
+        """Return the state after a digit was pressed; its sequence begins in the next `tick`.
 
-        A command is (level, digit). With `repeat`, pressing the same command again changes nothing.
-        Without `repeat`, its sequence starts again.
+        If the sequence was running already, with `repeat` nothing changes; without `repeat` the
+        sequence starts again.
         """
         was_pressed = (level, digit) == (state.level, state.digit) and not state.stands
         if self._repeat and was_pressed:
@@ -84,7 +94,7 @@ class Drive:
         return DriveState(level, digit, 0, 0, state.angles)
 
     def tick(self, state: DriveState) -> DriveState:
-        """Let one tick of 20 ms pass."""
+        """Return the state after one tick of 20 ms."""
         sequence = self._gait.sequence(state.level, state.digit) or (self._start,)
         if state.stands:
             sequence = sequence[:1]

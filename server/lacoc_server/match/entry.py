@@ -29,7 +29,7 @@ class Entry:
     robot: RobotSpec
     gait: Gait
     notes: tuple[Phrase, ...] = ()
-    """Remarks on things in the files that are legal, but probably not meant."""
+    """Remarks on things in the gait files that are legal, but probably not meant."""
 
 
 def weigh_in(
@@ -39,17 +39,17 @@ def weigh_in(
     limits: Limits = DEFAULT_LIMITS,
     levels: Collection[Level] = tuple(Level),
 ) -> Entry:
-    """Read and check a contestant's files.
+    """Read and check a contestant's files; whether the robot stands is not tried here.
 
-    The result is cached, because a court weighs the same files in twice: at its door, and when the
-    match takes in the join. The record has the join with its files.
+    The result is cached, because a court reads the same files twice: at its door, and when the
+    match takes in the join. A replay reads them from the record in the same way.
 
     Args:
         robot: the robot file.
         postures: a Loco-data file, or None.
         locomotion: a LocoTra-data file, or None.
         limits: limits of the contest.
-        levels: open levels of control; a gait must have keys at one of them.
+        levels: open levels of control; a gait must have keys at one of them or more.
 
     Raises:
         FileRefused: with every mistake of every file.
@@ -100,10 +100,11 @@ def _weigh_in(
 
 @dataclass(frozen=True)
 class Admission:
-    """Weighs in the files of a join, and fills in those that are missing.
+    """Fills in the files that a join lacks, and checks them all.
 
-    A team that comes back without files keeps those of its seat. Another team without a robot file
-    gets the contest's robot; without gait files too, that robot's sample gait.
+    A join without any file gets the files of its seat if its team has that seat, else the contest's
+    robot with its sample gait. A join that brings only gait files gets the contest's robot. Nothing
+    is filled in for a gait file that is missing beside another file.
     """
 
     robot: SentFile
@@ -116,14 +117,14 @@ class Admission:
     """Levels of control that the arena opens."""
 
     def __call__(self, join: Join, held: JoinSeat | None = None) -> tuple[Join, tuple[Phrase, ...]]:
-        """Weigh in a join's files, after filling in those that are missing.
+        """Fill in the files that a join lacks, and check them all.
 
         Args:
             join: the join as it came.
             held: the seat's present join; None: nobody has the seat.
 
         Returns:
-            The join with a robot file, and notes on which files it uses if it brought none.
+            The join with the files that it uses. If it brought none, also a note about them.
 
         Raises:
             FileRefused: with every mistake of every file.
@@ -148,7 +149,10 @@ class Admission:
 def _read_gait(
     file: SentFile, robot: RobotSpec | None, notes: list[Phrase]
 ) -> PostureTable | LocomotionTable:
-    """Read a gait for a robot; for any robot if the robot's file was refused (None)."""
+    """Read a gait file and check that it fits a robot; add remarks on it to `notes`.
+
+    Without a robot, because the robot's file was refused, only the form of the file is checked.
+    """
     if robot is None:
         return read_gait(file.data, file.name)
     labels, ranges_deg = robot.labels, robot.ranges_deg

@@ -1,8 +1,8 @@
 """What the rules saw and decided, so that one event can be taken back (rules 4.1).
 
-Nothing is deleted. A match keeps every observation since its first event. To take an event back, it
-judges the game again from that tick, without the event's claim. Paths, clock and all other
-decisions stay as they were.
+A match keeps every observation since its first event that can be taken back. To take an event back,
+it judges the game again from the event's tick, without the event's claim. Paths, clock and all
+other decisions stay as they were, and nothing is deleted from the log.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from lacoc_shared.words import Phrase
 
 
 class SetMarker(msgspec.Struct, frozen=True):
-    """A referee's change of a marker, between two ticks."""
+    """A referee's change of a marker, between two ticks; `struck`: it was taken back."""
 
     marker: int
     value: int
@@ -35,7 +35,9 @@ class Step(msgspec.Struct, frozen=True):
     """Numbers of those events in the log; for a `SetMarker`, the number of its decision."""
     struck: frozenset[Claim] = frozenset()
     over: Phrase | None = None
-    """Why the game was over after this step; later steps are kept, but not judged."""
+    """Why the game was over after this step; None: it was not. When the game is judged again,
+    observations after it are kept, but not judged.
+    """
 
 
 @dataclass(frozen=True)
@@ -64,10 +66,10 @@ class History:
         """All steps from the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
         self._judged: tuple[Any, Phrase | None] = (None, None)
-        """The newest state after a tick, and why the game was over in that state."""
+        """The newest state after a tick, and why the game was over in it; None: it was not."""
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
-        """Judge one tick; number its events from `next_number` on."""
+        """Judge one tick and return its events; they get the numbers from `next_number` on."""
         before = self.state
         self.state, events = self._game.step(before, observation, BEAT_S)
         numbers = tuple(range(next_number, next_number + len(events))) if events else ()
@@ -98,14 +100,17 @@ class History:
         self._append(step)
 
     def knows(self, number: int) -> bool:
-        """Return whether an event can be taken back: the game or `set` made it, and it counts."""
+        """Return whether an event can be taken back.
+
+        The game or `set` must have made it, and no take-back may have removed it.
+        """
         return number in self._step_of
 
     def without(self, number: int) -> Fold:
         """Judge the game again without one event; the history stays as it is.
 
         Raises:
-            KeyError: if there is no such event.
+            KeyError: if the event can't be taken back (see `knows`).
         """
         first = self._step_of[number]
         steps = self._steps[:first]
@@ -170,7 +175,7 @@ class History:
 
 
 def _strike(step: Step, number: int) -> tuple[Observation | SetMarker, frozenset[Claim]]:
-    """Return a step's observation and struck claims, with one more event struck."""
+    """Return a step's observation or change, and its struck claims, with one more event struck."""
     if isinstance(step.seen, SetMarker):
         return SetMarker(step.seen.marker, step.seen.value, struck=True), step.struck
     event = step.events[step.numbers.index(number)]

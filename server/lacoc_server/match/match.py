@@ -49,11 +49,11 @@ class Beat(msgspec.Struct, frozen=True):
     outcomes: tuple[Outcome, ...]
     """One for each input, in the order of the inputs."""
     ticked: bool
-    """Whether physics ran."""
+    """True if a tick of physics passed; False also after a fault."""
     touch: Touch | None
     """What the rules saw besides the poses; None: nothing."""
     result: Result | None
-    """The result, in a beat that changed it."""
+    """The result, in a beat that ended the match or decided something after its end; else None."""
     sheet_changed: bool
 
 
@@ -143,14 +143,17 @@ class Match(MatchState):
             self._move_to_play()
         if self.phase is Phase.PLAYING and self.time_is_up:  # after a referee moved the clock
             self.finish(say("over.time"))
-        # A match without a referee ends when nobody is there; a countdown leads to PLAYING.
+        # A match without a referee ends when nobody is there, but never in a countdown.
         if self.rules.start == "ready" and self.phase in (Phase.PLAYING, Phase.HALTED):
             why = contestant.unattended(self)
             if why:
                 self.finish(why)
 
     def _move_to_play(self) -> None:
-        """Go from the lobby to READY, the countdown and play, as soon as the seats allow each."""
+        """Enter READY when every seat is ready, and the lobby when one no longer is.
+
+        Without a referee, also begin the countdown. Enter PLAYING at the end of every countdown.
+        """
         if self.phase is Phase.LOBBY and not self.missing():
             self.build()
             self.enter(Phase.READY, model=self.physics.model_hash)
@@ -162,7 +165,7 @@ class Match(MatchState):
             self.enter(Phase.PLAYING)
 
     def _tick(self) -> bool:
-        """Run one tick of physics; while the match is played, let the rules judge it.
+        """Run one tick of physics; in PLAYING, let the rules judge it.
 
         Returns:
             Whether the tick passed: False after a fault.
@@ -182,7 +185,10 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Put back robots that stray before play; after `MOST_STRAYS` times a seat is not ready."""
+        """Have robots that stray before play put back.
+
+        A seat whose robot strayed `MOST_STRAYS` times is no longer ready.
+        """
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)
             if gone_m <= FARTHEST_M:
@@ -216,7 +222,7 @@ class Match(MatchState):
 
     def _frame(self) -> Frame:
         game, state = self.game, self.history.state
-        if state is not self._shown[0]:  # it changes seldom, and there are many frames
+        if state is not self._shown[0]:  # the state changes seldom, and there are many frames
             self._shown = (state, pack_states(game.board(state)), game.score(state))
         _, board, points = self._shown
         seats, scores, ticks = self.seats, self._adjusted(points), self.ticks

@@ -21,7 +21,7 @@ class Fault:
     """A failure of physics in a tick; everything is as it was before that tick."""
 
     seat: int
-    """Index of the seat whose robot failed first; `NOBODY` if that is not known."""
+    """Index of the seat whose robot failed; `NOBODY` if that is not known."""
     why: Phrase
     """Why it failed (`fault.*`)."""
 
@@ -31,7 +31,7 @@ class Physics(Protocol):
 
     @property
     def scene(self) -> Scene:
-        """The drawable model."""
+        """The model for drawing."""
 
     @property
     def scene_hash(self) -> bytes:
@@ -55,7 +55,7 @@ class Physics(Protocol):
             angles: for each seat the commanded angles [rad], by joint id.
 
         Returns:
-            None, or the fault; then nothing has changed.
+            None if the tick passed. Else the fault, with the state as it was before the tick.
         """
 
     def save(self) -> bytes:
@@ -65,7 +65,10 @@ class Physics(Protocol):
         """Return the poses of the robots, in the form of `Frame.poses`."""
 
     def touched(self) -> Sequence[tuple[int, ...]]:
-        """Return for each seat the markers whose probes it touches now, in ascending order."""
+        """Return for each seat the markers whose probes its robot touches after the newest tick.
+
+        A marker is its index in the game's board. The indices are in ascending order.
+        """
 
 
 class MakePhysics(Protocol):

@@ -28,7 +28,7 @@ MAX_POINTS = 1000
 
 
 class Illegal(ValueError):
-    """A decision is not legal.
+    """Raised when a decision is not legal.
 
     Args:
         why: the reason for the referee (`why.*`).
@@ -51,7 +51,7 @@ class _Rule:
     then: Callable[[MatchState, Any], object] = lambda match, decision: None
     """Does what follows from the decision; its events come after the decision's own."""
     also: Callable[[MatchState], Phrase | None] = lambda match: None
-    """Further reason why it is not legal; None if there is none."""
+    """Returns a further reason why the decision is not legal; None if there is none."""
 
     def why_not(self, match: MatchState) -> Phrase | None:
         """Say why no decision of this kind is legal now; None if one may be."""
@@ -248,7 +248,11 @@ def _next(match: MatchState, decision: d.Next) -> Phrase:
 
 
 def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> DecisionReply:
-    """Strike one event and judge the match again without it (rules 4.1)."""
+    """Take back one event, or one correction of a score (rules 4.1).
+
+    After an event of the game or a change of a marker, judge the match again without it. A dry run
+    changes nothing, and only reports the scores and what would change.
+    """
     if decision.event in match.adjustments:
         adjustments = {n: a for n, a in match.adjustments.items() if n != decision.event}
         scores = match.scores(adjustments=adjustments)
@@ -292,7 +296,11 @@ def _changes(fold: Fold) -> tuple[Phrase, ...]:
 
 
 def _follow(match: MatchState, over: Phrase | None) -> None:
-    """Set the phase to what the game requires after a take-back."""
+    """Change the phase after a take-back, if the game requires it.
+
+    A halted match whose game is now over is finished. A finished match whose game is not over any
+    longer is halted, unless its time is up or a winner was declared.
+    """
     if match.phase is Phase.HALTED and over:
         match.finish(over)
     elif match.phase is Phase.FINISHED and not (over or match.time_is_up or match.declared):

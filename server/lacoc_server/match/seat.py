@@ -26,16 +26,18 @@ class Seat:
     join: JoinSeat | None = None
     entry: Entry | None = None
     coming: JoinSeat | None = None
-    """The newest join since the match began; it is used from the next match on."""
+    """The newest join that came after READY; the next match begins with it. None: none came."""
     ready: bool = False
     silent: bool = False
     left: bool = False
-    """True if the contestant left during play; the next match does not seat them."""
+    """True if the contestant left after READY and did not come back: then the seat is free in the
+    next match.
+    """
     drive: Drive | None = None
-    """The drive; from READY on."""
+    """The drive; None before READY."""
     state: DriveState | None = None
     locked_until: int = 0
-    """Tick of PLAYING from which keys are taken again, after a restart."""
+    """Tick of PLAYING from which keys are taken again, after an [x]."""
     frozen_until: int = 0
     """Tick of PLAYING from which keys are taken again, after a referee's freeze."""
     applied: tuple[int, int] = (0, 0)
@@ -43,7 +45,7 @@ class Seat:
     refused: tuple[int, No] = (0, No.NONE)
     """Newest refused command: sequence number, reason."""
     restarting: bool = False
-    """True if the robot goes back to its start place in this beat."""
+    """True until the robot is put back at a start place, in this beat or the next one."""
     strays: int = 0
     """How many times the robot left its start place in this READY phase."""
 
@@ -53,7 +55,7 @@ class Seat:
         return self.join.team if self.join else self.id
 
     def begin(self, repeat: bool, level: Level) -> None:
-        """Make a new drive from robot and gait; the robot stands in its start posture."""
+        """Make a new drive, with which the robot stands; do nothing if nobody has the seat."""
         if self.entry is None:
             return
         self.strays = 0
@@ -74,7 +76,7 @@ class Seat:
             self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Put the robot back at its start place in this beat, standing at its level (rules 3)."""
+        """Mark the robot to be put back at a start place, where it stands (rules 3)."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)

@@ -20,11 +20,11 @@ _BODY = struct.Struct("<7f")
 
 
 class Staging:
-    """Physics, and what the rules and the frames see of it.
+    """Holds the physics of a match, and reads from it what the rules and the frames need.
 
     Args:
         arena: the field and its game.
-        make_physics: builds the robots on the field.
+        make_physics: builds the field, with or without robots.
     """
 
     def __init__(self, arena: Arena, make_physics: MakePhysics) -> None:
@@ -45,7 +45,7 @@ class Staging:
         self._starts: list[Place] = []
 
     def build(self, seats: Sequence[Seat]) -> None:
-        """Put the robots of all seats on the field: compile the model."""
+        """Compile the model of the field with the robots of all seats."""
         entries = [seat.entry for seat in seats if seat.entry]
         self.physics = self.make_physics(self._arena, entries)
         sizes = [4 * (7 + entry.robot.joints) for entry in entries]
@@ -61,14 +61,14 @@ class Staging:
         self._bodies = [_BODY.unpack_from(self.poses, offset) for offset in self._offsets]
 
     def from_start_m(self, seat: int) -> float:
-        """Return how far a robot's centre is from its start place, seen from above [m]."""
+        """Return how far a robot's centre is from where it was last put, seen from above [m]."""
         return math.dist(self._starts[seat][:2], self._bodies[seat][:2])
 
     def observe(self) -> tuple[Observation, Touch | None]:
         """Observe a tick for the rules.
 
         Returns:
-            The observation, and the part of it that is not in the poses, if there is any.
+            The observation, and the part of it that is not in the poses; None: all of it is there.
         """
         touched, placed = self.physics.touched(), self._placed
         if not (any(touched) or any(placed)):
@@ -81,12 +81,12 @@ class Staging:
         return seen, Touch(tuple(touched), tuple(placed))
 
     def put_back(self, seats: Sequence[Seat]) -> None:
-        """Put the robots that restart in this beat at their start places."""
+        """Put each robot whose seat is marked as restarting at a start place."""
         going = [seat for seat in seats if seat.restarting]
         if not going:
             return
-        # Robots that restart in the same beat do not block each other: each goes to its own side.
-        # So no seat has an advantage.
+        # Robots that are put back in the same beat do not block each other: each goes to its own
+        # side. So no seat has an advantage.
         staying = [seat for seat in seats if not seat.restarting]
         for seat in going:
             place = self._free_place(seat, staying)
@@ -96,7 +96,12 @@ class Staging:
         self.look()
 
     def _free_place(self, seat: Seat, others: Sequence[Seat]) -> Place:
-        """Find the first start place far enough from the others (rules 3), or the farthest."""
+        """Return the seat's first start place that is free (rules 3), or the one with most room.
+
+        Args:
+            seat: the seat whose robot is put back.
+            others: seats whose robots stay where they are.
+        """
 
         def room_m(place: Place) -> float:
             gaps_m = (

@@ -32,7 +32,8 @@ TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.OFFICIAL: frozenset(),
     Phase.VOID: frozenset(),
 }
-"""Phases that may follow each phase. After the last two the decision `next` opens a new match."""
+"""Phases that may follow each phase. After OFFICIAL or VOID, the decision `next` opens a new match.
+"""
 
 _ENTERED = {
     Phase.LOBBY: say("event.lobby"),
@@ -55,11 +56,11 @@ class MatchState:
 
     Args:
         setup: what the match is made from.
-        make_physics: builds the robots on their field.
+        make_physics: builds the field, with or without robots.
         folder: the arena's folder, if the arena is not installed.
 
     Raises:
-        UserError: if the arena is not installed or its settings are wrong.
+        UserError: if the arena is not installed, or if its settings or the limits are wrong.
     """
 
     def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
@@ -72,14 +73,14 @@ class MatchState:
         """Length of the match [ticks]; 0: it has no end."""
         self.phase = Phase.CREATED
         self.beats = -1
-        """Number of the present beat; the first is 0."""
+        """Number of the present beat; the first is 0, and -1 means that none has begun."""
         self.entered_beat = 0
         """Beat in which this phase began."""
         self.countdown_beats = 0
         self.ticks = 0
         """Ticks of PLAYING so far."""
         self.silent_beats = 0
-        """Beats since any seat was last heard."""
+        """Beats for which all seats have been silent without a break."""
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.seats = [
@@ -90,9 +91,9 @@ class MatchState:
         self.adjustments: dict[int, tuple[int, int]] = {}
         """Seat and points of each correction, by its event number."""
         self.declared: str | None = None
-        """The winner that a referee declared: a seat's id or "draw"."""
+        """The winner that a referee declared: a seat's id or "draw"; None: none was declared."""
         self.ended: Phrase | None = None
-        """Why play ended; None: it has not."""
+        """Why the match ended; None: it has not."""
         self.advice: tuple[Phrase | str, ...] = ()
         """Why the match should be played again, by the court's measurement; empty: it need not be.
         """
@@ -106,28 +107,31 @@ class MatchState:
         self._result_changed = False
         self._sheet_changed = True
         self._told_result: tuple[str, tuple[int, ...]] | None = None
-        """Winner by the rules and scores, as last logged; None: not logged yet."""
+        """Winner by the rules and scores, as last logged; None: not logged since play ended."""
 
     # Questions.
 
     @property
     def physics(self) -> Physics:
-        """The robots on their field; before READY the field is empty."""
+        """The robots on their field; in the lobby the field is empty."""
         return self.staging.physics
 
     @property
     def has_begun(self) -> bool:
-        """True from the countdown to the official result: new files wait for the next match."""
+        """True from the first countdown to FINISHED, also in a halt; not when OFFICIAL or VOID."""
         return self.phase in _BEGUN
 
     @property
     def clock_ticks(self) -> int:
-        """Ticks of the clock that have been used."""
+        """Ticks of the clock that have been used, with the referee's corrections of the clock."""
         return self.ticks + self.clock_offset
 
     @property
     def time_is_up(self) -> bool:
-        """True if the last tick has been played, and none follows (docs/rules.md 4)."""
+        """True if the clock has no ticks left (docs/rules.md 4), also after a referee moved it.
+
+        A match without a time limit never runs out of time.
+        """
         return 0 < self.duration_ticks <= self.clock_ticks
 
     @property
@@ -179,7 +183,10 @@ class MatchState:
         return reasons
 
     def next_joins(self) -> list[JoinSeat]:
-        """List the joins of the next match, with the files that each team sent last."""
+        """List the joins with which the next match begins: the newest of each seat.
+
+        A contestant who left after the match had begun, and did not come back, is not among them.
+        """
         joins = [seat.coming or seat.join for seat in self.seats if not seat.left]
         return [join for join in joins if join is not None]
 
@@ -223,7 +230,7 @@ class MatchState:
     # Changes.
 
     def enter(self, phase: Phase, **data: Any) -> None:
-        """Enter a phase and log it."""
+        """Enter a phase and log it; at the end of the match, also mark the result as changed."""
         assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
         before, self.phase, self.entered_beat = self.phase, phase, self.beats
         said = _ENTERED.get(phase) or say("event.finished", why=self.ended)
@@ -240,7 +247,7 @@ class MatchState:
         self.sheet_changed()
 
     def back_to_lobby(self) -> None:
-        """Leave READY: the field is empty until every seat is ready again."""
+        """Go from READY back to the lobby and empty the field; in other phases do nothing."""
         if self.phase is not Phase.READY:
             return
         self.staging.clear()
@@ -256,7 +263,7 @@ class MatchState:
         self.enter(Phase.COUNTDOWN)
 
     def finish(self, why: Phrase) -> None:
-        """End play.
+        """End play and log the result.
 
         Args:
             why: phrase of `over.*`.
@@ -313,7 +320,7 @@ class MatchState:
         )
 
     def tell_result(self) -> None:
-        """Log winner and scores by the rules, after play, if they differ from those logged last."""
+        """In FINISHED, log winner and scores by the rules if they differ from those logged last."""
         if self.phase is not Phase.FINISHED:
             return
         result = winner, scores = self.winner(), self.scores()
@@ -327,9 +334,9 @@ class MatchState:
         self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
-        """Put the result into this beat, if the match has one."""
+        """Mark the result as changed, if the match has one: the beat then returns it."""
         self._result_changed = self.phase in _ENDED
 
     def sheet_changed(self) -> None:
-        """Put the sheet into this beat."""
+        """Mark the sheet as changed: the beat then says so."""
         self._sheet_changed = True

@@ -34,7 +34,7 @@ _Files = tuple[SentFile, SentFile | None, SentFile | None]
 """Robot, postures (level A), locomotion (level B)."""
 
 SETTLE_BEATS = BEATS_PER_S
-"""How long robots stand in READY before the start [beats]."""
+"""Robots stand in READY until this beat of the match; then the match is started."""
 
 
 class Seated(msgspec.Struct, frozen=True):
@@ -56,7 +56,9 @@ class Player:
     """The join; its `seat` is the player's seat."""
     bot: BotFactory
     late_ticks: int = 0
-    """Ticks by which the brain sees its first frame later; another value makes another match."""
+    """Ticks of PLAYING that pass before the brain sees its first frame; another value makes another
+    match.
+    """
 
 
 def player(
@@ -163,7 +165,8 @@ def simulate(
         The result: official, or void if physics stopped.
 
     Raises:
-        UserError: if the arena's matches have no end, or a record can't be written.
+        UserError: if the arena's matches have no end, or if the record exists already or can't be
+            written.
         FileRefused: if a player's files have mistakes.
     """
     match = Match(setup, World, arena)

@@ -55,10 +55,10 @@ class Authority(NamedTuple):
 
     @classmethod
     def load(cls, pair: Pair) -> Self:
-        """Read an authority from its files.
+        """Read an authority from its certificate and private key.
 
         Raises:
-            ValueError: if they are not the files of an authority.
+            ValueError: if they can't be read or do not belong together.
         """
         key = load_pem_private_key(pair.private_key, None)
         certificate = x509.load_pem_x509_certificate(pair.certificate)
@@ -74,7 +74,7 @@ class Authority(NamedTuple):
         return self.certificate.not_valid_after_utc
 
     def pair(self) -> Pair:
-        """Return the authority as PEM files."""
+        """Return the authority's certificate and private key, both PEM."""
         return _pair(self.certificate, self.private_key)
 
     def issue(self, hosts: Iterable[str], now: datetime) -> Pair:
@@ -107,7 +107,7 @@ def hosts_of(certificate: bytes) -> list[str]:
         certificate: the certificate, PEM.
 
     Raises:
-        ValueError: if it is no certificate of a court.
+        ValueError: if the bytes are no certificate, or the certificate names no hosts.
     """
     try:
         extensions = x509.load_pem_x509_certificate(certificate).extensions

@@ -34,25 +34,26 @@ class Made(NamedTuple):
     ends: str
     """Last day of all certificates (ISO 8601)."""
     handed_out_hold: bool
-    """Whether there were keys before, and their invitations are still valid."""
+    """True if there were keys before and they were kept: their invitations stay valid."""
     kept: Path | None
     """Folder of the replaced keys; None: none were replaced."""
 
 
 def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
-    """Make a contest's keys, or add what is new; write the entry into the contest file.
+    """Make a contest's keys, or add what is new; name their folder in the contest file.
 
-    The authority is made once, so invitations that were handed out stay valid. The courts'
-    certificate and the invitations are written again, from what the contest file says now.
+    The authority is made only once, so invitations that were handed out stay valid. The courts'
+    certificate and the invitations are written again each time, from what the contest file says.
 
     Args:
         file: the contest file.
         hosts: names and IP addresses of the courts' machine; invitations use the first one for a
             court without an address in the file.
-        renew: replace all keys, and keep the old ones under another name.
+        renew: replace all keys; the old folder is kept under another name.
 
     Raises:
-        UserError: if the file or the keys can't be read or written.
+        UserError: if the file or the keys can't be read or written, if the authority has expired,
+            or if a court has no address.
     """
     hosts = [address.host(address.endpoint(host)) for host in hosts]
     data, contest = _with_entry(file)
@@ -177,7 +178,11 @@ def _before(folder: KeyFolder) -> list[str]:
 
 
 def _set_aside(path: Path) -> Path | None:
-    """Rename a folder with the first free number; None if there is no such folder."""
+    """Rename a folder: add the first free number to its name.
+
+    Returns:
+        The folder's new path; None if there is no such folder.
+    """
     if not path.exists():
         return None
     numbered = (path.with_name(f"{path.name}.{number}") for number in itertools.count(1))

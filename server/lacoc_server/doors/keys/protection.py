@@ -15,7 +15,7 @@ def protection(contest: Contest, court: str) -> Protection | None:
     if keys is None:
         return None
     for path in (keys.certificate, keys.private_key):
-        keys.read(path)  # its error says what to do; Zenoh's does not
+        keys.read(path)  # its error says what to do; Zenoh's error does not
     everybody = entrances.everybody(contest, court)
     credentials = [access.credentials for access in everybody.values()]
     return Protection(

@@ -80,15 +80,15 @@ def _rounds(stage: Stage, teams: int) -> int:
 def circle_round(players: int, number: int) -> Iterator[tuple[int, int]]:
     """Yield the matches of a round of the circle method: the left player and the right one.
 
-    With an odd number of players one rests in each round, always another one. When everybody has
-    met everybody, the rounds come again in reverse order with seats swapped. So after any number of
-    rounds, each player's matches in the two seats differ by at most one in number.
+    With an odd number of players one of them rests in each round, and they take turns. When
+    everybody has met everybody, the rounds come again in reverse order with seats swapped. So after
+    any number of rounds, each player's numbers of matches in the two seats differ by at most one.
 
-    All players but the last of an even number sit on a circle. In each round another one of them is
-    the pivot: players at the same distance from the pivot meet, and the pivot meets the last
-    player, or rests. A player's distance from the pivot changes by one in each round, so whoever
-    sits left at odd distances and right at even ones changes the seat each time. The pivot takes
-    the seat that keeps its own matches even: left in even rounds.
+    The players sit on a circle; of an even number, the last one sits outside. In each round another
+    player on the circle is the pivot. Two players at the same distance from the pivot meet. The
+    pivot meets the player outside, or rests. The seats depend on the distance and on the side of
+    the pivot. So a player changes the seat in each round, not counting the round as pivot. In that
+    round the player takes the left seat if the round's number is even, else the right one.
 
     Args:
         players: number of players.
