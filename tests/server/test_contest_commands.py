@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.commands import serve
-from lacoc_server.commands.contest import app
+from lacoc_server.commands.contest.app import app
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 

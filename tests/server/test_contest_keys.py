@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from lacoc_server.commands.contest import app
+from lacoc_server.commands.contest.app import app
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.invitation import read_invitation

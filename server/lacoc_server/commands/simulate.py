@@ -73,9 +73,7 @@ def simulate_command(
             help="How many times each pair plays; the bots start a little later each time.", min=1
         ),
     ] = 1,
-    jobs: Annotated[
-        int | None, typer.Option(help="Processes at a time; by default one for each core.", min=1)
-    ] = None,
+    jobs: options.Jobs = None,
     leave_out: Annotated[
         bool,
         typer.Option(

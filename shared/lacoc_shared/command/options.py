@@ -83,4 +83,7 @@ Metrics = Annotated[
         "there are none.",
     ),
 ]
+Jobs = Annotated[
+    int | None, typer.Option(help="Processes at a time; by default one for each core.", min=1)
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]

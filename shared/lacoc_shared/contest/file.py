@@ -9,6 +9,7 @@ is still None.
 import itertools
 import math
 from collections.abc import Iterable
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -128,6 +129,10 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     keys: KeyFolder | None = None
     """Certificates for encryption and access; None: tokens alone, and no encryption."""
     courts: dict[str, Court]
+    stages: dict[str, dict[str, Any]] = {}
+    """The stages in their order, as they stand in the file (docs/contest.md)."""
+    entries_close: datetime | None = None
+    """From then on a team can change its files only with a reason; None: from the first draw on."""
 
     @property
     def protocol(self) -> str:
@@ -223,6 +228,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
     keys: _PathText | None = None
+    entries_close: datetime | None = None
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -230,6 +236,7 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     limits: dict[str, Any] = {}
     health: dict[str, Any] = {}
     court: Annotated[dict[str, Any], msgspec.Meta(min_length=1)]
+    stage: dict[str, dict[str, Any]] = {}
 
 
 def _contest(table: dict[str, Any], folder: Path) -> Contest:
@@ -248,6 +255,8 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         health=_convert(file.health, HealthLimits, "health"),
         keys=keys,
         courts=courts,
+        stages=file.stage,
+        entries_close=general.entries_close,
     )
 
 

@@ -8,6 +8,7 @@ from lacoc_server.contest.league.draws import Team, drawn_stages, entered_teams
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
+    Closed,
     NoShow,
     OfMatch,
     Planned,
@@ -84,6 +85,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
 
     teams: tuple[Team, ...]
     """In the order in which they entered."""
+    closed: bool
+    """Whether nobody can enter any more."""
     stages: tuple[StageView, ...]
     """In the order in which they were drawn."""
     planned: tuple[Planned, ...]
@@ -173,6 +176,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         _note_unused(matches.get(pairing), about, unused)
     return Contest(
         teams=tuple(teams.values()),
+        closed=any(isinstance(fact, Closed) for fact in known),
         stages=tuple(stages),
         planned=tuple(planned),
         running=_running(known, matches),

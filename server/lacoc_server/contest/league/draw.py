@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 
 from lacoc_server.contest.league.contest import Contest, next_round
-from lacoc_server.contest.league.facts import Drawn, Planned, RoundDrawn, new
+from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new
 from lacoc_server.contest.league.formats.format import Format
 
 
-def due(contest: Contest, formats: Mapping[str, Format]) -> Drawn | RoundDrawn | None:
+def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | RoundDrawn | None:
     """Return the next draw; None: nothing can be drawn now.
+
+    Before the first draw, entries are closed.
 
     The next round of a stage is drawn when all matches of its earlier rounds are decided. A stage
     that follows another one is drawn when that one is over, with those who are left in the contest.
@@ -20,6 +22,8 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Drawn | RoundDrawn |
             return new(RoundDrawn, stage=view.name, round=len(view.stage.drawn) + 1, pairs=pairs)
     for plan in contest.planned:
         if (teams := _teams(contest, plan)) is not None:
+            if not contest.closed:
+                return new(Closed)
             return new(Drawn, stage=plan.stage, entries=teams)
         return None
     return None

@@ -6,6 +6,7 @@ import msgspec
 
 from lacoc_server.contest.league.facts import (
     AnyFact,
+    Closed,
     Disqualified,
     Drawn,
     Entered,
@@ -44,9 +45,14 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
         unused: is given the facts that change nothing, each with the reason.
     """
     teams: dict[str, Team] = {}
+    closed = False
     for fact in facts:
-        if isinstance(fact, Entered):
-            if fact.team in teams:
+        if isinstance(fact, Closed):
+            closed = True
+        elif isinstance(fact, Entered):
+            if closed:
+                unused[fact.id] = say("league.closed", team=fact.team)
+            elif fact.team in teams:
                 unused[fact.id] = say("league.entered-twice", team=fact.team)
             else:
                 teams[fact.team] = Team(name=fact.team, files=fact.files, bot=fact.bot)
@@ -56,7 +62,7 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
                 continue
             team = teams[fact.team]
             if isinstance(fact, FilesChanged):
-                team = msgspec.structs.replace(team, files=fact.files)
+                team = msgspec.structs.replace(team, files=fact.files, bot=fact.bot)
             elif isinstance(fact, Withdrawn):
                 team = msgspec.structs.replace(team, withdrawn=True)
             else:

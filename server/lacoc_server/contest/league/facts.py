@@ -41,6 +41,10 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
     """Name of the bot that plays for the team; "": people play."""
 
 
+class Closed(Fact, frozen=True, kw_only=True, tag="closed"):
+    """Entries are closed: nobody enters any more, and files change only with a reason."""
+
+
 class Withdrawn(Fact, frozen=True, kw_only=True, tag="withdrawn"):
     """A team leaves; its opponents win what it has not played."""
 
@@ -60,7 +64,9 @@ class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
 
     team: Name
     files: str
-    reason: str
+    bot: str = ""
+    reason: str = ""
+    """May be "" only while entries are open."""
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -98,6 +104,8 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     """The game."""
     arena_settings: dict[str, Any] = {}
     """Entries that replace those of the arena file."""
+    limits: dict[str, float] = {}
+    """Limits for robots that differ from the defaults."""
 
 
 class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
@@ -186,7 +194,7 @@ class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
     reason: str = ""
 
 
-OfTeam = Entered | Withdrawn | Disqualified | FilesChanged
+OfTeam = Entered | Closed | Withdrawn | Disqualified | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow
 OfStage = Planned | Drawn | RoundDrawn
 AnyFact = OfTeam | OfMatch | OfStage

@@ -1,4 +1,4 @@
-"""`lacoc contest`: write, check and show the contest file (`lacoc_shared.contest.file`)."""
+"""Write, check and show the contest file (`lacoc_shared.contest.file`), and make its keys."""
 
 import os
 from pathlib import Path
@@ -20,13 +20,8 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import own_address
 from lacoc_shared.words import render, say
 
-app = typer.Typer(
-    help="Write, check and show the contest file: courts, addresses, tokens, limits.",
-    no_args_is_help=True,
-)
-
-_DEFAULT = Path("contest.toml")
-_FileToRead = Annotated[
+FILE = Path("contest.toml")
+FileToRead = Annotated[
     Path, typer.Argument(envvar="LACOC_CONTEST", metavar="FILE", help="The contest file.")
 ]
 
@@ -79,11 +74,8 @@ token = "{referee}"
 """
 
 
-@app.command()
 def init(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="The contest file to write.")
-    ] = _DEFAULT,
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The contest file to write.")] = FILE,
     arena: Annotated[
         str, typer.Option(metavar="NAME", help="The court's game: an arena's name or folder.")
     ] = "othello",
@@ -106,8 +98,7 @@ def init(
     screen.note(say("contest.written", file=str(file)))
 
 
-@app.command()
-def check(file: _FileToRead = _DEFAULT) -> None:
+def check(file: FileToRead = FILE) -> None:
     """Check a contest file, its arenas' settings and its limits for robots."""
     contest = contests.load(file)
     Limits.of(contest.limits)
@@ -117,9 +108,8 @@ def check(file: _FileToRead = _DEFAULT) -> None:
     screen.show(say("contest.right", file=str(file), courts=courts))
 
 
-@app.command()
 def keys(
-    file: _FileToRead = _DEFAULT,
+    file: FileToRead = FILE,
     host: Annotated[
         list[str] | None,
         typer.Option(
@@ -161,9 +151,8 @@ def keys(
     screen.note(say("contest.hand-out", commands=starts))
 
 
-@app.command()
 def show(
-    file: _FileToRead = _DEFAULT,
+    file: FileToRead = FILE,
     court: options.CourtName = None,
     host: Annotated[
         str | None,

@@ -1,0 +1,1 @@
+"""`lacoc contest`: from the contest file to standings that anybody can check."""

@@ -1,0 +1,23 @@
+"""`lacoc contest`: its subcommands in the order in which an organiser needs them."""
+
+import typer
+
+from lacoc_server.commands.contest import checking, playing, setting_up
+
+app = typer.Typer(
+    help="Run a contest: its file, courts and tokens; entries, matches, standings and their proof.",
+    no_args_is_help=True,
+)
+for command in (
+    setting_up.init,
+    setting_up.check,
+    setting_up.keys,
+    setting_up.show,
+    playing.enter,
+    playing.withdraw,
+    playing.run,
+    playing.standings,
+    checking.publish,
+    checking.verify,
+):
+    app.command()(command)

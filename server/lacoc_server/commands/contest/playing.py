@@ -1,0 +1,130 @@
+"""Enter teams, play the matches of a contest, and print its standings."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lacoc_server.commands.contest.setting_up import FILE, FileToRead
+from lacoc_shared.command import options, screen
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render, say
+
+if TYPE_CHECKING:
+    from lacoc_server.contest.sheet import ContestSheet
+
+# The base install can set up a contest but can't play one: what plays is imported when it is used.
+
+Contest = Annotated[
+    Path,
+    typer.Option("--contest", envvar="LACOC_CONTEST", metavar="FILE", help="The contest file."),
+]
+_Team = Annotated[str, typer.Argument(metavar="TEAM", help="Name of the team.")]
+_Reason = Annotated[
+    str, typer.Option("--reason", metavar="TEXT", help="Why; everybody can read it.")
+]
+
+
+def enter(
+    team: _Team,
+    folder: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FOLDER",
+            help="Folder with the team's gait files, and robot.toml if the robot is its own; by "
+            "default the contest's robot with its sample gait.",
+        ),
+    ] = None,
+    bot: Annotated[
+        str,
+        typer.Option(metavar="BOT", help="The bot that plays: an installed one, or your_bot.py."),
+    ] = "",
+    contest: Contest = FILE,
+    reason: _Reason = "",
+) -> None:
+    """Enter a team with its files; they are weighed in at once, and frozen.
+
+    A team can enter again with other files until entries are closed: at the time in the contest
+    file, or when the first stage is drawn. After that a change needs a reason.
+    """
+    from lacoc_server.contest import organiser
+
+    screen.show(organiser.enter(contest, team, folder, bot, reason))
+
+
+def withdraw(
+    team: _Team,
+    contest: Contest = FILE,
+    reason: _Reason = "",
+    disqualify: Annotated[
+        bool, typer.Option("--disqualify", help="Expel the team: it is ranked last.")
+    ] = False,
+) -> None:
+    """Take a team out of the contest: what it has played counts, and opponents win the rest."""
+    from lacoc_server.contest import organiser
+
+    screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify))
+
+
+def run(
+    file: FileToRead = FILE,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Let bots play, as fast as the machine can.")
+    ] = False,
+    steer: Annotated[
+        str, typer.Option(metavar="BOT", help="The bot that steers teams without a bot.")
+    ] = "planner",
+    jobs: options.Jobs = None,
+    json: options.Json = False,
+) -> None:
+    """Play the contest to its end: draw each stage when its teams are known, and play its games.
+
+    What is played already is not played again, so the command can be stopped and started at any
+    time. A game is known by the files of both teams, the rules and the software. If one entry
+    changes, a new contest with the same folder of records plays only the games of that team.
+    """
+    from lacoc_server.contest import organiser
+    from lacoc_server.contest.pool import interrupted_by_signals
+
+    if not headless:
+        raise UserError(say("contest.live-later"))
+    with interrupted_by_signals(), screen.progress() as progress:
+        task = progress.add_task(render(say("simulate.matches")), total=None)
+
+        def changed(done: int, there: int) -> None:
+            progress.update(task, completed=done, total=there)
+
+        sheet, played = organiser.play_headless(file, steer, jobs, changed)
+    games = sum(len(match.games) for view in sheet.stages for match in view.matches)
+    if json:
+        screen.print_json({"kind": "end", "played": played, "games": games})
+        return
+    _show(sheet)
+    screen.note(say("contest.played-now", played=played, games=games))
+
+
+def standings(file: FileToRead = FILE, json: options.Json = False) -> None:
+    """Print the standings of each stage as they are now."""
+    from lacoc_server.contest import organiser
+    from lacoc_server.contest.sheet import encode
+
+    sheet = organiser.sheet(file)
+    if json:
+        screen.stdout.print(encode(sheet).decode(), markup=False, soft_wrap=True)
+    else:
+        _show(sheet)
+
+
+def _show(sheet: "ContestSheet") -> None:
+    titles = [say("fact.rank"), say("fact.team"), say("fact.won"), say("fact.drawn")]
+    titles += [say("fact.lost"), say("fact.points"), say("fact.score")]
+    for view in sheet.stages:
+        for table in view.tables:
+            shown = screen.table(*titles)
+            title = say("contest.stage-title", stage=view.name, group=table.section or None)
+            shown.title = render(title)
+            for row in table.rows:
+                numbers = (row.won, row.drawn, row.lost, row.points)
+                score = f"{row.scored} : {row.conceded}"
+                shown.add_row(str(row.rank), row.team, *map(str, numbers), score)
+            screen.show(shown)

@@ -1,0 +1,52 @@
+"""Where the parts of a contest are: beside its contest file."""
+
+import hashlib
+from pathlib import Path
+
+from lacoc_arenas.arena import Arena
+from lacoc_server.contest.entries import EntryFolder
+from lacoc_server.contest.league.facts import Planned
+from lacoc_server.contest.plans import game, plans
+from lacoc_shared.contest import file as contests
+
+
+class ContestFolder:
+    """The files of a contest.
+
+    Args:
+        file: its contest file.
+
+    Raises:
+        UserError: if the contest file can't be read, or has a mistake.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+        self.contest = contests.load(file)
+        self.plans = plans(self.contest, file)
+        """The stages, in their order."""
+        folder = file.resolve().parent
+        self.facts = folder / f"{file.stem}.db"
+        """The database of facts."""
+        self.sheet = folder / f"{file.stem}.json"
+        """The newest sheet, for pages."""
+        self.entries = EntryFolder(folder / "entries")
+        self.records = self.contest.recordings
+
+    @property
+    def games(self) -> list[Arena]:
+        """The arenas of all stages, each once."""
+        first: dict[str, Planned] = {}
+        for plan in self.plans:
+            first.setdefault(plan.arena, plan)
+        return [game(plan) for plan in first.values()]
+
+
+def file_hash(path: Path) -> str:
+    """Return the hash of a file, hexadecimal.
+
+    Raises:
+        OSError: if it can't be read.
+    """
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()

@@ -1,0 +1,223 @@
+"""What an organiser does with a contest: enter teams, take them out, let their games be played."""
+
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_server.contest import headless, publish
+from lacoc_server.contest import sheet as sheets
+from lacoc_server.contest import verify as checks
+from lacoc_server.contest.entries import gather, weigh
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.facts import (
+    Closed,
+    Disqualified,
+    Entered,
+    FilesChanged,
+    Withdrawn,
+    new,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.plans import note_plans
+from lacoc_server.contest.pool import Pool
+from lacoc_server.contest.sheet import ContestSheet
+from lacoc_server.contest.store import FactStore
+from lacoc_server.studio.workers import Workers
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+NAME_MAX = 24
+"""Most characters of a team's name."""
+_SHEET_S = 2.0
+"""Shortest time between two sheets that are written while games are played."""
+
+Progress = Callable[[int, int], None]
+"""Called with how many matches are decided, and how many there are so far."""
+
+
+def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> Phrase:
+    """Enter a team, or change its files; return what was done.
+
+    Args:
+        file: the contest file.
+        team: name of the team.
+        folder: folder with its files; None: the contest's robot and gait.
+        bot: the bot that plays for it; "": people play.
+        reason: why its files change after entries were closed.
+
+    Raises:
+        FileRefused: with every mistake of every file.
+        UserError: if the team can't enter, or a file can't be read.
+    """
+    team = team.strip()
+    if not 0 < len(team) <= NAME_MAX or not team.isprintable():
+        raise UserError(say("contest.team-name", most=NAME_MAX))
+    where = ContestFolder(file)
+    entry = gather(folder, bot, where.contest.robot)
+    weigh(entry, where.games, where.contest.limits)
+    with FactStore(where.facts) as store:
+        contest = _close_in_time(where, store)
+        known = {one.name: one for one in contest.teams}
+        if team in known and known[team].files == entry.hash:
+            return say("contest.entered-same", team=team)
+        if contest.closed and team not in known:
+            raise UserError(say("league.closed", team=team))
+        if contest.closed and not reason.strip():
+            raise UserError(say("contest.needs-reason", team=team))
+        files = where.entries.save(entry)
+        if team not in known:
+            store.append(new(Entered, team=team, files=files, bot=entry.bot))
+            return say("contest.entered", team=team, hash=files)
+        store.append(new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason))
+        return say("contest.entered-again", team=team, hash=files)
+
+
+def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phrase:
+    """Take a team out of a contest; return what was done.
+
+    Args:
+        file: the contest file.
+        team: name of the team.
+        reason: why; it is public.
+        disqualified: True: the team is ranked last.
+
+    Raises:
+        UserError: if the team has not entered.
+    """
+    with FactStore(ContestFolder(file).facts) as store:
+        teams = [one.name for one in compute(store.facts(), FORMATS).teams]
+        if team not in teams:
+            raise UserError(say("contest.not-in", team=team, teams=teams or None))
+        kind = Disqualified if disqualified else Withdrawn
+        store.append(kind(id="new", number=0, team=team, reason=reason))
+    return say("contest.left", team=team)
+
+
+def play_headless(
+    file: Path, steer: str, jobs: int | None, progress: Progress
+) -> tuple[ContestSheet, int]:
+    """Play a contest to its end without a network.
+
+    Args:
+        file: the contest file.
+        steer: the bot that steers teams without a bot.
+        jobs: number of processes; None: one for each core.
+        progress: told about each change.
+
+    Returns:
+        The sheet at the end, and how many games were played now.
+
+    Raises:
+        UserError: if the contest has no stage or too few teams, or something goes wrong.
+    """
+    where = ContestFolder(file)
+    if not where.plans:
+        raise UserError(say("contest.no-stages", file=str(file)))
+    with FactStore(where.facts) as store:
+        note_plans(store, where.plans)
+        here = [team for team in compute(store.facts(), FORMATS).teams if not team.gone]
+        if len(here) < 2:
+            raise UserError(say("contest.few-teams", teams=len(here), file=str(file)))
+        writer = _SheetWriter(where, progress)
+        with Pool(jobs) as pool:
+            played = headless.play(where, store, pool, steer, writer)
+        return writer.write(), played
+
+
+def sheet(file: Path) -> ContestSheet:
+    """Return the sheet of a contest as it is now."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        return sheets.sheet_of(where.contest.name, store.facts(), FORMATS)
+
+
+def publish_to(file: Path, folder: Path) -> None:
+    """Write a contest as a folder; arguments and errors are those of `publish.publish`."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        publish.publish(where, store.facts(), folder)
+
+
+class Checked(NamedTuple):
+    """What the check of a published contest found."""
+
+    findings: tuple[Phrase, ...]
+    """What does not follow; empty: everything does."""
+    facts: int
+    games: int
+    """Games that were proven."""
+    all_games: int
+    least_share: float
+    """Smallest share of forged games that would have been found with `verify.CONFIDENCE`."""
+
+
+def check(
+    folder: Path, sample: int | None, seed: int, jobs: int | None, progress: Progress
+) -> Checked:
+    """Check a published contest on all cores.
+
+    Args:
+        folder: the published folder.
+        sample: number of games to prove, chosen by chance; None: all.
+        seed: chooses the games.
+        jobs: number of processes; None: one for each core.
+        progress: told how many games are proven.
+
+    Raises:
+        UserError: if the facts can't be read.
+    """
+    published = checks.read(folder)
+    findings = list(checks.check_facts(published))
+    games = list(published.games)
+    if sample is not None:
+        games = checks.sample(games, sample, seed)
+    with Workers(jobs, limit_s=3600.0) as workers:
+        futures = [workers.submit(checks.check_game, published, game) for game in games]
+        for number, future in enumerate(futures, 1):
+            findings += future.result()
+            progress(number, len(games))
+    everything = len(published.games)
+    share = checks.least_share(everything, len(games))
+    return Checked(tuple(findings), len(published.facts), len(games), everything, share)
+
+
+class _SheetWriter:
+    """Writes the sheet of a contest for pages now and then, while games are played."""
+
+    def __init__(self, where: ContestFolder, progress: Progress) -> None:
+        self._where = where
+        self._progress = progress
+        self._written_s = float("-inf")
+        self._contest: Contest | None = None
+
+    def __call__(self, contest: Contest) -> None:
+        self._contest = contest
+        matches = [match for view in contest.stages for match in view.matches]
+        self._progress(sum(match.decided for match in matches), len(matches))
+        if time.monotonic() - self._written_s > _SHEET_S:
+            self.write()
+
+    def write(self) -> ContestSheet:
+        """Write the sheet of the contest as it is now, and return it."""
+        assert self._contest is not None
+        made = sheets.sheet(self._where.contest.name, self._contest)
+        try:
+            publish.write(self._where.sheet, sheets.encode(made))
+        except OSError as error:
+            why, path = error.strerror or str(error), str(self._where.sheet)
+            raise UserError(say("command.cannot-write", path=path, why=why)) from None
+        self._written_s = time.monotonic()
+        return made
+
+
+def _close_in_time(where: ContestFolder, store: FactStore) -> Contest:
+    """Close entries if their time is over; return the contest."""
+    contest = compute(store.facts(), FORMATS)
+    end = where.contest.entries_close
+    if contest.closed or end is None or end.astimezone(UTC) > datetime.now(UTC):
+        return contest
+    store.append(new(Closed))
+    return compute(store.facts(), FORMATS)

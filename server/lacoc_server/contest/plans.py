@@ -1,0 +1,130 @@
+"""The stages of a contest, as its contest file plans them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
+from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.facts import Planned, Settings, new
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.standings import TIE_BREAKS
+from lacoc_server.contest.store import FactStore
+from lacoc_shared.contest.file import Contest
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import Phrase, say
+
+_USUAL_ARENA = "othello"
+_SETTINGS = Settings.__struct_fields__
+
+
+class _Stage(msgspec.Struct, frozen=True, kw_only=True):
+    """What a stage's table in the contest file has, besides the entries of `Settings`."""
+
+    format: str
+    after: str = ""
+    teams: int = 0
+    arena: str = _USUAL_ARENA
+    settings: dict[str, Any] = {}
+    """Entries that replace those of the arena file."""
+
+
+def plans(contest: Contest, file: Path) -> list[Planned]:
+    """Read the stages of a contest file.
+
+    Args:
+        contest: the contest file.
+        file: its path, for messages.
+
+    Raises:
+        UserError: at the first wrong entry; the message names it.
+    """
+    found: list[Planned] = []
+    for name, table in contest.stages.items():
+        wrong = None
+        try:
+            plan = _plan(name, table, contest.limits)
+            wrong = _fault(plan, [one.stage for one in found])
+            if wrong is None:
+                game(plan)
+        except msgspec.ValidationError as error:
+            wrong = say("contest.bad-stage", stage=text_of(name), error=str(error))
+        except UserError as error:
+            wrong = say("contest.in", where=f"stage.{text_of(name)}", wrong=error.phrase)
+        if wrong is not None:
+            raise UserError(say("contest.wrong", file=str(file), wrong=wrong))
+        found.append(plan)
+    return found
+
+
+def game(plan: Planned) -> Arena:
+    """Load the arena of a stage.
+
+    Raises:
+        UserError: if it is not installed, its settings are wrong, or it is not for two.
+    """
+    arena = arenas.load(plan.arena, plan.arena_settings)
+    if len(arena.seats) != 2:
+        raise UserError(say("contest.not-for-two", arena=plan.arena))
+    return arena
+
+
+def note_plans(store: FactStore, wanted: list[Planned]) -> None:
+    """Append the plans that are new or have changed.
+
+    Raises:
+        UserError: if the plan of a stage that is drawn has changed; nothing is appended then.
+    """
+    contest = compute(store.facts(), FORMATS)
+    drawn = {view.name: view.plan for view in contest.stages}
+    planned = {plan.stage: plan for plan in contest.planned}
+    for plan in wanted:
+        if plan.stage in drawn and _content(drawn[plan.stage]) != _content(plan):
+            raise UserError(say("contest.stage-began", stage=plan.stage))
+    known = {**planned, **drawn}
+    store.append(
+        *(
+            plan
+            for plan in wanted
+            if plan.stage not in known or _content(known[plan.stage]) != _content(plan)
+        )
+    )
+
+
+def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> Planned:
+    own = {key: value for key, value in table.items() if key in _Stage.__struct_fields__}
+    rest = {key: value for key, value in table.items() if key not in own}
+    if unknown := [key for key in rest if key not in _SETTINGS]:
+        known = [*_Stage.__struct_fields__, *_SETTINGS]
+        raise UserError(say("contest.stage-entry", entry=text_of(unknown[0]), known=known))
+    stage = msgspec.convert(own, _Stage)
+    plan = new(
+        Planned,
+        stage=name,
+        format=stage.format,
+        settings=msgspec.convert(rest, Settings),
+        after=stage.after,
+        teams=stage.teams,
+        arena=stage.arena,
+        arena_settings=stage.settings,
+        limits=dict(limits),
+    )
+    return msgspec.convert(msgspec.to_builtins(plan), Planned)  # checks the lengths and patterns
+
+
+def _fault(plan: Planned, before: list[str]) -> Phrase | None:
+    if plan.format not in FORMATS:
+        return say("league.unknown-format", format=plan.format, known=[*FORMATS])
+    if plan.after and plan.after not in before:
+        return say("contest.stage-after", stage=plan.stage, after=plan.after, before=before or None)
+    for code in plan.settings.tie_breaks:
+        if code not in TIE_BREAKS:
+            return say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS])
+    return None
+
+
+def _content(plan: Planned) -> Planned:
+    return msgspec.structs.replace(plan, id="new", number=0, at_ms=0)

@@ -1,0 +1,134 @@
+"""A contest as a folder that anybody can read, serve as a website, and check."""
+
+import csv
+import io
+import os
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from lacoc_server.contest import sheet as sheets
+from lacoc_server.contest.entries import EntryFolder
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Played
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.sheet import ContestSheet
+from lacoc_shared.command import plugins
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", "games.csv"
+ENTRIES, RECORDS = "entries", "records"
+"""Names of what a published folder has."""
+_SITES = "lacoc.site"
+"""Entry points that add the pages: functions that are given the folder."""
+
+
+def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
+    """Write a contest as a folder: facts, sheet, tables, entries, records and pages.
+
+    The folder can be written again while the contest goes on. Each file is replaced at once, and
+    the sheet is the last.
+
+    Args:
+        folder: the contest.
+        facts: its facts.
+        out: the folder to write.
+
+    Raises:
+        UserError: if a record is missing, or something can't be written.
+    """
+    sheet = sheets.sheet_of(folder.contest.name, facts, FORMATS)
+    try:
+        for name in (ENTRIES, RECORDS):
+            (out / name).mkdir(parents=True, exist_ok=True)
+        for name in sorted(_records(facts)):
+            _copy(folder.records / name, out / RECORDS / name)
+        entries = EntryFolder(out / ENTRIES)
+        for entry in sorted(_entries(facts)):
+            entries.save(folder.entries.load(entry))
+        write(out / FACTS, league_facts.encode(facts))
+        for name, content in tables(sheet).items():
+            write(out / name, content)
+        for site in plugins.installed(_SITES).values():
+            site.load()(out)
+        write(out / SHEET, sheets.encode(sheet))
+    except OSError as error:
+        why = error.strerror or str(error)
+        path = str(error.filename or out)
+        raise UserError(say("command.cannot-write", path=path, why=why)) from None
+
+
+def tables(sheet: ContestSheet) -> dict[str, bytes]:
+    """Return the tables of a contest as CSV, by file name; spreadsheets open them.
+
+    The first line of each has the names of the columns.
+    """
+    return {STANDINGS: _csv(_standings(sheet)), GAMES: _csv(_games(sheet))}
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a file; whoever reads it meanwhile finds the old one or the new one, whole.
+
+    Raises:
+        OSError: if it can't be written.
+    """
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        part.write_bytes(content)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _records(facts: Iterable[AnyFact]) -> set[str]:
+    return {fact.record for fact in facts if isinstance(fact, Played) and fact.record}
+
+
+def _entries(facts: Iterable[AnyFact]) -> set[str]:
+    return {fact.files for fact in facts if isinstance(fact, Entered | FilesChanged) and fact.files}
+
+
+def _copy(source: Path, to: Path) -> None:
+    """Copy a record; one that is there already with the same size is not copied again."""
+    if not source.is_file():
+        raise UserError(say("contest.no-record", file=str(source)))
+    if to.exists() and to.stat().st_size == source.stat().st_size:
+        return
+    part = to.with_name(f".{to.name}.part")
+    shutil.copyfile(source, part)
+    part.replace(to)
+
+
+def _standings(sheet: ContestSheet) -> list[Sequence[object]]:
+    header = "stage group rank team points won drawn lost scored conceded"
+    rows: list[Sequence[object]] = [header.split()]
+    for view in sheet.stages:
+        for table in view.tables:
+            for row in table.rows:
+                score = (row.points, row.won, row.drawn, row.lost, row.scored, row.conceded)
+                rows.append([view.name, table.section, row.rank, row.team, *score])
+    return rows
+
+
+def _games(sheet: ContestSheet) -> list[Sequence[object]]:
+    header = "stage pairing game left right left_score right_score outcome record"
+    rows: list[Sequence[object]] = [header.split()]
+    for view in sheet.stages:
+        for match in view.matches:
+            for game in match.games:
+                place = (view.name, match.pairing.id, game.number)
+                rows.append([*place, *game.teams, *game.scores, game.outcome, game.record])
+    return rows
+
+
+def _csv(rows: Iterable[Sequence[object]]) -> bytes:
+    """Write rows for spreadsheets; a name that looks like a formula is not one."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([_cell(value) for value in row] for row in rows)
+    return text.getvalue().encode("utf-8-sig")  # Excel needs the mark to see UTF-8
+
+
+def _cell(value: object) -> object:
+    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") else value
