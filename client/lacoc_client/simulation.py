@@ -8,7 +8,7 @@ from typing import Self
 
 import msgspec
 
-from lacoc_client.child import apart, command_line, complaint
+from lacoc_shared.command.child import apart, command_line, complaint
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase
 

@@ -8,7 +8,6 @@ from typing import Annotated
 
 import typer
 
-from lacoc_client.child import kept_child
 from lacoc_client.commands import pages
 from lacoc_client.design.designer import Designer
 from lacoc_client.design.folder import Folder
@@ -18,6 +17,7 @@ from lacoc_client.design.studios.asker import Asker
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import PageFiles
+from lacoc_shared.command.child import kept_child
 from lacoc_shared.words import say
 
 app = typer.Typer()

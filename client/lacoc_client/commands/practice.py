@@ -9,12 +9,12 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from lacoc_client.child import child
 from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, own_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.command import options
+from lacoc_shared.command.child import child
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.words import render, say
 

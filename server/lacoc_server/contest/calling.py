@@ -1,0 +1,94 @@
+"""What the office does with its courts: which game goes to which court, and what came of it; pure."""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, Recalled, new
+from lacoc_server.contest.league.schedule import assign
+
+LOST_MS = 20_000
+"""A court that was not heard for so long loses a game that it has not begun."""
+
+
+class Ended(NamedTuple):
+    """The end of a game at a court."""
+
+    scores: tuple[int, int]
+    """Points of the left and of the right seat."""
+    outcome: Outcome
+    record: str
+    """File name of the record."""
+
+
+class Seen(NamedTuple):
+    """A court as the office sees it."""
+
+    heard_ms: int
+    """When the court was heard last; 0: never."""
+    call: str = ""
+    """Id of the call whose match the court has; "": none."""
+    begun: bool = False
+    """Whether the match has begun to be played."""
+    ended: Ended | None = None
+    """How the match ended; None: it has no official end."""
+
+
+def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
+    """Yield what courts have brought to an end: the result of each game that was called."""
+    for call in contest.running:
+        court = seen.get(call.court)
+        if court is not None and court.call == call.id and court.ended is not None:
+            yield new(
+                Played,
+                pairing=call.pairing,
+                game=call.game,
+                teams=call.teams,
+                scores=court.ended.scores,
+                outcome=court.ended.outcome,
+                record=court.ended.record,
+            )
+
+
+def lost(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Iterator[AnyFact]:
+    """Yield the games that are taken back from courts that are gone and had not begun them.
+
+    A game that has begun stays with its court: a court that was killed goes on with it.
+    """
+    for call in contest.running:
+        court = seen.get(call.court, Seen(0))
+        has_begun = court.call == call.id and court.begun
+        if not has_begun and now_ms - max(court.heard_ms, call.at_ms) > LOST_MS:
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason="court lost")
+
+
+def calls(
+    contest: Contest,
+    seen: Mapping[str, Seen],
+    now_ms: int,
+    least_rest_ms: int,
+    held: Collection[tuple[str, int]] = (),
+    first: Sequence[str] = (),
+) -> list[Called]:
+    """Give the next games to the courts that are free.
+
+    Args:
+        contest: the contest.
+        seen: the courts, in the order in which they are filled.
+        now_ms: the time, in milliseconds since 1970, UTC.
+        least_rest_ms: shortest time between two matches of a team.
+        held: games that no court takes, by pairing and number.
+        first: pairings that a referee wants first.
+    """
+    here = [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
+    given = assign(contest, here, now_ms, least_rest_ms, first)
+    return [
+        new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
+        for one in given
+        if (one.pairing, one.game) not in held
+    ]
+
+
+def wanted(contest: Contest, seen: Mapping[str, Seen]) -> Iterable[Called]:
+    """Return the calls that their courts do not have yet: the office sends them again."""
+    return [call for call in contest.running if seen.get(call.court, Seen(0)).call != call.id]
