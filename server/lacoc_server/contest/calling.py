@@ -1,4 +1,4 @@
-"""What the office does with its courts: which game goes to which court, and what came of it; pure."""
+"""Which game goes to which court, when it is taken back, and what came of it; pure."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -30,6 +30,8 @@ class ContestFolder:
         """The database of facts."""
         self.sheet = folder / f"{file.stem}.json"
         """The newest sheet, for pages."""
+        self.tokens = folder / f"{file.stem}.tokens.json"
+        """The tokens of the teams; secret."""
         self.entries = EntryFolder(folder / "entries")
         self.records = self.contest.recordings
 

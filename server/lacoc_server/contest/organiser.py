@@ -2,13 +2,16 @@
 
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from lacoc_server.contest import headless, publish
+from lacoc_server.contest import headless, publish, venue
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest import verify as checks
+from lacoc_server.contest.court_link import CourtLink
 from lacoc_server.contest.entries import gather, weigh
 from lacoc_server.contest.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest, compute
@@ -21,16 +24,21 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.office import Office
 from lacoc_server.contest.plans import note_plans
 from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_server.contest.store import FactStore
+from lacoc_server.contest.tokens import TeamTokens
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
 NAME_MAX = 24
 """Most characters of a team's name."""
+_STEP_S = 0.05
+"""Time between two looks at the courts."""
 _SHEET_S = 2.0
 """Shortest time between two sheets that are written while games are played."""
 
@@ -114,17 +122,71 @@ def play_headless(
         UserError: if the contest has no stage or too few teams, or something goes wrong.
     """
     where = ContestFolder(file)
-    if not where.plans:
-        raise UserError(say("contest.no-stages", file=str(file)))
     with FactStore(where.facts) as store:
-        note_plans(store, where.plans)
-        here = [team for team in compute(store.facts(), FORMATS).teams if not team.gone]
-        if len(here) < 2:
-            raise UserError(say("contest.few-teams", teams=len(here), file=str(file)))
+        _prepare(where, store)
         writer = _SheetWriter(where, progress)
         with Pool(jobs) as pool:
             played = headless.play(where, store, pool, steer, writer)
         return writer.write(), played
+
+
+def play_live(
+    file: Path,
+    stopping: Callable[[], bool],
+    opened: Callable[[str, dict[str, str]], None],
+    progress: Progress,
+    *,
+    speed: float = 1.0,
+    listen: str | None = None,
+    show: bool = False,
+) -> ContestSheet:
+    """Run a contest at its courts, until it is over or somebody stops it.
+
+    The courts of the contest file, the gateway and the bots of teams run as processes of their own;
+    each is started again if it ends.
+
+    Args:
+        file: the contest file.
+        stopping: whether to end now; the contest can go on later.
+        opened: called with the address of the pages, and the courts' addresses by name.
+        progress: told about each change.
+        speed: 2 plays twice as fast as real time.
+        listen: where the gateway listens; None: this machine only.
+        show: whether to open a browser.
+
+    Returns:
+        The sheet at the end.
+
+    Raises:
+        UserError: if the contest has no stage, no office or too few teams, or something goes wrong.
+    """
+    where = ContestFolder(file)
+    if where.contest.office is None:
+        raise UserError(say("contest.no-office", file=str(file)))
+    with ExitStack() as stack:
+        store = stack.enter_context(FactStore(where.facts))
+        _prepare(where, store)
+        logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-contest-")))
+        addresses = stack.enter_context(venue.courts(where, logs, speed))
+        links = {
+            name: CourtLink(
+                stack.enter_context(open_client([address])), name, where.contest.office.token
+            )
+            for name, address in addresses.items()
+        }
+        tokens = TeamTokens(where.tokens)
+        rest_ms = round(1000 * where.contest.least_rest_s)
+        office = Office(store, where.entries, tokens.of, links, rest_ms)
+        bots = stack.enter_context(venue.Bots(where, tokens, addresses))
+        writer = _SheetWriter(where, progress)
+        writer(office.contest)
+        opened(stack.enter_context(venue.pages(where, logs, listen, show)), addresses)
+        while not (stopping() or office.over):
+            if office.step():
+                writer(office.contest)
+            bots.follow(office.contest, {name: link.call for name, link in links.items()})
+            time.sleep(_STEP_S)
+        return writer.write()
 
 
 def sheet(file: Path) -> ContestSheet:
@@ -211,6 +273,16 @@ class _SheetWriter:
             raise UserError(say("command.cannot-write", path=path, why=why)) from None
         self._written_s = time.monotonic()
         return made
+
+
+def _prepare(where: ContestFolder, store: FactStore) -> None:
+    """Append the plans of the contest file, and check that a contest can be played."""
+    if not where.plans:
+        raise UserError(say("contest.no-stages", file=str(where.file)))
+    note_plans(store, where.plans)
+    here = [team for team in compute(store.facts(), FORMATS).teams if not team.gone]
+    if len(here) < 2:
+        raise UserError(say("contest.few-teams", teams=len(here), file=str(where.file)))
 
 
 def _close_in_time(where: ContestFolder, store: FactStore) -> Contest:

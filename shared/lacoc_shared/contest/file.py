@@ -131,6 +131,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     courts: dict[str, Court]
     stages: dict[str, dict[str, Any]] = {}
     """The stages in their order, as they stand in the file (docs/contest.md)."""
+    least_rest_s: float = 0.0
+    """Shortest time between two matches of a team."""
     entries_close: datetime | None = None
     """From then on a team can change its files only with a reason; None: from the first draw on."""
 
@@ -228,6 +230,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
     keys: _PathText | None = None
+    least_rest_s: Annotated[float, msgspec.Meta(ge=0, le=86_400)] = 0.0
     entries_close: datetime | None = None
 
 
@@ -256,6 +259,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         keys=keys,
         courts=courts,
         stages=file.stage,
+        least_rest_s=general.least_rest_s,
         entries_close=general.entries_close,
     )
 

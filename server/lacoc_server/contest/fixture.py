@@ -1,0 +1,63 @@
+"""What a game is in its contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
+
+from lacoc_server.contest.league.contest import Contest, StageView
+from lacoc_server.contest.league.matches import Match
+from lacoc_shared.words import Phrase, say
+
+
+def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phrase:
+    """Say what a game is.
+
+    Args:
+        contest: the contest.
+        view: the stage of the match.
+        match: the match.
+        game: number of the game in its match, from 1.
+    """
+    said = _match(contest, view, match)
+    games = view.stage.settings.games
+    return said if games == 1 else say("fixture.game", match=said, game=game, games=games)
+
+
+def _match(contest: Contest, view: StageView, match: Match) -> Phrase:
+    pairing = match.pairing
+    number = int(pairing.id.rpartition(".")[2])
+    knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]
+    stage = view.name if len(knockouts) > 1 else None
+    match pairing.section:
+        case "p":
+            return say("fixture.third-place", stage=stage)
+        case "f" if pairing.round == 2:
+            return say("fixture.deciding-final", stage=stage)
+        case "f":
+            return say("fixture.final", stage=stage)
+        case "l":
+            return say("fixture.losers", stage=stage, round=pairing.round, number=number)
+        case "w" if _is_knockout(match):
+            return _winners(view, match, stage, number)
+    several = len({one.pairing.section for one in view.matches}) > 1
+    group = pairing.section.upper() if several else None
+    return say("fixture.round", stage=view.name, group=group, round=pairing.round)
+
+
+def _winners(view: StageView, match: Match, stage: str | None, number: int) -> Phrase:
+    """Say what a match of the winners' bracket is."""
+    pairing = match.pairing
+    double = any(one.pairing.section == "l" for one in view.matches)
+    there = sum(
+        (one.pairing.section, one.pairing.round) == (pairing.section, pairing.round)
+        for one in view.matches
+    )
+    match 0 if double else there:
+        case 1:
+            return say("fixture.final", stage=stage)
+        case 2:
+            return say("fixture.semi-final", stage=stage, number=number)
+        case 4:
+            return say("fixture.quarter-final", stage=stage, number=number)
+    return say("fixture.knockout", stage=stage, round=pairing.round, number=number)
+
+
+def _is_knockout(match: Match) -> bool:
+    """Return whether the match is of a bracket; group 23 of a round robin is called "w" too."""
+    return match.pairing.loser_place is not None

@@ -1,0 +1,173 @@
+"""The office of a contest: it gives courts their games, and takes in what becomes of them.
+
+All that it knows is in the facts and at the courts. So it can be killed at any moment: started
+again, it reads the facts, asks the courts what they have, and goes on.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from functools import cache
+
+from lacoc_shared.office import AssignedSeat
+
+from lacoc_server.contest.calling import Ended, Seen, calls, lost, results, wanted
+from lacoc_server.contest.court_link import Asked, CourtLink
+from lacoc_server.contest.entries import EntryFolder
+from lacoc_server.contest.fixture import fixture
+from lacoc_server.contest.headless import outcome
+from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.schedule import due
+from lacoc_server.contest.store import FactStore
+from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.messages import Refusal
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase
+
+_SEATS = ("left", "right")
+_AGAIN_MS = 1000
+_BEGUN = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
+
+
+class Office:
+    """Runs a contest at its courts; one thread calls `step` again and again.
+
+    Args:
+        store: the facts.
+        entries: the frozen files of the teams.
+        token_of: returns a team's token.
+        links: the courts by name, in the order in which they are filled.
+        least_rest_ms: shortest time between two matches of a team.
+    """
+
+    def __init__(
+        self,
+        store: FactStore,
+        entries: EntryFolder,
+        token_of: Callable[[str], str],
+        links: Mapping[str, CourtLink],
+        least_rest_ms: int = 0,
+    ) -> None:
+        self._store = store
+        self._entry = cache(entries.load)
+        self._hash_of = cache(lambda team: hash_token(token_of(team)))
+        self._links = links
+        self._least_rest_ms = least_rest_ms
+        self._heard_ms = dict.fromkeys(links, 0)
+        self._asked: dict[str, Asked] = {}
+        """Assignments that are not answered yet, by the id of the call."""
+        self._asked_ms: dict[str, int] = {}
+        """When a court was asked last, by the id of the call."""
+        self.held: dict[tuple[str, int], Phrase] = {}
+        """Games that a court refused for good, by pairing and number, with the reason."""
+        self.contest: Contest = self._compute()
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing is left to play or to draw."""
+        return not self.contest.planned and all(view.over for view in self.contest.stages)
+
+    def step(self) -> bool:
+        """Look at the courts once, and do what follows; return whether the contest has changed.
+
+        Raises:
+            UserError: if the facts can't be read or written, or a frozen file has changed.
+        """
+        now_ms = time.time_ns() // 1_000_000
+        seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
+        before = self.contest
+        if len(self._store.facts()) != self._known:  # another program has appended some
+            self.contest = self._compute()
+        self._append(*results(self.contest, seen))
+        while (draw := due(self.contest, FORMATS)) is not None:
+            self._append(draw)
+        self._append(*self._answers(), *lost(self.contest, seen, now_ms))
+        self._append(*calls(self.contest, seen, now_ms, self._least_rest_ms, self.held))
+        for call in wanted(self.contest, seen):
+            if self._may_ask(call.id, now_ms) and self._links[call.court].call is not None:
+                self._asked[call.id] = self._assign(call)
+        self._take_back(now_ms)
+        return self.contest is not before
+
+    def _look(self, name: str, link: CourtLink, now_ms: int) -> Seen:
+        link.poll()
+        if link.is_there:
+            self._heard_ms[name] = now_ms
+        ended = None
+        if (result := link.result) is not None:
+            left, right = result.scores
+            who = outcome(_SEATS, result.outcome)
+            ended = Ended((left, right), who, f"{result.match_id}.mcap")
+        return Seen(self._heard_ms[name], link.call or "", link.phase in _BEGUN, ended)
+
+    def _append(self, *facts: AnyFact) -> None:
+        if facts:
+            self._store.append(*facts)
+            self.contest = self._compute()
+
+    def _compute(self) -> Contest:
+        facts = self._store.facts()
+        self._known = len(facts)
+        return compute(facts, FORMATS)
+
+    def _answers(self) -> list[AnyFact]:
+        """Take the courts' answers; a game that is refused for good goes back."""
+        running = {call.id: call for call in self.contest.running}
+        back: list[AnyFact] = []
+        for call_id, asked in [*self._asked.items()]:
+            if (answer := asked.take()) is None:
+                continue
+            del self._asked[call_id]
+            call = running.get(call_id)
+            if call is None or not isinstance(answer, Refusal) or answer.again:
+                continue
+            self.held[call.pairing, call.game] = answer.why
+            back.append(new(Recalled, pairing=call.pairing, game=call.game, reason="court refused"))
+        return back
+
+    def _assign(self, call: Called) -> Asked:
+        view = next(
+            view
+            for view in self.contest.stages
+            if any(match.pairing.id == call.pairing for match in view.matches)
+        )
+        match = next(match for match in view.matches if match.pairing.id == call.pairing)
+        files = {team.name: team.files for team in self.contest.teams}
+        seats = []
+        for seat, (name, team) in enumerate(zip(_SEATS, call.teams, strict=True)):
+            join = self._entry(files[team]).join(seat, team)
+            seats.append(
+                AssignedSeat(
+                    id=name,
+                    team=team,
+                    token_hashes=(self._hash_of(team),),
+                    robot=join.robot,
+                    postures=join.postures,
+                    locomotion=join.locomotion,
+                )
+            )
+        return self._links[call.court].assign(
+            call.id,
+            fixture(self.contest, view, match, call.game),
+            seats,
+            arena=view.plan.arena,
+            arena_settings=view.plan.arena_settings,
+            limits=view.plan.limits,
+        )
+
+    def _take_back(self, now_ms: int) -> None:
+        """Withdraw matches that courts have, but should not have any more."""
+        running = {call.id for call in self.contest.running}
+        for link in self._links.values():
+            call = link.call
+            waits = link.phase in (Phase.LOBBY, Phase.READY)
+            if call and waits and call not in running and self._may_ask(call, now_ms):
+                self._asked[call] = link.withdraw(call)
+
+    def _may_ask(self, call: str, now_ms: int) -> bool:
+        """Return whether a court can be asked about a call: at most once a second."""
+        if call in self._asked or now_ms - self._asked_ms.get(call, 0) < _AGAIN_MS:
+            return False
+        self._asked_ms[call] = now_ms
+        return True
