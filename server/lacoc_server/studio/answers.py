@@ -186,13 +186,12 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
 
     Args:
         course: the floor with the robot.
-        gait: the robot's gait.
+        gait: the robot's gait, for as many joints as the robot has.
         keys: keys as a person types them (`trial.keys`); "": the key for forward.
         seconds: how long the last key is pressed [s]; None: whole cycles.
 
     Raises:
         UserError: if the keys or the time are wrong.
-        FileRefused: if the gait is for another number of joints.
     """
     presses = (
         parse_keys(keys, gait, SETTLE_TICKS) if keys else [Press(SETTLE_TICKS, *forward_key(gait))]

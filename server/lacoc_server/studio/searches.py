@@ -75,7 +75,7 @@ class Searches:
             self._changed.notify()
 
     def cancel(self, job: str) -> None:
-        """Let a running search end soon with the best it has found; refuse a search that still waits.
+        """Let a running search end soon with the best it has found; refuse a search that waits.
 
         Raises:
             UserError: if there is no search with this name.

@@ -20,7 +20,7 @@ _DRAWN, _TRIED, _ROUNDS = 80, 16, 4
 _ENOUGH, _LEAST = 10, 8
 """A round tries at most ten tables exactly. No round follows once there are eight good gaits."""
 _FAR, _NEAR = 2.0, 1.0
-"""Most steps by which a table is turned: in the first round, and the least of this in later ones."""
+"""Most steps by which a table is turned, at the first request for variants and at late ones."""
 _CALMER = 0.85
 """Each round of trials turns tables by this part of the steps before, so that more robots stay
 upright."""
