@@ -121,8 +121,8 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
 def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
     """Make the message that says why a request is refused.
 
-    The message lists at most 20 of a file's mistakes, and tells the number of all. It says that the
-    same request may be sent again only for `Busy`.
+    For wrong files, the message has the number of mistakes and lists the first `_MISTAKES_TOLD`.
+    `Refusal.again` is true only for `Busy`: the same request may be sent again later.
     """
     match error:
         case FileRefused():

@@ -41,8 +41,8 @@ class Searches:
 
     Args:
         jobs: number of processes; None: one for each core.
-        tell: called at most every 0.2 s with the progress of the running search and of each search
-            that waits.
+        tell: called a few times a second with the progress of the running search and of each
+            search that waits.
         failed: makes the answer to a search that ended with an unexpected error.
     """
 

@@ -1,7 +1,7 @@
 """Explains in at most three sentences why a robot walks as it does, the most useful first.
 
-Each rule looks for situations of docs/studio.md 3. Its sentence names the leg, the cell of the table
-or the figure that shows the situation. A cause in the table usually comes before an effect.
+Each rule looks for situations of docs/studio.md 3. Its sentence names the leg, the table's cell or
+the figure that shows the situation. A cause in the table usually comes before an effect.
 """
 
 import math

@@ -144,7 +144,7 @@ class World:
     # Snapshots
 
     def save(self) -> bytes:
-        """Return the digest and the state; a world of the same model can go on from them exactly."""
+        """Return digest and state; after `load`, a world of the same model goes on bit for bit."""
         return self.digest + self._state.tobytes()
 
     def load(self, saved: bytes) -> None:

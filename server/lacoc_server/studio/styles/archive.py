@@ -117,7 +117,7 @@ def is_straight(figures: Figures) -> bool:
 
 
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
-    """Return what a gait is worth: its score in steps of 5 mm/s, then how little was changed."""
+    """Return what a gait is worth: its score in coarse steps, then how little was changed."""
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
     return math.floor(score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 

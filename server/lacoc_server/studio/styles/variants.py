@@ -16,9 +16,10 @@ from lacoc_shared.studio import Progress
 
 VARIANTS = 6
 _DRAWN, _TRIED, _ROUNDS = 80, 16, 4
-"""Each round draws 80 tables and tries the 16 that differ most. There are at most four rounds."""
+"""Tables that a round draws, those of them that it tries because they differ most, and most rounds.
+"""
 _ENOUGH, _LEAST = 10, 8
-"""A round tries at most ten tables exactly. No round follows once there are eight good gaits."""
+"""Most tables of a round that are tried exactly, and count of good gaits that ends the rounds."""
 _FAR, _NEAR = 2.0, 1.0
 """Most steps by which a table is turned, at the first request for variants and at late ones."""
 _CALMER = 0.85
