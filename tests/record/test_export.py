@@ -69,7 +69,7 @@ def test_pos_data_is_the_table_of_rules_2(frame: MakeFrame) -> None:
 
 
 def test_pos_data_has_a_row_for_each_tick_of_physics(frame: MakeFrame) -> None:
-    """Pos-data has a row for each tick of physics in its order, and none for other beats."""
+    """Pos-data has a row for each tick of physics, but none for other beats or late frames."""
     data = PosData(0, ROBOTS)
     beats = [
         (0, Phase.LOBBY, 0),
@@ -302,7 +302,7 @@ def test_info_tells_the_time_played(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay info` says that a damaged record's result is lost, not that none was reached."""
+    """`lacoc replay info` says that a damaged record's result is lost, not that it never existed."""
     path = write_match(tmp_path)
     data = bytearray(path.read_bytes())
     data[-2500] ^= 0xFF

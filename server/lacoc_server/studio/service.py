@@ -58,7 +58,7 @@ class Studio:
         self._session.close()
 
     def _arrived(self, request: Request) -> None:
-        """Pass a request on or refuse it; slow work runs elsewhere, because this blocks Zenoh."""
+        """Pass a request on or refuse it, without slow work, because Zenoh's thread runs this."""
         what, payload = request.key.rpartition("/")[2], request.payload
         try:
             match what:

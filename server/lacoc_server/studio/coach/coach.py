@@ -25,7 +25,7 @@ _TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
 """The sample's keys for turning (workshop Fig. 4-2)."""
 
 Tell = Callable[[Progress], None]
-"""Takes the progress of a search; called several times a second."""
+"""Takes the progress of a search; called many times a second."""
 
 
 class Found(NamedTuple):
@@ -35,7 +35,8 @@ class Found(NamedTuple):
     """All numbers of the key, those that matter most first; empty if they were not ranked before
     the search was stopped."""
     best: Improved | None
-    """The best table; None: only ranked, or stopped before the search for a better table began."""
+    """The best table; None: the numbers were only ranked, or a stop came before the search began.
+    """
     before: Figures
     """Figures of the student's own gait."""
     after: Figures

@@ -162,7 +162,7 @@ class Styles:
 
 
 def far_apart(looks: Sequence[Floats], count: int, taken: Sequence[Floats] = ()) -> list[int]:
-    """Choose vectors that differ most: each time the one whose nearest other is farthest.
+    """Choose vectors that differ most: each time the one farthest from all chosen and taken ones.
 
     Args:
         looks: vectors of what can be chosen.

@@ -16,12 +16,13 @@ from lacoc_shared.studio import Progress
 
 VARIANTS = 6
 _DRAWN, _TRIED, _ROUNDS = 80, 16, 4
-"""Tables that a round draws, those of them that it tries because they differ most, and most rounds.
-"""
+"""Count of tables that a round draws, count of those that it tries, and most rounds. A round tries
+the tables that differ most."""
 _ENOUGH, _LEAST = 10, 8
 """Most tables of a round that are tried exactly, and count of good gaits that ends the rounds."""
 _FAR, _NEAR = 2.0, 1.0
-"""Most steps by which a table is turned, at the first request for variants and at late ones."""
+"""Most steps of a way by which a table is turned, at the first request for variants and at late
+ones."""
 _CALMER = 0.85
 """Each round of trials turns tables by this part of the steps before, so that more robots stay
 upright."""
