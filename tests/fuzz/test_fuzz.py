@@ -23,6 +23,7 @@ INPUTS = 200
 
 @pytest.fixture(autouse=True)
 def hangs_are_seen() -> Iterator[None]:
+    """Let an input that takes too long raise `Hang` in each test of this file."""
     before = getsignal(SIGPROF)
     arm()
     yield

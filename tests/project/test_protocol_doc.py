@@ -48,6 +48,7 @@ def fields(kind: type[msgspec.Struct]) -> list[str]:
 
 
 def section(title: str) -> str:
+    """Return the text below a heading of docs/protocol.md."""
     match = re.search(rf"^##+ {title}\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
     assert match, title
     return match[1]

@@ -40,6 +40,7 @@ ROBOTS = (12, 12)
 
 @pytest.fixture
 def record(tmp_path: Path, write_match: WriteMatch) -> Record:
+    """Give the record of the match that `write_match` writes."""
     return Record.read(write_match(tmp_path))
 
 
@@ -302,7 +303,7 @@ def test_info_tells_the_time_played(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay info` says that a damaged record's result is lost, not that it never existed."""
+    """`lacoc replay info` says that a damaged record's result is lost, not that there was none."""
     path = write_match(tmp_path)
     data = bytearray(path.read_bytes())
     data[-2500] ^= 0xFF

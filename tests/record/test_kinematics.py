@@ -47,12 +47,14 @@ JOINTS = (3, 3)
 
 @pytest.fixture(scope="module")
 def model() -> mujoco.MjModel:
+    """Give a MuJoCo model of a post and two robots with three hinges each."""
     robots = "".join(_ROBOT.format(seat=seat) for seat in ("left", "right"))
     return mujoco.MjModel.from_xml_string(_XML.format(robots=robots))
 
 
 @pytest.fixture(scope="module")
 def scene(model: mujoco.MjModel) -> Scene:
+    """Give the bodies of the model as a scene without geoms."""
     bodies = []
     for index in range(model.nbody):
         joint = model.body_jntadr[index]

@@ -44,11 +44,13 @@ def words_of(record: Record) -> str:
 
 @pytest.fixture(scope="module")
 def segment(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
+    """Give the path of the match as a closed segment."""
     return write_match(tmp_path_factory.mktemp("segment"))
 
 
 @pytest.fixture(scope="module")
 def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
+    """Give the path of the match as a packed file."""
     folder = tmp_path_factory.mktemp("packed")
     pack.pack([write_match(folder)], folder / "m.mcap")
     return folder / "m.mcap"

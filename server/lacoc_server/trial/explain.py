@@ -248,7 +248,7 @@ def _balance(seen: Seen) -> Iterator[Finding]:
 
 
 def _way(seen: Seen) -> Iterator[Finding]:
-    """Say that the robot turns, that its feet slide, and that it goes forward, as far as true."""
+    """Say which of these are true: the robot turns, its feet slide, it goes forward."""
     figures = seen.figures
     if not figures.cycles:
         return

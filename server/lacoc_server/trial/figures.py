@@ -23,7 +23,7 @@ class Figures:
     seconds: float
     """Length of the measurement [s]."""
     cycles: int
-    """Number of cycles that were measured; 0: none after the first cycle was completed."""
+    """Number of measured cycles; 0: none after the first was completed, or physics stopped."""
     cycle_s: float | None
     """Period of the gait [s]; None if no cycle was measured."""
     speed_mm_s: float

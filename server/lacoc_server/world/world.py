@@ -130,7 +130,7 @@ class World:
         return self._qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
-        """Return for each seat the indices of the markers that its robot touches, in order.
+        """Return for each seat the indices of the markers that its robot touches, ascending.
 
         A marker's probe is a geom that exerts no force. A robot touches a marker if MuJoCo's
         distance between one of the robot's geoms and the probe is at most `gap_m`. MuJoCo's contact

@@ -2,8 +2,8 @@
 
 Many changes are undone at a time, those that help least first. This is much quicker than one after
 the other, because the trials of a round run at the same time. The first pass guesses which changes
-help least, from how much each number mattered before the search. Then few changes are left, and
-the second pass tries to undo each of them.
+help least, from how much each number mattered before the search. Then few changes are left. The
+second pass ranks these by rough trials, in each of which one change is undone.
 """
 
 from collections.abc import Iterator, Sequence
