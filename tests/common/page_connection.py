@@ -46,7 +46,10 @@ class PageConnection:
         return self.told[kind][-1] if self.told[kind] else {}
 
     def ask(self, do: str, **fields: Any) -> Any:
-        """Send a request, wait for the reply and return its value; raise `Refused` as `reply` does.
+        """Send a request, wait for the reply and return its value.
+
+        Raises:
+            Refused: if the request was refused.
         """
         return self.reply(self.send(do, **fields))
 

@@ -320,8 +320,7 @@ def decision_seeds() -> list[bytes]:
 
 
 def decision_key(payload: bytes) -> str:
-    """Return the key expression of the decision that a payload names; of `enter` if it names none.
-    """
+    """Return the key expression of the decision that a payload names; without one, of `enter`."""
     name = next((name for name in DECISIONS if name.encode() in payload), "enter")
     return KEYS.decision(name)
 

@@ -145,7 +145,7 @@ def test_every_key_expression_of_a_studio() -> None:
 
 
 def test_sizes_and_numbers() -> None:
-    """docs/protocol.md has the limits, phases and flags of the code, and the number of refusals."""
+    """docs/protocol.md has the code's limits, phases and flags, and as many reasons of refusal."""
     table = section("Key expressions")
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table

@@ -46,8 +46,7 @@ class SensedPhysics(Physics, Protocol):
         """Continue from a saved state."""
 
     def pose(self) -> Floats:
-        """Return the body's position [m] and quaternion, and the joint angles [rad]: (7 + joints,).
-        """
+        """Return the body's position [m] and quaternion, and joint angles [rad]: (7 + joints,)."""
 
     def sensed(self) -> Sensed:
         """Return what was measured in the last tick."""

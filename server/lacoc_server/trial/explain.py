@@ -154,9 +154,7 @@ def _seam(seen: Seen) -> Iterator[Finding]:
 
 
 def _legs(seen: Seen) -> Iterator[Finding]:
-    """Find legs that differ from the others: they drag, push in the wrong direction, or are out of
-    step.
-    """
+    """Find legs that differ from the others: they drag, push the wrong way or are out of step."""
     if len(seen.sequence) < 2 or not seen.figures.cycles:
         return
     labels, legs = seen.walk.legs, range(len(seen.walk.legs))

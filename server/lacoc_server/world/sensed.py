@@ -66,7 +66,7 @@ class SensedWorld(World):
         return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
     def pose(self) -> Floats:
-        """Return position [m], quaternion and joint angles [rad] of the robot: (7 + joints,)."""
+        """Return the body's position [m] and quaternion, and joint angles [rad]: (7 + joints,)."""
         return self._qpos[self._pose_qpos]
 
     def sensed(self) -> Sensed:
