@@ -13,12 +13,12 @@ settings.register_profile("thorough", deadline=None, max_examples=400)
 # The commands of these tests print English, also on a machine whose language is Japanese.
 os.environ["LACOC_LANGUAGE"] = "en"
 
-# A shell lets what it starts in the background ignore Ctrl-C, and children would inherit that.
+# A process that a shell starts in the background ignores Ctrl-C, and its children would too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option --long, which `make test-all` gives in its second run."""
+    """Add the option --long, with which `make test-long` runs pytest."""
     parser.addoption(
         "--long",
         action="store_true",
@@ -34,7 +34,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Select the tests of this run, and put the soak tests first, because they take longest."""
+    """Select the tests of this run, and put the soak tests first, because they take longest.
+
+    With --long, run tests marked long and all property tests; without it, tests not marked long.
+    """
     wanted, others = [], []
     for item in items:
         long = item.get_closest_marker("long") is not None

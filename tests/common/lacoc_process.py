@@ -1,4 +1,4 @@
-"""Starts `lacoc` in a process of its own, without the second that loading libraries takes."""
+"""Starts `lacoc` in a process of its own, and saves the time that loading libraries takes."""
 
 import atexit
 import functools
@@ -87,6 +87,9 @@ def run_lacoc(*words: str, input: str = "", timeout_s: float = 60.0, **options: 
 
     Returns:
         A `subprocess.CompletedProcess` with its output as text.
+
+    Raises:
+        TimeoutExpired: if the command takes longer than `timeout_s`; the process is then killed.
     """
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     with Lacoc(*words, text=True, **streams | options) as process:

@@ -1,4 +1,4 @@
-"""A page's connection without a browser: it sends requests and keeps what it was told."""
+"""A page's connection without a browser: it sends requests and keeps the gateway's messages."""
 
 import itertools
 import time
@@ -13,7 +13,7 @@ from lacoc_client.gateway.wire import Kind
 
 TIMEOUT_S = 60.0
 _OF_COURTS = (Kind.FRAME, Kind.EVENT, Kind.SHEET, Kind.SCENE, Kind.HEALTH)
-"""Kinds that a gateway passes on from a court; they are not kept."""
+"""Kinds of messages that a gateway passes on from a court; the connection does not keep them."""
 
 
 class Refused(Exception):
@@ -34,19 +34,23 @@ class PageConnection:
 
     def __init__(self, url: str, path: str) -> None:
         address = f"{url.replace('http', 'ws', 1)}{path}"
-        # Unread messages never block the answers to pings. `close` closes it.
+        # Without `max_queue`, unread messages never block the answers to pings.
         self.socket = connect(address, max_size=None, max_queue=None, legacy=True)
         self._ids = itertools.count(1)
         self._replies: dict[int, dict[str, Any]] = {}
         self.told: dict[Kind, list[dict[str, Any]]] = {kind: [] for kind in Kind}
-        """All messages of the gateway's own kinds, but replies."""
+        """All messages of the gateway's own kinds, except replies."""
 
     def last(self, kind: Kind) -> dict[str, Any]:
         """Return the newest message of a kind; {}: there is none yet."""
         return self.told[kind][-1] if self.told[kind] else {}
 
     def ask(self, do: str, **fields: Any) -> Any:
-        """Send a request, wait for the reply and return its value."""
+        """Send a request, wait for the reply and return its value.
+
+        Raises:
+            Refused: if the request was refused.
+        """
         return self.reply(self.send(do, **fields))
 
     def send(self, do: str, **fields: Any) -> int:
@@ -56,7 +60,11 @@ class PageConnection:
         return number
 
     def reply(self, number: int) -> Any:
-        """Wait for the reply to a request and return its value."""
+        """Wait for the reply to a request and return its value.
+
+        Raises:
+            Refused: if the request was refused.
+        """
         self.until(lambda: number in self._replies)
         reply = self._replies.pop(number)
         if not reply["ok"]:

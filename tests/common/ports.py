@@ -1,4 +1,4 @@
-"""Ports for servers that are started again at the same address."""
+"""Finds ports for servers that are started again at the same address."""
 
 import random
 import socket

@@ -167,7 +167,7 @@ class Doors:
             self.beat()
 
     def beat(self) -> None:
-        """Let the court handle the waiting packets.
+        """Let the court handle the waiting packets, in as many beats as it needs.
 
         Raises:
             StateChanged: if a packet changed what its sender had no right to change.
@@ -320,7 +320,7 @@ def decision_seeds() -> list[bytes]:
 
 
 def decision_key(payload: bytes) -> str:
-    """Return the key expression under which a decision would arrive."""
+    """Return the key expression of the decision that a payload names; without one, of `enter`."""
     name = next((name for name in DECISIONS if name.encode() in payload), "enter")
     return KEYS.decision(name)
 
@@ -331,7 +331,10 @@ def seat_key(what: str) -> Callable[[bytes], str]:
 
 
 def request_key(payload: bytes) -> str:
-    """Return the key expression of the request with the payload's number, or else of ready."""
+    """Return the key expression of the seed request with the payload's sequence number.
+
+    For another number, it is that of a ready request.
+    """
     at = payload.find(b"seq") + 3
     asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")
     return KEYS.request("left", asked or "ready")

@@ -362,7 +362,10 @@ class Mutator:
 
 
 def pack(node: Any) -> bytes:
-    """Write a tree as msgpack, including parts that no library would write."""
+    """Write a tree as msgpack, including parts that no library would write.
+
+    A value that msgpack can't hold becomes nil.
+    """
     if not isinstance(node, list | Raw):
         try:
             return msgpack.packb(node)  # type: ignore[no-any-return]

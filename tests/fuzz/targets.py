@@ -1,4 +1,4 @@
-"""A target for each reader of foreign bytes; it passes on only errors that are not documented."""
+"""Defines a target for each reader of foreign bytes; only undocumented errors leave a target."""
 
 import os
 import tempfile
@@ -31,7 +31,7 @@ from lacoc_shared.record.reader import Record
 CORPUS = Path(__file__).parent / "corpus"
 _SCRATCH = "/dev/shm" if os.path.isdir("/dev/shm") else None
 _WORLDS = 20
-"""Of the robots and arenas that are accepted, one in this many is built as a world."""
+"""About one in this many accepted robots and arenas is also built as a world."""
 
 
 @dataclass(frozen=True)

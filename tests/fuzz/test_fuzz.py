@@ -23,6 +23,7 @@ INPUTS = 200
 
 @pytest.fixture(autouse=True)
 def hangs_are_seen() -> Iterator[None]:
+    """Let an input that takes too long raise `Hang` in each test of this file."""
     before = getsignal(SIGPROF)
     arm()
     yield
@@ -32,7 +33,7 @@ def hangs_are_seen() -> Iterator[None]:
 @pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.long)])
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None:
-    """Seeds, former findings and hostile bytes cause no crash, no hang and no change of state."""
+    """Seeds and hostile bytes cause no crash, no hang and no change without the right to it."""
     inputs = times * SLOW.get(target.name, INPUTS)
     *_, figures = feed(target, len(target.seeds) + inputs, seed=times)
     assert not figures.findings, "\n".join(figures.findings)
@@ -47,7 +48,10 @@ def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
 
 
 def test_good_packets_get_in() -> None:
-    """The committed seeds are messages as today's code sends them, and the court accepts some."""
+    """Committed commands and requests are as today's code makes them, and a court accepts messages.
+
+    It accepts at least one request, one join and one decision.
+    """
     for folder, seeds in (("requests", request_seeds()), ("commands", command_seeds())):
         kept = [path.read_bytes() for path in sorted((CORPUS / folder).iterdir())]
         assert kept == seeds, "run tests/fuzz/make_corpus.py"

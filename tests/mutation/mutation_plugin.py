@@ -1,4 +1,4 @@
-"""A pytest plugin that makes mutmut count calls at import correctly and run quickly.
+"""A pytest plugin that lets mutmut count calls at import correctly, and makes its runs quick.
 
 mutmut notes which functions each test calls, so that a mutant runs only the tests that reach it.
 Functions that a test module calls at import would count for its first test only. This plugin counts

@@ -132,6 +132,7 @@ def lacoc(
 
 
 def wait_until_healthy(check: list[str], timeout_s: float = 60) -> None:
+    """Repeat a service's health check until it succeeds."""
     assert check[:2] == ["CMD", "python"]
     until_s = time.monotonic() + timeout_s
     while subprocess.run([sys.executable, *check[2:]], capture_output=True, check=False).returncode:

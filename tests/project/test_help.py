@@ -173,7 +173,7 @@ CODE = re.compile(r"```(?!mermaid)\w*\n(.*?)```|`([^`\n]+)`", re.DOTALL)
 
 
 def cited(text: str) -> Iterator[list[str]]:
-    """Yield the words of each command in the code of a page, without "lacoc"."""
+    """Yield each command in a page's code blocks and code spans, as its words after "lacoc"."""
     for block, span in CODE.findall(text):
         for line in (block or span).splitlines():
             if found := re.search(r"(?:^|[\s/\\])lacoc((?: [^\s|#]+)*)", line):
@@ -182,7 +182,7 @@ def cited(text: str) -> Iterator[list[str]]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(FOLDER)))
 def test_a_page_names_commands_that_exist(page: Path) -> None:
-    """Every command and option in the README of both languages, and in docs, exists."""
+    """Every command and option in the code of the READMEs and of docs/*.md exists."""
     text = page.read_text("utf-8").replace("`lacoc password`", "")  # bytes of the protocol
     for typed in cited(text):
         name = "lacoc"

@@ -48,6 +48,7 @@ def fields(kind: type[msgspec.Struct]) -> list[str]:
 
 
 def section(title: str) -> str:
+    """Return the text below a heading of docs/protocol.md."""
     match = re.search(rf"^##+ {title}\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
     assert match, title
     return match[1]
@@ -144,7 +145,7 @@ def test_every_key_expression_of_a_studio() -> None:
 
 
 def test_sizes_and_numbers() -> None:
-    """The limits, phases, flags and reasons in docs/protocol.md are those of the code."""
+    """docs/protocol.md has the code's limits, phases and flags, and as many reasons of refusal."""
     table = section("Key expressions")
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table

@@ -82,7 +82,7 @@ def test_every_entry_point_is_there() -> None:
 
 
 def test_nothing_of_the_machine_it_was_made_on_is_in_it() -> None:
-    """No tracked text names this checkout's path, this home folder or this host."""
+    """No tracked text has the path of this checkout or home folder, or this machine's name."""
     host = socket.gethostname()
     own = [re.escape(f"{path}/") for path in (ROOT, Path.home()) if len(path.parts) > 1]
     if len(host) > 3 and host != "localhost":  # a very short name would match ordinary text
@@ -110,7 +110,7 @@ def test_no_library_is_copied_in() -> None:
 
 
 def test_links_in_the_documents_lead_somewhere() -> None:
-    """Every Markdown link to a file of the project leads to a file."""
+    """Every Markdown link to a file or folder of the project leads to one that exists."""
     link = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")
     broken = [
         f"{path.relative_to(ROOT)}: {target}"

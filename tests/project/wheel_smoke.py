@@ -1,4 +1,4 @@
-"""Install what a release ships into clean environments and try it.
+"""Installs what a release ships into clean environments and tries it.
 
     python tests/project/wheel_smoke.py dist
 
@@ -38,7 +38,7 @@ class Environment:
         self.run("python", "-m", "pip", "install", "--quiet", f"{archive.resolve()}{extra}")
 
     def run(self, *command: str, code: int = 0) -> subprocess.CompletedProcess[str]:
-        """Run a program of the environment, away from the checkout."""
+        """Run a program of the environment outside the checkout; stop if its exit code is wrong."""
         done = subprocess.run(
             [str(self.bin / command[0]), *command[1:]],
             cwd=self.folder,
@@ -80,7 +80,7 @@ def fetch(url: str) -> str:
 
 
 def try_both(env: Environment) -> None:
-    """Try what must work both with and without MuJoCo."""
+    """Try the commands that must work both with and without MuJoCo."""
     try_pages(env)
     env.run("lacoc", "--version")
     assert "practice" in env.run("lacoc", "--help").stdout
@@ -113,7 +113,7 @@ def try_court(env: Environment) -> None:
 
 
 def main(dist: Path) -> None:
-    """Try the wheel and the source archive in a folder."""
+    """Try the one wheel and the one source archive in the folder `dist`."""
     (wheel,) = dist.glob("*.whl")
     (source,) = dist.glob("*.tar.gz")
     with tempfile.TemporaryDirectory(prefix="lacoc smoke ") as folder:

@@ -1,4 +1,4 @@
-"""A small match to record: two robots with four legs each, on a board of three markers."""
+"""Gives a small match to record: two robots with four legs each, and a board of three markers."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -159,7 +159,10 @@ def result() -> Result:
 def write_match(
     header: Callable[..., Header], sheet: Sheet, scene: Scene, result: Result
 ) -> Callable[..., Path]:
-    """Give a function that writes a match of 40 beats and returns its segment's path."""
+    """Give a function that writes a match of 40 beats and returns its segment's path.
+
+    `close` says whether the segment is closed. If `gives_s` is not 0, a referee adds this time [s].
+    """
 
     def write(folder: Path, close: bool = True, gives_s: float = 0.0) -> Path:
         writer = RecordWriter(folder, header())

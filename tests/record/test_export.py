@@ -1,4 +1,4 @@
-"""What an export contains, and that other programs can read it."""
+"""An export has the right contents, and other programs can read it."""
 
 import csv
 import io
@@ -40,6 +40,7 @@ ROBOTS = (12, 12)
 
 @pytest.fixture
 def record(tmp_path: Path, write_match: WriteMatch) -> Record:
+    """Give the record of the match that `write_match` writes."""
     return Record.read(write_match(tmp_path))
 
 
@@ -69,7 +70,7 @@ def test_pos_data_is_the_table_of_rules_2(frame: MakeFrame) -> None:
 
 
 def test_pos_data_has_a_row_for_each_tick_of_physics(frame: MakeFrame) -> None:
-    """Rules 2: Pos-data has a row for each tick of physics, and none for other beats."""
+    """Pos-data has a row for each tick of physics, but none for other beats or late frames."""
     data = PosData(0, ROBOTS)
     beats = [
         (0, Phase.LOBBY, 0),
@@ -180,7 +181,10 @@ def test_the_result_as_json(record: Record, result: Result) -> None:
 
 
 def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
-    """Return (time [ns], message) by topic and schema, decoded with only the file's own schemas."""
+    """Return the (time [ns], message) pairs for each "topic schema" of a record's Foxglove file.
+
+    Messages are decoded with the schemas in the file alone.
+    """
     reader = make_reader(
         io.BytesIO(foxglove(record)), validate_crcs=True, decoder_factories=[DecoderFactory()]
     )
@@ -279,7 +283,7 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay info` says where a cut record stops and that it has no result."""
+    """`lacoc replay info` says that a cut record has no end and no result."""
     path = write_match(tmp_path)
     path.write_bytes(path.read_bytes()[:-2500])
     words = CliRunner().invoke(app, ["info", str(path)])
@@ -299,7 +303,7 @@ def test_info_tells_the_time_played(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay info` says that the result of a damaged record is lost, not that none was."""
+    """`lacoc replay info` says that a damaged record's result is lost, not that there was none."""
     path = write_match(tmp_path)
     data = bytearray(path.read_bytes())
     data[-2500] ^= 0xFF

@@ -1,4 +1,4 @@
-"""Forward kinematics, compared with MuJoCo's, and the angles of Pos-data."""
+"""Forward kinematics agrees with MuJoCo's, and Pos-data has the right angles."""
 
 import math
 
@@ -47,12 +47,14 @@ JOINTS = (3, 3)
 
 @pytest.fixture(scope="module")
 def model() -> mujoco.MjModel:
+    """Give a MuJoCo model of a post and two robots with three hinges each."""
     robots = "".join(_ROBOT.format(seat=seat) for seat in ("left", "right"))
     return mujoco.MjModel.from_xml_string(_XML.format(robots=robots))
 
 
 @pytest.fixture(scope="module")
 def scene(model: mujoco.MjModel) -> Scene:
+    """Give the bodies of the model as a scene without geoms."""
     bodies = []
     for index in range(model.nbody):
         joint = model.body_jntadr[index]
@@ -73,7 +75,7 @@ def scene(model: mujoco.MjModel) -> Scene:
 
 
 def test_bodies_are_where_mujoco_has_them(model: mujoco.MjModel, scene: Scene) -> None:
-    """Bodies are within 1e-6 m of MuJoCo's places, for one frame at a time and for many at once."""
+    """Bodies are where MuJoCo has them (1e-6 m), for one frame at a time and for many at once."""
     random = np.random.default_rng(7)
     kinematics = ForwardKinematics(scene, JOINTS)
     data = mujoco.MjData(model)
@@ -180,7 +182,7 @@ def test_euler_angles(
     roll_pitch_yaw: tuple[float, float, float],
     forward: tuple[float, float, float] | None,
 ) -> None:
-    """Angles are Euler ZYX, and yaw is 0 where the robot faces the field's +y (rules 2)."""
+    """Angles are Euler ZYX, and yaw is 0 if the robot faces the field's +y (docs/rules.md 2)."""
     quat = np.array([1.0, 0, 0, 0])
     for axis, degrees in turns:  # roll first; each rotation is about an axis of the world
         quat = multiply(_about(axis, degrees), quat)

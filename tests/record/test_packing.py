@@ -1,4 +1,4 @@
-"""Packing: segments become one file, and are removed only if it has each of their messages."""
+"""Packing joins segments into one file, and removes them only if this has all their messages."""
 
 import random
 import subprocess
@@ -56,7 +56,7 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
 def test_damage_loses_only_some_seconds_before_it(
     tmp_path: Path, header: Callable[..., Header]
 ) -> None:
-    """A packed match of a minute is readable up to a few seconds before a damaged byte."""
+    """A packed match of a minute can be read at least up to some seconds before a damaged byte."""
     chance = random.Random(1)
     writer = RecordWriter(tmp_path, header())
     beats = 60 * BEATS_PER_S

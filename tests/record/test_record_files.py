@@ -44,11 +44,13 @@ def words_of(record: Record) -> str:
 
 @pytest.fixture(scope="module")
 def segment(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
+    """Give the path of the match as a closed segment."""
     return write_match(tmp_path_factory.mktemp("segment"))
 
 
 @pytest.fixture(scope="module")
 def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
+    """Give the path of the match as a packed file."""
     folder = tmp_path_factory.mktemp("packed")
     pack.pack([write_match(folder)], folder / "m.mcap")
     return folder / "m.mcap"
@@ -459,7 +461,10 @@ def test_a_damaged_time_ends_what_is_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
-    """A damaged packed file is read up to the damaged chunk; the message says where this begins."""
+    """A damaged packed file is read up to the damaged chunk, and the message has its offset.
+
+    If the first chunk is damaged, the file is refused.
+    """
     data = bytearray(packed.read_bytes())
     chunks = [at for at, opcode in _records_of(data) if opcode == Opcode.CHUNK]
     at = chunks[int(part * len(chunks))]
@@ -477,7 +482,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 
 
 def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
-    """Damage in the index or the footer of a packed file is told; the match is read whole."""
+    """Damage in a packed file's index or footer is reported, and the whole match can be read."""
     whole = packed.read_bytes()
     places = {opcode: at for at, opcode in _records_of(whole)}
     path = tmp_path / "m.mcap"

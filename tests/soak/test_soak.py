@@ -11,8 +11,8 @@ from benchmarks.soak import MOST_GROWTH, VISITORS, Figures, Look, soak
 MINUTES = 5.0
 WARM_MINUTES = 2.0
 MOST_GROWTH_HERE = 0.03
-"""Largest growth of memory in three minutes (0-1). Heaps still grow by up to 0.017 in this time; a
-leak of 0.1 MB in each match gives more than this limit.
+"""Largest share by which memory may grow in three minutes. Heaps grow by up to 0.017 in this time;
+a leak of 0.1 MB in each match gives more than this limit.
 """
 
 

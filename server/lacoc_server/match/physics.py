@@ -43,7 +43,7 @@ class Physics(Protocol):
 
     @property
     def digest(self) -> bytes:
-        """Hash chain over the whole state, tick after tick: 8 bytes."""
+        """Hash chain over the states after all ticks, 8 bytes; `place` does not change it."""
 
     def place(self, seat: int, place: Place) -> None:
         """Put a robot at a start place: start posture, all velocities zero."""
@@ -59,7 +59,10 @@ class Physics(Protocol):
         """
 
     def save(self) -> bytes:
-        """Return the whole present state; physics can go on from it bit for bit."""
+        """Return the whole present state; a `World` can go on from it bit for bit.
+
+        A record gives the snapshot of this beat, or b"" if it has none.
+        """
 
     def poses(self) -> bytes:
         """Return the poses of the robots, in the form of `Frame.poses`."""

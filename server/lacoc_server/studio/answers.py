@@ -41,7 +41,7 @@ from lacoc_shared.studio import (
 from lacoc_shared.words import Phrase, say
 
 _MISTAKES_TOLD = 20
-"""Most mistakes in one refusal, so that it stays a small message."""
+"""Most mistakes that one refusal lists, so that the message stays small."""
 
 CourseOf = Callable[[RobotSpec], Course]
 """Returns the floor for a robot's trials."""
@@ -76,7 +76,7 @@ class Trial(NamedTuple):
     """A trial with its figures and explanation."""
 
     press: Press
-    """The key that was measured."""
+    """The last key, which was measured."""
     walk: Walk
     figures: Figures
     explained: list[Sentence]
@@ -119,7 +119,11 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
 
 
 def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
-    """Make the message that says why a request is refused."""
+    """Make the message that says why a request is refused.
+
+    For wrong files, the message has the number of mistakes and lists the first `_MISTAKES_TOLD`.
+    `Refusal.again` is true only for `Busy`: the same request may be sent again later.
+    """
     match error:
         case FileRefused():
             count = len(error.mistakes)
@@ -134,12 +138,14 @@ def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
 def read_files(files: GaitFiles) -> Files:
     """Read a robot and its gait.
 
-    Without a locomotion file, the request's sequences of postures, or the sample's, become the keys
-    of level B. Without any file, the robot and the gait are the workshop's.
+    Without a robot file, the robot is the workshop's. Without any file, the gait is the workshop's
+    sample. If there are postures but no locomotion file, the request's sequences become the keys of
+    level B; without these, the sample's sequences do.
 
     Raises:
-        FileRefused: with every mistake of every file.
-        UserError: if the postures can't be joined into the sequences.
+        FileRefused: with the mistakes of the robot file, or else with those of both gait files.
+        UserError: if a file's name is wrong, if a robot file comes without a gait file, or if the
+            postures can't be joined into the request's sequences.
     """
     robot = _robot_of(files.robot)
     for one in (files.postures, files.locomotion):
@@ -180,13 +186,12 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
 
     Args:
         course: the floor with the robot.
-        gait: the robot's gait.
+        gait: the robot's gait, for as many joints as the robot has.
         keys: keys as a person types them (`trial.keys`); "": the key for forward.
         seconds: how long the last key is pressed [s]; None: whole cycles.
 
     Raises:
         UserError: if the keys or the time are wrong.
-        FileRefused: if the gait is for another number of joints.
     """
     presses = (
         parse_keys(keys, gait, SETTLE_TICKS) if keys else [Press(SETTLE_TICKS, *forward_key(gait))]

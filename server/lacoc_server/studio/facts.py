@@ -1,4 +1,4 @@
-"""The numbers of a robot file, and the limits of the rules for them (workshop 4-3, rules 1)."""
+"""Lists a robot's numbers and the limits that the rules set for them (docs/rules.md 1)."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ Bounds = tuple[float | None, float | None]
 
 
 def facts(robot: RobotSpec) -> dict[str, Any]:
-    """List a robot's numbers by name; for what can differ between legs, the lowest and highest."""
+    """List a robot's numbers by name; if legs can differ in one, give its lowest and highest."""
     low, high = robot.bounds((0.0,) * robot.joints)
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     legs = robot.legs
@@ -55,7 +55,7 @@ def facts(robot: RobotSpec) -> dict[str, Any]:
 
 
 def bounds(limits: Limits) -> dict[str, Bounds]:
-    """List the limits of the rules for the numbers that `facts` gives, under the same names."""
+    """List the rules' limits for numbers of `facts`, by the same names; some have no limits."""
     part_kg = limits.part_mass_min_kg, limits.part_mass_max_kg
     link_m = limits.link_min_m, limits.link_max_m
     return {

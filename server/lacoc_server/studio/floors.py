@@ -1,4 +1,4 @@
-"""Keeps a process's floors for trials: to compile a floor takes longer than a short trial."""
+"""Keeps the floors that a process has compiled, because this takes longer than a short trial."""
 
 from functools import lru_cache
 
@@ -11,7 +11,10 @@ from lacoc_server.world.world import SUBSTEPS
 
 @lru_cache(maxsize=16)
 def course_of(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Return the floor for a robot's trials in this process; arguments as in `make_course`."""
+    """Return the floor for a robot's trials, compiled at most once; arguments as in `make_course`.
+
+    A process keeps the 16 floors that it used last.
+    """
     return make_course(robot, steps)
 
 

@@ -18,7 +18,7 @@ from lacoc_shared.words import say
 
 _MOST_WAITING = 8
 _TELL_S = 0.2
-"""How often a search sends its progress [s]."""
+"""Shortest time between two messages of a search's progress [s]."""
 _END_S = 10.0
 
 Done = Callable[[Answer], None]
@@ -41,7 +41,8 @@ class Searches:
 
     Args:
         jobs: number of processes; None: one for each core.
-        tell: called several times a second with the progress of each search.
+        tell: called a few times a second with the progress of the running search and of each
+            search that waits.
         failed: makes the answer to a search that ended with an unexpected error.
     """
 
@@ -74,7 +75,7 @@ class Searches:
             self._changed.notify()
 
     def cancel(self, job: str) -> None:
-        """Let a search end soon and reply with the best so far; a waiting search is refused.
+        """Let a running search end soon with the best it has found; refuse a search that waits.
 
         Raises:
             UserError: if there is no search with this name.
@@ -91,7 +92,7 @@ class Searches:
             search.done(Answer(False, encode(Refusal(say("studio.cancelled")))))
 
     def close(self) -> None:
-        """Stop all searches and end their processes."""
+        """Stop all searches and end their processes; searches that wait get no answer."""
         with self._changed:
             self._closing = True
             for search in self._all():

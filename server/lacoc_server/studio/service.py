@@ -58,7 +58,7 @@ class Studio:
         self._session.close()
 
     def _arrived(self, request: Request) -> None:
-        """Take a request in; this is Zenoh's thread, so other threads do what takes long."""
+        """Pass a request on or refuse it, without slow work, because Zenoh's thread runs this."""
         what, payload = request.key.rpartition("/")[2], request.payload
         try:
             match what:
@@ -84,7 +84,7 @@ class Studio:
         _answer(request, answer)
 
     def _failed(self, error: BaseException) -> Answer:
-        """Log an error that left a request without an answer, and make a refusal."""
+        """Log an unexpected error of a request, and return the refusal to answer with."""
         ended = isinstance(error, WorkerDied | CancelledError)
         why = say("studio.died") if ended else say("studio.failed")
         self._log.warning(render(why), code=why.code, error=repr(error))

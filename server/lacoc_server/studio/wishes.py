@@ -1,4 +1,4 @@
-"""What a search is asked for: a request for the coach, a map or variants, and its reply."""
+"""Fulfils a request for the coach, a map or variants: checks it, searches, and makes the reply."""
 
 import threading
 from collections.abc import Sequence
@@ -27,9 +27,9 @@ from lacoc_shared.studio import (
 from lacoc_shared.words import say
 
 _MOST_S = 120.0
-"""Longest time that a search may ask for [s]."""
+"""Longest search that a request may ask for [s]."""
 _MOST_KEPT, _MOST_BEFORE = 2, 60
-"""Most tables to breed from, and most tables that were shown before."""
+"""Most tables in a request to breed from, and most that it lists as shown before."""
 
 SearchRequest = CoachRequest | MapRequest | VariantsRequest
 REQUESTS: dict[str, type[SearchRequest]] = {
@@ -51,7 +51,7 @@ def fulfil(
         request: the request.
         workers: processes for the trials.
         stop: once it is set, the search ends with what it has found.
-        tell: is told how far the search is.
+        tell: called with the progress of the search.
 
     Raises:
         FileRefused: with every mistake of the request's files.
@@ -92,7 +92,8 @@ def _tables(field: str, task: Task, sent: Sequence[Angles], most: int) -> list[A
     """Check tables that came with a request.
 
     Raises:
-        UserError: if there are too many, or one does not fit the key's table and the robot.
+        UserError: if there are too many tables, if one has another count of angles than the key's
+            table, or if an angle is outside its joint's range.
     """
     numbers = len(task.table.angles_deg)
     ranges_deg = task.robot.ranges_deg * len(task.table.rows)

@@ -1,4 +1,4 @@
-"""Runs jobs in other processes. If one of them dies, only its job is lost, and another starts."""
+"""Runs jobs in other processes. If a process dies, only its job is lost, and a new one starts."""
 
 import contextlib
 import os
@@ -36,7 +36,7 @@ class _Job(NamedTuple):
 
 
 class Workers:
-    """Runs functions in processes, in the order in which they come; used as a context manager.
+    """Runs functions in processes, first come, first served; used as a context manager.
 
     The processes start at once, so that the first job finds them ready.
 
@@ -81,8 +81,9 @@ class Workers:
         """Run a function of a module in a process.
 
         Returns:
-            A future of the function's result. It raises `WorkerDied` or `WorkerFailed`; `close`
-            cancels it.
+            A future of the function's result. Its `result` raises `WorkerDied` if the process
+            ended or took too long, `WorkerFailed` if the function raised an error, and
+            `CancelledError` if `close` came first.
         """
         assert not named, "a job has positional arguments only"
         result: Future[T] = Future()
@@ -90,7 +91,7 @@ class Workers:
         return result
 
     def close(self) -> None:
-        """End all processes; waiting jobs are cancelled, and running jobs fail."""
+        """End all processes; cancel waiting jobs, and let running jobs raise `WorkerDied`."""
         self._closing = True
         for _ in self._threads:
             self._jobs.put(None)

@@ -1,4 +1,4 @@
-"""Draws bars in a terminal that show when each foot is down (Hildebrand's diagram)."""
+"""Draws bars of text that show when each foot is down (Hildebrand's diagram)."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -11,7 +11,7 @@ _DOWN, _UP, _MARK = "█", "·", "│"
 def foot_bars(
     legs: Sequence[str], down: Bools, starts: Sequence[int], first: int, columns: int
 ) -> list[str]:
-    """Draw a bar for each leg; a column stands for as many ticks as needed to show the whole walk.
+    """Draw a bar for each leg; a column shows if the foot is down in at least half of its ticks.
 
     Args:
         legs: labels of the legs.

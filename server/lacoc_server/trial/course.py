@@ -46,14 +46,14 @@ class SensedPhysics(Physics, Protocol):
         """Continue from a saved state."""
 
     def pose(self) -> Floats:
-        """Return position, quaternion and joint angles: (7 + joints,)."""
+        """Return the body's position [m] and quaternion, and joint angles [rad]: (7 + joints,)."""
 
     def sensed(self) -> Sensed:
         """Return what was measured in the last tick."""
 
 
 class Course:
-    """A floor with one robot for many trials; each trial begins in the same state.
+    """A floor with one robot, for many trials; each trial begins in the same state.
 
     Args:
         world: physics with the robot at its start place.
@@ -88,8 +88,8 @@ class Course:
             gait: the robot's gait.
             presses: at least one key, in the order of their ticks; the last key is measured.
             seconds: time from the last press to the end [s]; None: whole cycles after the first,
-                or `NO_CYCLE_S` if the key's sequence never begins again. No trial is longer than
-                `LONGEST_TICKS`.
+                or `NO_CYCLE_S` if the key's sequence never leaves its first posture. No trial is
+                longer than `LONGEST_TICKS`.
             cycles: number of whole cycles to measure if `seconds` is None.
         """
         robot = self.robot
@@ -150,13 +150,21 @@ class Plan(NamedTuple):
     """Ticks in which a cycle of the last key begins. The tick after the end of the trial is among
     them if a cycle would begin there."""
     span: Span
-    """Ticks to measure."""
+    """Ticks to measure: whole cycles after the first, or else all from the last press on."""
 
 
 def plan(
     drive: Drive, level: Level, presses: Sequence[Press], seconds: float | None, cycles: int
 ) -> Plan:
-    """Run a drive through the keys of a trial; arguments as in `Course` and `Course.walk`."""
+    """Run a drive through the keys of a trial, without physics.
+
+    Args:
+        drive: the robot's drive.
+        level: level at which the robot stands before the first key.
+        presses: as in `Course.walk`.
+        seconds: as in `Course.walk`.
+        cycles: as in `Course.walk`.
+    """
     last = presses[-1]
     due = {press.tick: press for press in presses}
     most = LONGEST_TICKS

@@ -1,7 +1,7 @@
 """Explains in at most three sentences why a robot walks as it does, the most useful first.
 
-Each rule looks for one situation (docs/studio.md 3), and names the leg, the cell of the table and
-the figure that show it. A cause in the table usually comes before an effect that physics shows.
+Each rule looks for situations of docs/studio.md 3. Its sentence names the leg, the table's cell or
+the figure that shows the situation. A cause in the table usually comes before an effect.
 """
 
 import math
@@ -47,7 +47,7 @@ class Finding(NamedTuple):
     """The finding with the highest rank is told first."""
     said: Phrase
     leg: int = -1
-    """Index of the leg that it is about; -1: the whole robot."""
+    """Index of the leg that the finding is about; -1: the whole robot."""
     cell: CellPlace | None = None
 
 
@@ -61,7 +61,7 @@ class Seen:
     press: Press
     """The key that was measured."""
     sequence: tuple[Posture, ...]
-    """Postures of that key [rad]."""
+    """Postures of this key's sequence [rad]."""
 
     def cell(self, posture: int, leg: int, level: int) -> Phrase:
         """Make the phrase that names a cell of the table."""
@@ -112,7 +112,7 @@ def explain(
 
 
 def _limits(seen: Seen) -> Iterator[Finding]:
-    """Find an angle at the end of its joint's range."""
+    """Find the first angle that is within half a degree of an end of its joint's range."""
     cells = [
         (posture, leg, level)
         for posture in range(len(seen.sequence))
@@ -131,7 +131,7 @@ def _at_limit(angle_deg: float, range_deg: tuple[float, float]) -> bool:
 
 
 def _seam(seen: Seen) -> Iterator[Finding]:
-    """Find a jump of a joint from the last posture to the first."""
+    """Find the joint that jumps most from the last posture to the first, if one jumps there."""
     postures = len(seen.sequence)
     if postures < 3:
         return
@@ -154,7 +154,7 @@ def _seam(seen: Seen) -> Iterator[Finding]:
 
 
 def _legs(seen: Seen) -> Iterator[Finding]:
-    """Find a leg that differs from the others: it drags, pushes backward, or is out of step."""
+    """Find legs that differ from the others: they drag, push the wrong way or are out of step."""
     if len(seen.sequence) < 2 or not seen.figures.cycles:
         return
     labels, legs = seen.walk.legs, range(len(seen.walk.legs))
@@ -190,7 +190,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
 
 
 def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
-    """Find a leg that is lifted alone, while each other leg is lifted together with another."""
+    """Find a leg that is lifted alone, while each other of `legs` is lifted with another."""
     if len(seen.sequence) < 3 or len(legs) < 4:
         return
     phases = steps.phase
@@ -235,7 +235,7 @@ def _ended(seen: Seen) -> Iterator[Finding]:
 
 
 def _balance(seen: Seen) -> Iterator[Finding]:
-    """Say that the body rests on the floor, or the centre of mass is outside the feet."""
+    """Say how often parts other than feet rest on the floor, and how often balance is lost."""
     figures = seen.figures
     if figures.belly_share > _BELLY:
         yield Finding(78, say("explain.belly", percent=100 * figures.belly_share))
@@ -246,7 +246,7 @@ def _balance(seen: Seen) -> Iterator[Finding]:
 
 
 def _way(seen: Seen) -> Iterator[Finding]:
-    """Say how the robot moves: it turns, its feet slide, or it goes forward."""
+    """Say which of these are true: the robot turns, its feet slide, it goes forward."""
     figures = seen.figures
     if not figures.cycles:
         return

@@ -11,9 +11,9 @@ from lacoc_server.trial.walk import Floats, Walk
 from lacoc_shared.seat import BEAT_S
 
 _LEAST_M_S = 1e-3
-"""Below this forward speed there is no slip ratio [m/s]."""
+"""Up to this speed, forward or backward, there is no slip ratio [m/s]."""
 _LEAST_M = 1e-2
-"""Below this distance there is no cost of transport, straightness or turning per metre [m]."""
+"""Up to this distance there is no cost of transport, straightness or turning per metre [m]."""
 
 
 @dataclass(frozen=True)
@@ -23,13 +23,13 @@ class Figures:
     seconds: float
     """Length of the measurement [s]."""
     cycles: int
-    """Number of cycles that were measured; 0: no cycle was completed."""
+    """Number of measured cycles; 0: none after the first was completed, or physics stopped."""
     cycle_s: float | None
-    """Period of the gait [s]; None if no cycle was completed."""
+    """Period of the gait [s]; None if no cycle was measured."""
     speed_mm_s: float
     """Forward speed [mm/s], in the direction that the robot faced when the measurement began."""
     lateral_mm_s: float
-    """Speed to the left [mm/s]."""
+    """Speed to the left of this direction [mm/s]."""
     drift_deg_s: float
     """Turning speed to the left [deg/s]."""
     drift_deg_m: float | None
@@ -40,7 +40,7 @@ class Figures:
     duty: list[float]
     """For each leg, the share of ticks in which its foot is down."""
     phase: list[float | None]
-    """For each leg, when in a cycle its foot comes down, from 0 to 1; None if it stays up or down.
+    """For each leg, when in a cycle its foot comes down, from 0 to 1; None if it never comes down.
     """
     changes_hz: list[float]
     """For each leg, how often its foot comes down or goes up [1/s]."""
@@ -49,7 +49,7 @@ class Figures:
     margin_mm: float | None
     """Median of the support margin [mm]; None if no foot was ever down."""
     margin_low_mm: float | None
-    """5th percentile of the support margin [mm]."""
+    """5th percentile of the support margin [mm]; None if no foot was ever down."""
     stable_share: float
     """Share of ticks with the centre of mass inside the support polygon."""
     slip_mm_s: float
@@ -57,16 +57,16 @@ class Figures:
     slip_legs_mm_s: list[float]
     """`slip_mm_s` of each leg."""
     slip_ratio: float | None
-    """Slip speed divided by forward speed; None if the robot hardly moves forward."""
+    """`slip_mm_s` divided by the forward speed; None if this speed is almost 0."""
     cost_of_transport: float | None
     """Work of the motors (without braking), divided by weight times distance; None if the robot
     hardly moved."""
     clearance_mm: float
-    """95th percentile of the height of the feet [mm]."""
+    """95th percentile of the height of all feet above the floor [mm]."""
     clearance_legs_mm: list[float]
     """`clearance_mm` of each leg."""
     belly_share: float
-    """Share of ticks in which other parts than shanks bear weight on the floor."""
+    """Share of ticks in which parts other than shanks bear more than 2 % of the weight."""
     upright: float
     """Smallest cosine of the angle between the body's up and the world's: 1 is upright, 0 is on the
     side, -1 is on the back."""

@@ -20,8 +20,8 @@ _LONGEST_S = 60.0
 def forward_key(gait: Gait) -> tuple[Level, int]:
     """Return the key to try if the person names none.
 
-    With level B it is `FORWARD` if this key moves the robot, else the first key that does, else the
-    last key. Without level B it is the last key of level A.
+    If the gait has level B, this is `FORWARD` if its postures differ, else the first key whose
+    postures differ, else the last key. Without level B it is the last key of level A.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]
@@ -43,7 +43,8 @@ def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
         first_tick: tick in which the first key is pressed.
 
     Raises:
-        UserError: if the text is not of this form, or the gait has no such key.
+        UserError: if the text is not of this form, if a time is over 60 s, or if the gait has no
+            such key.
     """
     presses: list[Press] = []
     tick = first_tick
@@ -71,7 +72,11 @@ def _seconds(text: str | None) -> float | None:
 
 
 def _level(letter: str, digit: int, gait: Gait) -> Level:
-    """Return the level of a key: that of its letter; without a letter B if B has it, else A."""
+    """Return the level of a key: its letter, or without a letter B if B has this key, else A.
+
+    Raises:
+        UserError: if the gait has no such key.
+    """
     wanted = {"": (Level.LOCOMOTION, Level.POSTURE), "A": (Level.POSTURE,)}
     for level in wanted.get(letter.upper(), (Level.LOCOMOTION,)):
         if gait.sequence(level, digit) is not None:

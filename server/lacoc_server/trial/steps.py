@@ -13,7 +13,7 @@ class Steps:
     """The places of each leg's foot in the postures of a sequence, in the body frame."""
 
     ahead_m: list[list[float]]
-    """For each leg and posture, how far forward the foot is."""
+    """For each leg and posture, the foot's y: how far it is in front of the body's origin."""
     lift_m: list[list[float]]
     """For each leg and posture, how high the foot is above the lowest foot of this posture."""
 
@@ -24,7 +24,10 @@ class Steps:
 
     @property
     def swing_m2(self) -> list[float]:
-        """For each leg, its motion forward, weighted by its lift; negative for a swing backward."""
+        """For each leg, its motion forward times its lift, summed over the sequence.
+
+        A negative value means that the leg swings backward while it is lifted.
+        """
         return [
             sum(
                 (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2
@@ -35,14 +38,14 @@ class Steps:
 
     @property
     def phase(self) -> list[float]:
-        """For each leg, when in the sequence it is lifted (the mean, from 0 to 1)."""
+        """For each leg, the mean time in the sequence at which it is lifted, from 0 to 1."""
         return [
             mean_phase([index / len(lift) for index in range(len(lift))], lift)
             for lift in self.lift_m
         ]
 
     def swings_to(self, leg: int) -> int:
-        """Return the posture to which a leg swings forward most; there it should be lifted."""
+        """Return the index of the posture to which a leg swings forward most."""
         ahead = self.ahead_m[leg]
         return max(range(len(ahead)), key=lambda index: ahead[index] - ahead[index - 1])
 

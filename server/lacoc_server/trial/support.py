@@ -11,7 +11,7 @@ Point = tuple[float, float]
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """Return the corners of the convex hull, counter-clockwise; points on one line give two."""
+    """Return the corners of the convex hull, counter-clockwise; points on a line give its ends."""
     ordered = sorted(set(points))
     if len(ordered) < 3:
         return ordered
@@ -66,7 +66,7 @@ def margins_m(down: Bools, contact_w_m: Floats, centre_w_m: Floats) -> Floats:
 
 
 def _left(start: Point, end: Point, point: Point) -> float:
-    """Return twice the area of a triangle: positive if the point is left of the line."""
+    """Return twice the area of a triangle: positive if `point` is left of the way to `end`."""
     return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
 
 

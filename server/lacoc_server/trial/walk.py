@@ -28,7 +28,7 @@ class Span(NamedTuple):
     first: int
     end: int
     cycles: int
-    """Whole cycles of the key's sequence in the span; 0: none was completed."""
+    """Whole cycles of the key's sequence in the span; 0: the span has none, or physics stopped."""
 
     @property
     def ticks(self) -> int:
@@ -43,19 +43,19 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True)
 class Sensed:
-    """The measurements of one tick. Without "mean", a value is that of the tick's last step."""
+    """The measurements of one tick: means over its steps where stated, else of its last step."""
 
     load_n: Floats
-    """(legs,) normal force between each shank and the floor, mean over the steps."""
+    """(legs,) normal force between each shank and the floor, mean over the steps [N]."""
     other_load_n: float
-    """Normal force between all other parts and the floor, mean over the steps."""
+    """Normal force between all other parts and the floor, mean over the steps [N]."""
     power_w: float
-    """Power that the motors put into the joints, mean over the steps; braking does not count."""
+    """Power of the motors into the joints [W], mean over the steps; braking does not count."""
     contact_w_m: Floats
     """(legs, 2) centre of each shank's contact in the plane of the floor, mean over the steps with
     their forces as weights; 0 without contact."""
     grip_n: Floats
-    """(legs,) normal force in the last step."""
+    """(legs,) normal force between each shank and the floor, in the last step [N]."""
     slip_m_s: Floats
     """(legs,) speed of each shank along the floor where it touches; 0 without contact."""
     centre_w_m: Floats
@@ -73,7 +73,7 @@ class Walk:
     weight_n: float
     """Weight of the robot [N]."""
     span: Span
-    """Ticks that are measured."""
+    """Ticks over which the figures are computed."""
     starts: tuple[int, ...]
     """Ticks in which a cycle of the last key's sequence begins."""
     posture: npt.NDArray[np.int64]
@@ -93,7 +93,7 @@ class Walk:
     power_w: Floats
     """(ticks,) power that the motors put into the joints, mean over a tick's steps."""
     contact_w_m: Floats
-    """(ticks, legs, 2) where each shank touches the floor; 0 without contact."""
+    """(ticks, legs, 2) centre of each shank's contact with the floor, as in `Sensed`."""
     grip_n: Floats
     """(ticks, legs) normal force between each shank and the floor, at the tick's last step."""
     slip_m_s: Floats
@@ -101,7 +101,7 @@ class Walk:
     centre_w_m: Floats
     """(ticks, 2) centre of mass in the plane of the floor."""
     tip_m: Floats
-    """(ticks, legs) height of each foot's lowest point above the floor."""
+    """(ticks, legs) height of the lowest point of each shank above the floor."""
     digests: tuple[bytes, ...]
     """State hash after each tick, as in the frames of a match."""
     fault: Phrase | None = None

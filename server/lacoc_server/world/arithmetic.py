@@ -1,7 +1,7 @@
-"""The fingerprint of this machine's arithmetic: it explains why paths differ between machines.
+"""Takes a fingerprint of arithmetic, which explains why robots move differently on two machines.
 
 MuJoCo calls the C library's sin, cos, exp, pow and so on. A C library chooses their code by
-processor, and results may differ in the last bit. From there on paths differ too.
+processor, and results may differ in the last bit. From then on the robots' paths differ too.
 """
 
 import functools
@@ -19,7 +19,7 @@ import numpy as np
 from lacoc_robots.model import set_options
 
 BITS = ("functions", "model", "path")
-"""Entries that decide whether two fingerprints match; the others explain them to a person."""
+"""Entries that decide whether two fingerprints match; the others describe the machine."""
 
 _ROWS = 512
 """Number of arguments tried for each function."""
@@ -46,8 +46,9 @@ def here() -> Mapping[str, str]:
     """Take the fingerprint of this process's arithmetic.
 
     Returns:
-        `functions`, `model` and `path`: hashes over the C library's functions, a compiled model and
-        200 steps of it; `processor`, `libc`, `python`, `system`: what produced them.
+        `functions`, `model` and `path`: hashes of results of the C library's functions, of a
+        compiled model, and of its state after 200 steps. `processor`, `libc`, `python` and
+        `system`: names of what produced them.
     """
     model, path = _reference()
     return {
@@ -62,12 +63,12 @@ def here() -> Mapping[str, str]:
 
 
 def same(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
-    """Return whether two fingerprints have the same hashes; False if one has no hashes."""
+    """Return whether two fingerprints have the same three hashes; False if one lacks a hash."""
     return all(name in one and one[name] == other.get(name) for name in BITS)
 
 
 def _functions() -> str:
-    """Hash the C library's functions over a fixed table."""
+    """Hash the results of the C library's functions for fixed arguments."""
     chain = hashlib.blake2b(digest_size=8)
     for function, most in _ONE.items():
         chain.update(_packed([function(most * part) for part in _parts(1)]))
@@ -78,7 +79,7 @@ def _functions() -> str:
 
 
 def _parts(seed: int) -> list[float]:
-    """Make numbers between -1 and 1 that are exact, and so the same on every machine."""
+    """Make numbers from -1 to 1 that need no rounding, so every machine makes the same ones."""
     return [((row * 2654435761 + seed * 40503) % 2**32 - 2**31) / 2**31 for row in range(_ROWS)]
 
 
@@ -87,7 +88,7 @@ def _packed(numbers: list[float]) -> bytes:
 
 
 def _reference() -> tuple[str, str]:
-    """Compile a small model with every element that robots have, and let it fall.
+    """Compile a small model with the kinds of elements that robots have, and let it fall.
 
     Returns:
         A hash of the model, and a hash of its state after 200 steps.
@@ -123,7 +124,7 @@ def _reference() -> tuple[str, str]:
 
 
 def _processor() -> str:
-    """Return the name of the processor; without /proc, as the platform names it."""
+    """Return the model name in /proc/cpuinfo; if it has none, the name that Python knows."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

@@ -1,4 +1,4 @@
-"""The place of a robot in the arrays of a compiled model."""
+"""Finds a robot's numbers in the arrays of a compiled model."""
 
 import math
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ class Robot:
 
     entry: Entry
     root_qpos: int
-    """Index in `qpos` of its position and quaternion: 7 numbers."""
+    """Index in `qpos` of the first of the 7 numbers of its position and quaternion."""
     root_dof: int
-    """Index in `qvel` of its linear and angular velocity: 6 numbers."""
+    """Index in `qvel` of the first of the 6 numbers of its linear and angular velocity."""
     joint_qpos: npt.NDArray[np.intp]
     """(joints,) indices in `qpos` of its angles, by joint id."""
     joint_dofs: npt.NDArray[np.intp]
     """(joints,) indices in `qvel` of its joint velocities, by joint id."""
     actuators: slice
-    """Its commanded angles in `ctrl`, by joint id."""
+    """Indices in `ctrl` of its commanded angles, by joint id."""
     geoms: npt.NDArray[np.intp]
     """Ids of its geoms."""
 
@@ -58,7 +58,10 @@ class Robot:
         return [*range(self.root_qpos, self.root_qpos + 7), *self.joint_qpos.tolist()]
 
     def put(self, data: Any, place: Place) -> None:
-        """Put the robot at a start place: start posture, all velocities zero."""
+        """Put the robot at a start place, in its start posture and with all velocities zero.
+
+        The commanded angles become those of the start posture.
+        """
         spec = self.entry.robot
         at = self.root_qpos
         half_yaw = (place.heading_rad - math.pi / 2) / 2  # the body's forward is its +y

@@ -1,4 +1,4 @@
-"""The drawable scene of a compiled model, for pages that have no MuJoCo."""
+"""Makes the scene of a compiled model, which pages can draw without MuJoCo."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,7 +23,7 @@ _TYPES = {
 
 
 def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
-    """Describe a model for drawing.
+    """Describe a model for drawing; invisible geoms are left out.
 
     Args:
         model: the compiled `MjModel`; a robot's names begin with its seat and a slash.
@@ -31,14 +31,14 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
         seats: ids of the seats.
 
     Raises:
-        UserError: if pages can't draw the model. They know free roots, one hinge through a body's
-            origin, and the geom types above. Also if a geom's marker does not exist.
+        UserError: if pages can't draw the model, or a geom's marker or state does not exist. Pages
+            know free roots, one hinge through a body's origin, and the geom types in `_TYPES`.
     """
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
     for index in range(model.ngeom):
         geom = model.geom(index)
-        if geom.rgba[3] == 0:  # walls and probes
+        if geom.rgba[3] == 0:  # walls and probes are invisible
             continue
         marker, state = marker_of_geom(game, geom.name)
         kind = _TYPES.get(mujoco.mjtGeom(int(geom.type[0])))
@@ -91,7 +91,7 @@ def _seat(name: str, seats: Sequence[str]) -> int:
 
 
 def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
-    """Return the seat of a geom that has the colour of its robot's body; -1 for any other geom."""
+    """Return the seat's index if a geom has the colour of its robot's body; otherwise -1."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     plain = model.geom_rgba[model.body_geomadr[root]]

@@ -22,11 +22,11 @@ _FORCE, _POSITION = (
 )
 _NO_FORCE_N = 1e-300
 _NET_FORCE = 3
-"""MuJoCo's mode that reduces all contacts of two bodies to one: their net force, at its centre."""
+"""MuJoCo's mode that gives one net force for all contacts of two bodies, at their centre."""
 
 
 def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Make the floor for a robot's trials; `steps` as in `SensedWorld`."""
+    """Compile the floor for a robot's trials; `steps` as in `SensedWorld`."""
     arena = practice_field()
     world = SensedWorld(arena, Entry(robot, Gait()), steps)
     return Course(world, robot, arena)
@@ -66,7 +66,7 @@ class SensedWorld(World):
         return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
     def pose(self) -> Floats:
-        """Return position [m], quaternion and joint angles [rad] of the robot: (7 + joints,)."""
+        """Return the body's position [m] and quaternion, and joint angles [rad]: (7 + joints,)."""
         return self._qpos[self._pose_qpos]
 
     def sensed(self) -> Sensed:
@@ -102,7 +102,11 @@ class SensedWorld(World):
         self._feel(spec, mujoco.mjtObj.mjOBJ_XBODY, "body", _FORCE)
 
     def _feel(self, spec: mujoco.MjSpec, kind: mujoco.mjtObj, name: str, fields: int) -> None:
-        """Add a sensor of a body's contact with the floor; with XBODY also of its child bodies'."""
+        """Add a sensor of a body's contact with the floor.
+
+        With `mjOBJ_BODY` it senses this body alone. With `mjOBJ_XBODY` it also senses all bodies
+        that hang on it.
+        """
         spec.add_sensor(
             name=f"floor:{name}",
             type=mujoco.mjtSensor.mjSENS_CONTACT,

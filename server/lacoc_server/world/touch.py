@@ -1,9 +1,8 @@
-"""Which markers the robots touch: tested once a tick, without any force.
+"""Finds the markers that the robots touch, once a tick; the touch exerts no force.
 
-MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch. These pairs
-are found in a top view: there an upright probe is a circle, and two points are never farther
-apart than in space.
-Probes far from a whole robot, or from a whole leg, are skipped at once.
+MuJoCo's distance between two geoms decides. It is computed only for pairs that may touch. These are
+found in a top view, in which an upright probe is a circle, and two points are never farther apart
+than in space. Probes far from a whole robot, or from a whole leg, are skipped at once.
 """
 
 import math
@@ -50,8 +49,7 @@ class _Limb(NamedTuple):
     end: int
     """Index after its last part."""
     reach_m: float
-    """Upper bound of the distance of its points from the first part's centre, for all joint angles.
-    """
+    """Upper bound of the distance [m] of its points from its first part's centre, at all angles."""
 
 
 class TouchTest:
@@ -116,7 +114,7 @@ class _Outline:
         self._near = _map(probes, max(_reach_m(model, geom, root) for geom in geoms))
 
     def probes_near(self, gap_m: float) -> Sequence[_Probe]:
-        """Return the probes that the robot may touch from where its body is now."""
+        """Return at least the probes that the robot may touch from where its body is now."""
         if gap_m > 0:  # the map holds for real touches only
             return self._probes
         x_m, y_m = self._root_m.tolist()
@@ -145,7 +143,7 @@ class _Outline:
     def _close(
         self, probe: _Probe, room_m: float, middles_m: list[list[float]], axes: list[list[float]]
     ) -> Iterator[_Part]:
-        """Find the parts that are at most `room_m` from a probe in the top view."""
+        """Yield all parts that may be at most `room_m` from a probe in the top view."""
         _, _, probe_x_m, probe_y_m, probe_radius_m = probe
         around_m = probe_radius_m + room_m
         for first, end, reach_m in self._limbs:
@@ -180,7 +178,12 @@ def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
 
 
 def _map(probes: Sequence[_Probe], reach_m: float) -> dict[tuple[float, float], list[_Probe]]:
-    """Map each square of the floor to the probes within reach of it."""
+    """Map each square of the floor to the probes that a robot can touch with its body there.
+
+    Args:
+        probes: all probes.
+        reach_m: upper bound of the distance of the robot's points from its body's origin [m].
+    """
     near: dict[tuple[float, float], list[_Probe]] = defaultdict(list)
     for probe in probes:
         # The robot may be anywhere in the square, up to half a diagonal from its centre.
@@ -223,7 +226,7 @@ def _limbs(model: Any, geoms: Sequence[int]) -> list[_Limb]:
 
 
 def _limb_of(model: Any, geom: int) -> int:
-    """Return the first body of the leg that a geom belongs to, or the robot's own body."""
+    """Return the id of the first body of a geom's leg; for other geoms, the robot's main body."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     while body != root and model.body_parentid[body] != root:
@@ -232,10 +235,9 @@ def _limb_of(model: Any, geom: int) -> int:
 
 
 def _reach_m(model: Any, geom: int, base: int) -> float:
-    """Return an upper bound [m] of the distance of a geom's points from a body's origin.
+    """Return an upper bound [m] of the distance of a geom's points from the origin of `base`.
 
-    It holds at all angles of the hinges between them, because each hinge goes through the origin of
-    its own body.
+    The bound holds at all joint angles, because each hinge goes through the origin of its own body.
     """
     reach_m = _middle_m(model, geom) + float(model.geom_rbound[geom])
     body = model.geom_bodyid[geom]

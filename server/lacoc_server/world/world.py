@@ -31,7 +31,7 @@ MUJOCO_VERSION = mujoco.mj_versionString()
 """MuJoCo's version; a replay is exact only with the same one."""
 
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-"""All that the next step depends on; FULLPHYSICS is less, and not exact (docs/facts.md 1)."""
+"""All that the next step depends on; mjSTATE_FULLPHYSICS lacks a part of it (docs/facts.md 1)."""
 
 _FLOAT32 = np.dtype("<f4")
 
@@ -47,14 +47,17 @@ _WARNINGS = {
 
 
 class World:
-    """Robots on a field, stepped tick by tick; implements `physics.Physics`.
+    """Robots on a field, stepped tick by tick; implements `match.physics.Physics`.
 
-    The model is compiled here, once. A tick is exact: the same state and angles give the same bits
-    on one version of MuJoCo and one kind of machine.
+    The model is compiled when the world is made. The same state and angles give the same bits after
+    a tick, on one version of MuJoCo and one kind of machine.
 
     Args:
         arena: the field and its game.
-        entries: one for each seat; none for the empty field.
+        entries: an entry for each seat; none for the empty field.
+
+    Raises:
+        UserError: if pages can't draw the field (`scene.make_scene`).
     """
 
     def __init__(self, arena: Arena, entries: Sequence[Entry]) -> None:
@@ -98,7 +101,10 @@ class World:
     # Physics
 
     def place(self, seat: int, place: Place) -> None:
-        """Put a robot at a start place: start posture, all velocities zero."""
+        """Put a robot at a start place, in its start posture and with all velocities zero.
+
+        `digest` changes only with the next tick.
+        """
         self._robots[seat].put(self.data, place)
         self._keep()
 
@@ -109,7 +115,7 @@ class World:
             angles: for each seat the commanded angles [rad], by joint id.
 
         Returns:
-            None, or the fault; then the state is as before the tick.
+            None if the tick passed. Else the fault, with the state as it was before the tick.
         """
         self._write_control(self._control, 0, *chain.from_iterable(angles))
         self._advance()
@@ -124,10 +130,11 @@ class World:
         return self._qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
-        """Return for each seat the markers whose probes it touches now, in ascending order.
+        """Return for each seat the indices of the markers that its robot touches, ascending.
 
-        A probe is a geom that exerts no force. A robot touches it if MuJoCo's distance between
-        their geoms is at most 0; the order of the contact list plays no part.
+        A marker's probe is a geom that exerts no force. A robot touches a marker if MuJoCo's
+        distance between one of the robot's geoms and the probe is at most `gap_m`. MuJoCo's contact
+        list is not used.
 
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
@@ -137,14 +144,14 @@ class World:
     # Snapshots
 
     def save(self) -> bytes:
-        """Return the state; after `load`, a world of the same model goes on bit for bit."""
+        """Return digest and state; after `load`, a world of the same model goes on bit for bit."""
         return self.digest + self._state.tobytes()
 
     def load(self, saved: bytes) -> None:
         """Continue from a saved state.
 
         Raises:
-            ValueError: if the state is not of this model.
+            ValueError: if the state has another length than this model's.
         """
         state = np.frombuffer(saved[8:])
         if state.size != self._state.size:
@@ -158,8 +165,9 @@ class World:
 
         Returns:
             The largest difference of a position [m] or an angle [rad], either now or within the
-            next tick because velocities or accelerations differ. Infinite if anything else differs:
-            the time, the commanded angles, or a number that is always 0.
+            next tick because velocities or accelerations differ. Infinite if anything else differs,
+            such as the time or the commanded angles, if the saved state has another length, or if a
+            number is not finite.
         """
         if len(saved) != 8 + self._state.nbytes:
             return math.inf
@@ -170,13 +178,13 @@ class World:
 
     @staticmethod
     def follows(saved: bytes, digest: bytes) -> bool:
-        """Return whether a saved state's digest continues the chain from the tick before it."""
+        """Return whether a saved state's digest follows from `digest`, that of the tick before."""
         return _chained(digest, saved[8:]) == saved[:8]
 
     # Private
 
     def _extend(self, spec: mujoco.MjSpec) -> None:
-        """Add elements that change no path, before the model is compiled; here there are none."""
+        """Let a subclass change the model before it is compiled; this class changes nothing."""
 
     def _advance(self) -> None:
         """Let the physics of one tick pass."""
@@ -186,7 +194,10 @@ class World:
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
 
     def _undo(self) -> Fault:
-        """Restore the state before the tick; MuJoCo may have reset everything (docs/facts.md 3)."""
+        """Restore the state before the tick, and return the fault that MuJoCo warned of.
+
+        MuJoCo may have reset everything (docs/facts.md 3).
+        """
         numbers = self.data.warning.number
         kind = int(np.flatnonzero(numbers)[0])
         where = int(self.data.warning[kind].lastinfo)
@@ -196,7 +207,7 @@ class World:
         return Fault(self._seat_of(mujoco.mjtWarning(kind), where), why)
 
     def _seat_of(self, kind: mujoco.mjtWarning, where: int) -> int:
-        """Return the seat of the robot that a warning is about.
+        """Return the index of the seat whose robot a warning is about; `NOBODY` if none is known.
 
         Args:
             kind: the warning.
@@ -225,9 +236,9 @@ def _chained(digest: bytes, state: bytes | memoryview) -> bytes:
 
 
 def _weights(model: Any) -> npt.NDArray[np.float64]:
-    """Return how much a difference of each number of the state can move a robot in a tick.
+    """Return how far a difference of 1 in each number of the state can move a robot in a tick.
 
-    A weight of 0 marks a number that no arithmetic may change.
+    The weight 0 marks numbers that must be equal whatever the machine's arithmetic is.
     """
     tick_s = SUBSTEPS * model.opt.timestep
     weight = {

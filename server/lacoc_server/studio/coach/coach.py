@@ -20,12 +20,12 @@ from lacoc_shared.studio import CellPlace, Change, CoachReply, Progress, Weight
 from lacoc_shared.words import say
 
 _UNDO_TRIALS = 50
-"""About how many trials the stage takes that undoes changes; for its progress."""
+"""About how many trials it takes to undo changes; used to tell the progress of this stage."""
 _TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
 """The sample's keys for turning (workshop Fig. 4-2)."""
 
 Tell = Callable[[Progress], None]
-"""Takes the progress of a search; called several times a second."""
+"""Takes the progress of a search; called many times a second."""
 
 
 class Found(NamedTuple):
@@ -35,17 +35,23 @@ class Found(NamedTuple):
     """All numbers of the key, those that matter most first; empty if they were not ranked before
     the search was stopped."""
     best: Improved | None
-    """The best table; None: no search for a better table has begun."""
+    """The best table; None: the numbers were only ranked, or a stop came before the search began.
+    """
     before: Figures
     """Figures of the student's own gait."""
     after: Figures
-    """Figures of the best gait."""
+    """Figures of the best gait; equal to `before` if `best` is None."""
     trials: int
     stopped: bool
 
 
 def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
-    """Choose the key to change: `key`, or if this is None, the sample's key for the goal.
+    """Choose the key of level B to change.
+
+    Args:
+        gait: the robot's gait.
+        goal: what the key is for.
+        key: digit of the key; None: for a turn the sample's key for it, for forward `forward_key`.
 
     Raises:
         UserError: if the gait has no such key at level B.
@@ -154,7 +160,7 @@ def _better(
     seed: int,
     tell: Tell,
 ) -> Iterator[Improved]:
-    """Search, then undo changes that hardly help; yield the best table after each round."""
+    """Search, then undo changes that hardly help; yield each round's result."""
     begin_s = time.monotonic()
 
     def passed_s() -> float:

@@ -24,9 +24,10 @@ _FEW = 24
 _CONFIRMED = 8
 """How many of the tables with one more change, the best by rough score, are tried exactly."""
 _HOPEFUL = 0.9
-"""A whole table is tried exactly only if its rough score is above this part of the best score."""
+"""A whole table is tried exactly only if its rough score is above this part of the best score. If
+the best score is negative, the rough score may be as far below it."""
 _HOPEFULS = 2
-"""Most whole tables of a round that are tried exactly."""
+"""At most this many whole tables of a round are tried exactly."""
 
 
 class Size(StrEnum):

@@ -7,7 +7,7 @@ from lacoc_server.studio.coach.search import Score
 from lacoc_server.studio.coach.table import Angles
 
 STEP_DEG = 10
-"""How far each number is changed [deg]."""
+"""How far each number is changed, if its joint's range allows it [deg]."""
 
 
 class Matter(NamedTuple):
@@ -16,9 +16,9 @@ class Matter(NamedTuple):
     number: int
     """Index of the number in the table."""
     up: float
-    """Change of the score when the number is `STEP_DEG` larger."""
+    """Change of the score when the number is `STEP_DEG` larger, or at the end of its range."""
     down: float
-    """Change of the score when the number is `STEP_DEG` smaller."""
+    """Change of the score when the number is `STEP_DEG` smaller, or at the end of its range."""
 
     @property
     def size(self) -> float:

@@ -18,7 +18,7 @@ class Improved(NamedTuple):
 
 
 class Search:
-    """The state of a search that begins with a student's own table.
+    """The state of a search; it begins by trying the student's own table.
 
     Args:
         table: the student's own angles [deg].
@@ -46,6 +46,6 @@ class Search:
         return [self._known[one] for one in tables]
 
     def turned(self, table: Angles, index: int, to_deg: float) -> Angles:
-        """Return a table with another angle in one cell, within the joint's range."""
+        """Return a table with another whole degree in one cell, limited to the joint's range."""
         low, high = self.ranges_deg[index]
         return (*table[:index], round(min(max(to_deg, low), high)), *table[index + 1 :])

@@ -64,6 +64,7 @@ class Trials:
 
         Raises:
             Stopped: if the search was stopped.
+            WorkerDied: if a process for trials ended.
         """
         return self._scores(self.walks(tables))
 
@@ -72,6 +73,7 @@ class Trials:
 
         Raises:
             Stopped: if the search was stopped.
+            WorkerDied: if a process for trials ended.
         """
         return self._scores(self._walks(tables, SUBSTEPS, _QUICK_CYCLES))
 
@@ -80,6 +82,7 @@ class Trials:
 
         Raises:
             Stopped: if the search was stopped.
+            WorkerDied: if a process for trials ended.
         """
         return self._scores(self.walks(tables, rough=True))
 
@@ -88,13 +91,20 @@ class Trials:
 
         Raises:
             Stopped: if the search was stopped.
+            WorkerDied: if a process for trials ended.
         """
         if rough:
             return self._walks(tables, _ROUGH_STEPS, _ROUGH_CYCLES)
         return self._walks(tables, SUBSTEPS, _CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
-        """Return the figures of walks with the contest's physics, also after a stop."""
+        """Return the figures of walks with the contest's physics, also after a stop.
+
+        These trials are not counted.
+
+        Raises:
+            WorkerDied: if a process for trials ended.
+        """
         jobs = [
             self._workers.submit(_figures, self.task, [table], SUBSTEPS, _CYCLES)
             for table in tables

@@ -2,8 +2,8 @@
 
 Many changes are undone at a time, those that help least first. This is much quicker than one after
 the other, because the trials of a round run at the same time. The first pass guesses which changes
-help least, from how much each number mattered before the search. Then few changes are left, and
-the second pass tries to undo each of them.
+help least, from how much each number mattered before the search. Then few changes are left. The
+second pass ranks these by rough trials, in each of which one change is undone.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,14 +14,14 @@ from lacoc_server.studio.coach.search import Improved, Score, Search
 from lacoc_server.studio.coach.table import Angles, differing
 
 _EACH, _ALL = 0.02, 0.2
-"""To undo one change may cost the first part of the score. To undo several may cost together at
-most the second part of what the search has gained."""
+"""Each undone change may cost the first part of the best score. All together may cost at most the
+second part of what the search has gained."""
 _AT_ONCE = 8
 """Most tables, each with another count of undone changes, that are tried in one round."""
 
 
 def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Improved]:
-    """Undo changes of a search's best table; yield each table that has fewer changes.
+    """Undo changes of a search's best table; yield each good table with fewer changes.
 
     Args:
         search: the search.

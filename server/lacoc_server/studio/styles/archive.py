@@ -74,7 +74,7 @@ class Elite(NamedTuple):
     angles_deg: Angles
     figures: Figures
     worth: tuple[float, float]
-    """What decides which gait is better; see `worth`."""
+    """The better of two gaits has the larger `worth`; see the function of this name."""
 
 
 def arousal_mm_s(figures: Figures) -> float | None:
@@ -117,7 +117,7 @@ def is_straight(figures: Figures) -> bool:
 
 
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
-    """Return what a gait is worth in its cell: its score, then how little of the table changed."""
+    """Return what a gait is worth: its score in coarse steps, then how little was changed."""
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
     return math.floor(score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 

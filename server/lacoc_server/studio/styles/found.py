@@ -1,4 +1,4 @@
-"""A map and variants as messages."""
+"""Describes a map of gaits, or variants of a gait, as a message."""
 
 from collections.abc import Iterator
 
@@ -62,7 +62,7 @@ def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> O
 
 
 def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[Difference]:
-    """Yield how a table looks different, what is easiest to see first."""
+    """Yield the ways in which a table looks different, the most visible way first."""
     steps = styles.look(table) - styles.look(own)
     for index in np.argsort(-abs(steps), kind="stable"):
         if abs(steps[index]) >= _SEEN:

@@ -1,4 +1,4 @@
-"""Fill a map of gaits from a student's own table."""
+"""Fills a map of gaits, beginning with a student's own table."""
 
 import time
 from collections.abc import Iterator
@@ -19,13 +19,13 @@ _ROUND = 16
 _STEPS = 1.4
 """Standard deviation of the steps along each way that a new table takes."""
 _MIXED, _ALL_WAYS = 0.35, 0.25
-"""Share of the tables that begin between two others, and of those that are turned in all ways; the
-rest is turned in one to three."""
+"""Share of the new tables that begin as a mix of two others, and share that is turned in all ways;
+the rest is turned in one to three."""
 _NOISY, _CELLS, _NOISE_DEG = 0.4, 0.3, 8.0
 """Share of the tables in which single angles change as well, the share of those angles, and the
 standard deviation of their changes."""
 _FULL = 0.3
-"""How often a parent is taken from a cell with no empty cell beside it, against one for each."""
+"""A cell's weight in the choice of a parent is this plus the number of empty cells beside it."""
 _HOPEFULS = 6
 """Most tables of a round that are tried exactly, those for empty cells first."""
 
@@ -46,7 +46,7 @@ def map_gaits(trials: Trials, seconds: float, seed: int, tell: Tell) -> Mapped:
         trials: tries tables for the task.
         seconds: how long to search [s].
         seed: seed of all random numbers.
-        tell: is told how far the search is.
+        tell: called with the progress of the search.
 
     Raises:
         WorkerDied: if a process for trials ended.
@@ -112,7 +112,7 @@ def fill(
 
 
 def _offspring(archive: Archive, styles: Styles, own: Angles, rng: np.random.Generator) -> Angles:
-    """Make a new table from one or two of the map."""
+    """Make a new table from one or two of the map; from `own` while the map is empty."""
     parents = [elite.angles_deg for elite in archive.elites.values()] or [own]
     weights = np.array([archive.empty_beside(place) + _FULL for place in archive.elites] or [1.0])
 

@@ -1,4 +1,4 @@
-"""Turn a whole table in a direction that people see: a higher body, longer steps, a lean.
+"""Turns a whole table in a direction that people see: a higher body, longer steps, a lean.
 
 Each direction (`Way`) moves the feet of all postures together, seen from the body. The angles that
 put the feet there are found step by step from those of the table, so a foot that does not move
@@ -16,7 +16,7 @@ from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.trial.walk import Floats
 
 _LIFT, _STRIDE = 1.35, 1.3
-"""One step makes feet lift so many times higher, and steps so many times longer."""
+"""Factors of one step of the ways `LIFT` and `STRIDE`: for a foot's lift, and for its stride."""
 _SHIFT = 0.08
 """One step moves the body or the feet by this part of a leg's length (1st and 2nd link)."""
 _LEAN_RAD = math.radians(4.0)
@@ -52,7 +52,7 @@ WAYS = tuple(Way)
 
 
 class Styles:
-    """The ways of one robot's table.
+    """Measures how tables of one key look, and turns them in the ways.
 
     Args:
         robot: the robot.
@@ -162,7 +162,7 @@ class Styles:
 
 
 def far_apart(looks: Sequence[Floats], count: int, taken: Sequence[Floats] = ()) -> list[int]:
-    """Choose what differs most: each time the one farthest from all chosen and taken ones.
+    """Choose vectors that differ most: each time the one farthest from all chosen and taken ones.
 
     Args:
         looks: vectors of what can be chosen.
@@ -170,7 +170,7 @@ def far_apart(looks: Sequence[Floats], count: int, taken: Sequence[Floats] = ())
         taken: vectors that the choice must differ from.
 
     Returns:
-        Indices of `looks`. Without a taken one, the first is 0.
+        Indices of `looks`. If `taken` is empty, the first index is 0.
     """
     chosen: list[int] = []
     nearest = [min((_apart(look, one) for one in taken), default=math.inf) for look in looks]

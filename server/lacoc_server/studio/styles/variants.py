@@ -1,4 +1,4 @@
-"""Breed six gaits that differ visibly, from one table or from the two that a student has kept."""
+"""Breeds six gaits that differ visibly, from one table or from the two that a student has kept."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,12 +16,13 @@ from lacoc_shared.studio import Progress
 
 VARIANTS = 6
 _DRAWN, _TRIED, _ROUNDS = 80, 16, 4
-"""Each round draws so many tables and tries the most different ones."""
+"""Count of tables that a round draws, count of those that it tries, and most rounds. A round tries
+the tables that differ most."""
 _ENOUGH, _LEAST = 10, 8
-"""A round tries at most so many exactly. No round follows once so many gaits are there to choose
-from."""
+"""Most tables of a round that are tried exactly, and count of good gaits that ends the rounds."""
 _FAR, _NEAR = 2.0, 1.0
-"""How many steps a table is turned in the first round of breeding, and at least in later ones."""
+"""Most steps of a way by which a table is turned, at the first request for variants and at late
+ones."""
 _CALMER = 0.85
 """Each round of trials turns tables by this part of the steps before, so that more robots stay
 upright."""
@@ -44,7 +45,7 @@ class Varied(NamedTuple):
     """The variants of a round."""
 
     variants: list[Variant]
-    """Six, or fewer if the search was stopped or too few walked; none is like another."""
+    """The six that differ most; fewer if the search was stopped or too few walked."""
     trials: int
     stopped: bool
 
@@ -65,7 +66,7 @@ def vary(
         before: tables that were shown before; variants differ from them.
         seed: seed of all random numbers.
         round_: how many rounds were before; later ones change less.
-        tell: is told how far the search is.
+        tell: called with the progress of the search.
 
     Raises:
         WorkerDied: if a process for trials ended.
