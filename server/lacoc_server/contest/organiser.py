@@ -1,17 +1,12 @@
 """What an organiser does with a contest: enter teams, take them out, let their games be played."""
 
-import time
-from collections.abc import Callable
-from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from lacoc_server.contest import headless, publish, venue
+from lacoc_server.contest import headless, publish
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest import verify as checks
-from lacoc_server.contest.court_link import CourtLink
 from lacoc_server.contest.entries import gather, weigh
 from lacoc_server.contest.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest, compute
@@ -24,26 +19,17 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.office import Office
 from lacoc_server.contest.plans import note_plans
 from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet
+from lacoc_server.contest.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.store import FactStore
-from lacoc_server.contest.tokens import TeamTokens
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
 NAME_MAX = 24
 """Most characters of a team's name."""
-_STEP_S = 0.05
-"""Time between two looks at the courts."""
-_SHEET_S = 2.0
-"""Shortest time between two sheets that are written while games are played."""
-
-Progress = Callable[[int, int], None]
-"""Called with how many matches are decided, and how many there are so far."""
 
 
 def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> Phrase:
@@ -123,70 +109,11 @@ def play_headless(
     """
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
-        _prepare(where, store)
-        writer = _SheetWriter(where, progress)
+        prepare(where, store)
+        writer = SheetWriter(where, progress)
         with Pool(jobs) as pool:
             played = headless.play(where, store, pool, steer, writer)
         return writer.write(), played
-
-
-def play_live(
-    file: Path,
-    stopping: Callable[[], bool],
-    opened: Callable[[str, dict[str, str]], None],
-    progress: Progress,
-    *,
-    speed: float = 1.0,
-    listen: str | None = None,
-    show: bool = False,
-) -> ContestSheet:
-    """Run a contest at its courts, until it is over or somebody stops it.
-
-    The courts of the contest file, the gateway and the bots of teams run as processes of their own;
-    each is started again if it ends.
-
-    Args:
-        file: the contest file.
-        stopping: whether to end now; the contest can go on later.
-        opened: called with the address of the pages, and the courts' addresses by name.
-        progress: told about each change.
-        speed: 2 plays twice as fast as real time.
-        listen: where the gateway listens; None: this machine only.
-        show: whether to open a browser.
-
-    Returns:
-        The sheet at the end.
-
-    Raises:
-        UserError: if the contest has no stage, no office or too few teams, or something goes wrong.
-    """
-    where = ContestFolder(file)
-    if where.contest.office is None:
-        raise UserError(say("contest.no-office", file=str(file)))
-    with ExitStack() as stack:
-        store = stack.enter_context(FactStore(where.facts))
-        _prepare(where, store)
-        logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-contest-")))
-        addresses = stack.enter_context(venue.courts(where, logs, speed))
-        links = {
-            name: CourtLink(
-                stack.enter_context(open_client([address])), name, where.contest.office.token
-            )
-            for name, address in addresses.items()
-        }
-        tokens = TeamTokens(where.tokens)
-        rest_ms = round(1000 * where.contest.least_rest_s)
-        office = Office(store, where.entries, tokens.of, links, rest_ms)
-        bots = stack.enter_context(venue.Bots(where, tokens, addresses))
-        writer = _SheetWriter(where, progress)
-        writer(office.contest)
-        opened(stack.enter_context(venue.pages(where, logs, listen, show)), addresses)
-        while not (stopping() or office.over):
-            if office.step():
-                writer(office.contest)
-            bots.follow(office.contest, {name: link.call for name, link in links.items()})
-            time.sleep(_STEP_S)
-        return writer.write()
 
 
 def sheet(file: Path) -> ContestSheet:
@@ -246,36 +173,7 @@ def check(
     return Checked(tuple(findings), len(published.facts), len(games), everything, share)
 
 
-class _SheetWriter:
-    """Writes the sheet of a contest for pages now and then, while games are played."""
-
-    def __init__(self, where: ContestFolder, progress: Progress) -> None:
-        self._where = where
-        self._progress = progress
-        self._written_s = float("-inf")
-        self._contest: Contest | None = None
-
-    def __call__(self, contest: Contest) -> None:
-        self._contest = contest
-        matches = [match for view in contest.stages for match in view.matches]
-        self._progress(sum(match.decided for match in matches), len(matches))
-        if time.monotonic() - self._written_s > _SHEET_S:
-            self.write()
-
-    def write(self) -> ContestSheet:
-        """Write the sheet of the contest as it is now, and return it."""
-        assert self._contest is not None
-        made = sheets.sheet(self._where.contest.name, self._contest)
-        try:
-            publish.write(self._where.sheet, sheets.encode(made))
-        except OSError as error:
-            why, path = error.strerror or str(error), str(self._where.sheet)
-            raise UserError(say("command.cannot-write", path=path, why=why)) from None
-        self._written_s = time.monotonic()
-        return made
-
-
-def _prepare(where: ContestFolder, store: FactStore) -> None:
+def prepare(where: ContestFolder, store: FactStore) -> None:
     """Append the plans of the contest file, and check that a contest can be played."""
     if not where.plans:
         raise UserError(say("contest.no-stages", file=str(where.file)))
