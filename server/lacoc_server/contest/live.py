@@ -25,7 +25,6 @@ _STEP_S = 0.05
 
 def play_live(
     file: Path,
-    stopping: Callable[[], bool],
     opened: Callable[[str, dict[str, str]], None],
     progress: Progress,
     *,
@@ -33,14 +32,13 @@ def play_live(
     listen: str | None = None,
     show: bool = False,
 ) -> ContestSheet:
-    """Run a contest at its courts, until it is over or somebody stops it.
+    """Run a contest at its courts until it is over.
 
     The courts of the contest file, the gateway and the bots of teams run as processes of their own;
     each is started again if it ends.
 
     Args:
         file: the contest file.
-        stopping: whether to end now; the contest can go on later.
         opened: called with the address of the pages, and the courts' addresses by name.
         progress: told about each change.
         speed: 2 plays twice as fast as real time.
@@ -74,7 +72,7 @@ def play_live(
         writer = SheetWriter(where, progress)
         writer(office.contest)
         opened(stack.enter_context(venue.pages(where, logs, listen, show)), addresses)
-        while not (stopping() or office.over):
+        while not office.over:
             if office.step():
                 writer(office.contest)
             bots.follow(office.contest, {name: link.call for name, link in links.items()})

@@ -28,6 +28,7 @@ class SheetWriter:
         self._contest: Contest | None = None
 
     def __call__(self, contest: Contest) -> None:
+        """Take note of the contest as it is now."""
         self._contest = contest
         matches = [match for view in contest.stages for match in view.matches]
         self._progress(sum(match.decided for match in matches), len(matches))

@@ -3,7 +3,7 @@
 import math
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple, Self
@@ -43,7 +43,7 @@ def courts(where: ContestFolder, folder: Path, speed: float) -> Iterator[dict[st
                     words,
                     place,
                     say("child.contest-court", court=name),
-                    lambda _, words=words: words,
+                    _same(words),
                 )
             )
             addresses[name] = opened["locators"][0]
@@ -65,8 +65,13 @@ def pages(where: ContestFolder, folder: Path, listen: str | None, show: bool) ->
     first = [*words, "--open"] if show else words
     place = folder / "pages"
     place.mkdir()
-    with kept_child(first, place, say("child.gateway"), lambda _: words) as opened:
+    with kept_child(first, place, say("child.gateway"), _same(words)) as opened:
         yield opened["url"]
+
+
+def _same(words: list[str]) -> Callable[[object], list[str]]:
+    """Return a function that gives the words of a later start, whatever the first one said."""
+    return lambda _: words
 
 
 class _Seat(NamedTuple):

@@ -7,11 +7,11 @@ import typer
 
 from lacoc_server.commands.contest.setting_up import FILE, FileToRead
 from lacoc_shared.command import options, screen
-from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
 
 if TYPE_CHECKING:
     from lacoc_server.contest.sheet import ContestSheet
+    from lacoc_server.contest.sheet_writer import Progress
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
 
@@ -75,32 +75,74 @@ def run(
         str, typer.Option(metavar="BOT", help="The bot that steers teams without a bot.")
     ] = "planner",
     jobs: options.Jobs = None,
+    listen: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HOST:PORT",
+            help="Address for the pages; 0.0.0.0:8080 lets everybody on the same network see them. "
+            "Not with --headless.",
+        ),
+    ] = None,
+    speed: Annotated[
+        float,
+        typer.Option(help="2 plays twice as fast as real time. Not with --headless.", min=0.1),
+    ] = 1.0,
+    browser: Annotated[
+        bool, typer.Option("--open/--no-open", help="Open the pages in the browser.")
+    ] = False,
     json: options.Json = False,
 ) -> None:
     """Play the contest to its end: draw each stage when its teams are known, and play its games.
 
-    What is played already is not played again, so the command can be stopped and started at any
-    time. A game is known by the files of both teams, the rules and the software. If one entry
+    The office of the contest runs here, with all courts of the contest file, the pages, and the
+    bots of teams that are bots. A free court gets the next game; its result comes from the court.
+    Ctrl-C, or even kill -9, loses nothing: started again, the contest goes on.
+
+    With --headless there is no network: bots play as fast as the machine can. A game is known by
+    the files of both teams, the rules and the software, and is never played twice. If one entry
     changes, a new contest with the same folder of records plays only the games of that team.
     """
-    from lacoc_server.contest import organiser
     from lacoc_server.contest.pool import interrupted_by_signals
 
-    if not headless:
-        raise UserError(say("contest.live-later"))
     with interrupted_by_signals(), screen.progress() as progress:
         task = progress.add_task(render(say("simulate.matches")), total=None)
 
         def changed(done: int, there: int) -> None:
             progress.update(task, completed=done, total=there)
 
-        sheet, played = organiser.play_headless(file, steer, jobs, changed)
+        if headless:
+            from lacoc_server.contest import organiser
+
+            sheet, played = organiser.play_headless(file, steer, jobs, changed)
+        else:
+            sheet, played = _live(file, changed, speed, listen, browser, json), None
     games = sum(len(match.games) for view in sheet.stages for match in view.matches)
     if json:
         screen.print_json({"kind": "end", "played": played, "games": games})
         return
     _show(sheet)
-    screen.note(say("contest.played-now", played=played, games=games))
+    if played is not None:
+        screen.note(say("contest.played-now", played=played, games=games))
+
+
+def _live(
+    file: Path,
+    changed: "Progress",
+    speed: float,
+    listen: str | None,
+    browser: bool,
+    json: bool,
+) -> "ContestSheet":
+    """Run the contest at its courts until it is over, or until Ctrl-C."""
+    from lacoc_server.contest.live import play_live
+
+    def opened(url: str, courts: dict[str, str]) -> None:
+        if json:
+            screen.print_json({"kind": "open", "url": url, "courts": courts})
+        else:
+            screen.show(say("contest.open", url=f"{url}/contest", courts=[*courts]))
+
+    return play_live(file, opened, changed, speed=speed, listen=listen, show=browser)
 
 
 def standings(file: FileToRead = FILE, json: options.Json = False) -> None:
