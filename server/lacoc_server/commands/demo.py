@@ -14,6 +14,7 @@ from typing import IO, Annotated, Any
 
 import typer
 
+from lacoc_server.commands.contest import demo_contest
 from lacoc_shared.command import screen
 from lacoc_shared.command.log import log_clock
 from lacoc_shared.mistakes import UserError
@@ -51,14 +52,33 @@ def demo_command(
     recordings: Annotated[
         Path, typer.Option(metavar="FOLDER", help="Folder for the record.")
     ] = Path("recordings"),
+    contest: Annotated[
+        bool,
+        typer.Option(
+            "--contest",
+            help="Show a whole contest: eight bots, two courts, groups and a knockout.",
+        ),
+    ] = False,
+    folder: Annotated[
+        Path,
+        typer.Option(
+            metavar="FOLDER", help="Folder in which the contest is published, with --contest."
+        ),
+    ] = Path("bots-cup"),
 ) -> None:
     """Show a whole match: a court, two bots and a referee meet over the network.
 
     Every part is a process of its own, as in a contest. The match is shown on a page in your
     browser, or in the terminal if there is no browser. At the end the record is simulated again and
     must give the same match, bit for bit. In a terminal the page and its replay stay until Ctrl-C.
+
+    With --contest, eight bots play a tournament; with --headless too, without courts and as fast as
+    the machine can. Its folder is published, and everything in it is checked.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all started processes end too
+    if contest:
+        demo_contest.show(arena, seconds, speed, folder, headless=headless)
+        return
     with ExitStack() as page:
         with ExitStack() as processes:
             court = processes.enter_context(_court(arena, seconds, speed, recordings))

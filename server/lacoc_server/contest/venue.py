@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from lacoc_server.contest.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest
@@ -43,7 +43,7 @@ def courts(where: ContestFolder, folder: Path, speed: float) -> Iterator[dict[st
                     words,
                     place,
                     say("child.contest-court", court=name),
-                    _same(words),
+                    _at_same_place(words),
                 )
             )
             addresses[name] = opened["locators"][0]
@@ -67,6 +67,11 @@ def pages(where: ContestFolder, folder: Path, listen: str | None, show: bool) ->
     place.mkdir()
     with kept_child(first, place, say("child.gateway"), _same(words)) as opened:
         yield opened["url"]
+
+
+def _at_same_place(words: list[str]) -> Callable[[dict[str, Any]], list[str]]:
+    """Return a function that gives the words of a later start of a court, at the same address."""
+    return lambda opened: [*words, "--listen", opened["locators"][0]]
 
 
 def _same(words: list[str]) -> Callable[[object], list[str]]:
