@@ -82,8 +82,10 @@ class MatchState:
         """Beats since any seat was last heard."""
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
+        self.assigned = setup.assigned
+        """What the office assigned; None: the court opened the match itself."""
         self.seats = [
-            Seat(index, seat.id, seat.colour, seat.pattern)
+            Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
         ]
         self.history = History(self.game)
@@ -110,6 +112,10 @@ class MatchState:
 
     # Questions.
 
+    def _assigned_team(self, seat: str) -> str:
+        found = None if self.assigned is None else self.assigned.seat(seat)
+        return "" if found is None else found.team
+
     @property
     def physics(self) -> Physics:
         """The robots on their field; before READY the field is empty."""
@@ -119,6 +125,12 @@ class MatchState:
     def has_begun(self) -> bool:
         """True from the countdown to the official result: new files wait for the next match."""
         return self.phase in _BEGUN
+
+    @property
+    def is_over(self) -> bool:
+        """True if nothing more is played: the result is official, or no match is assigned."""
+        waits = self.assigned is not None and self.assigned.waits
+        return waits or self.phase in (Phase.OFFICIAL, Phase.VOID)
 
     @property
     def clock_ticks(self) -> int:
@@ -199,6 +211,8 @@ class MatchState:
             seats=tuple(seat.sheet() for seat in self.seats),
             markers=self.game.markers,
             scene=self.physics.scene_hash,
+            call=self.assigned.call if self.assigned else "",
+            fixture=self.assigned.fixture if self.assigned else None,
         )
 
     def result(self) -> Result:
