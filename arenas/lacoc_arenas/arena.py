@@ -130,7 +130,7 @@ class Arena:
         The folder may have moved since the record was made. So a folder that the user named matches
         any name that is not installed.
         """
-        moved = self.folder is not None and recorded not in plugins.installed(_GROUP)
+        moved = self.folder is not None and not is_installed(recorded)
         return moved or recorded == self.name
 
     def build_field(self, spec: Any) -> None:
@@ -176,6 +176,23 @@ def load(
     if looks:
         settings["seat"] = [seat | looks.get(seat["id"], {}) for seat in settings["seat"]]
     return Arena(str(folder or name), settings, module, folder)
+
+
+def load_installed(
+    name: str, overrides: Mapping[str, Any], looks: Mapping[str, Mapping[str, str]]
+) -> Arena:
+    """Load an arena whose name comes from the network: no folder's code runs.
+
+    Raises:
+        UserError: as `load`, and if no arena of this name is installed.
+    """
+    plugins.installed_package(_GROUP, "arena", name)
+    return load(name, overrides, looks)
+
+
+def is_installed(name: str) -> bool:
+    """Say whether an arena of this name is installed; a folder's path is no such name."""
+    return name in plugins.installed(_GROUP)
 
 
 def from_settings(name: str, settings: dict[str, Any], folder: Path | None = None) -> Arena:

@@ -34,6 +34,7 @@ from lacoc_shared.codec import message_hash
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
+from lacoc_shared.messages import office
 from lacoc_shared.record import schema
 from lacoc_shared.seat import (
     BEAT_S,
@@ -68,6 +69,9 @@ STRUCTS = (
     messages.Health,
     messages.DecisionReply,
     mistakes.Mistake,
+    messages.SentFile,
+    office.AssignedSeat,
+    office.Assigned,
     schema.Setup,
     schema.Header,
     schema.Result,

@@ -20,6 +20,9 @@ limit, and a practice may last for days."""
 JOIN_MAX_BYTES = 65_536
 """Largest join, with all its files, that is read."""
 
+ASSIGN_MAX_BYTES = 196_608
+"""Largest assignment of the office that is read: the files of two teams, and what a third needs."""
+
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
 
@@ -97,3 +100,7 @@ class Keys:
     def decision(self, name: str) -> str:
         """Return the key expression of a decision, which gets a reply; `*` is for all decisions."""
         return f"{self.root}/referee/{name}"
+
+    def office(self, what: str) -> str:
+        """Return the key expression of a request of the office; `what`: assign, withdraw or `*`."""
+        return f"{self.root}/office/{what}"

@@ -11,6 +11,7 @@ import pytest
 from lacoc_shared import inputs, keyspace, messages, mistakes, studio
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.decisions import DECISIONS
+from lacoc_shared.messages import office
 from lacoc_shared.record import schema
 from lacoc_shared.seat import No, Phase, SeatFlag
 
@@ -18,7 +19,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="
 SECTIONS = dict(re.findall(r"^### (\w+)\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL))
 MESSAGES = {
     kind.__name__: kind
-    for module in (messages, schema, studio, mistakes)
+    for module in (messages, office, schema, studio, mistakes)
     for kind in vars(module).values()
     if isinstance(kind, type)
     and issubclass(kind, msgspec.Struct)
@@ -119,6 +120,7 @@ def test_every_key_expression() -> None:
         *(keys.request("{seat}", what) for what in ("join", "ready", "leave")),
         keys.enter,
         keys.decision("{decision}"),
+        *(keys.office(what) for what in ("assign", "withdraw")),
         keys.alive,
     }
     found = {
@@ -150,6 +152,7 @@ def test_sizes_and_numbers() -> None:
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.JOIN_MAX_BYTES // 1024} KiB" in table
+    assert f"at most {keyspace.ASSIGN_MAX_BYTES // 1024} KiB" in table
     assert f"at most {studio.STUDIO_MAX_BYTES // 1024} KiB" in section("The studio")
     assert f"at most {studio.TRIAL_REPLY_MAX_BYTES >> 20} MiB" in section("The studio")
     assert f"version {messages.PROTOCOL} of the protocol" in PAGE

@@ -89,7 +89,7 @@ CLIENT = "A client needs nothing of a court's"
             "import lacoc_server.match.match",
             {LEAGUE},
         ),
-        ("shared/lacoc_shared/messages.py", "import lacoc_shared.gait.tables", {CONTRACT}),
+        ("shared/lacoc_shared/messages/__init__.py", "import lacoc_shared.gait.tables", {CONTRACT}),
         ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
         ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
         ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),

@@ -69,7 +69,7 @@ def test_what_went_wrong_is_said_once() -> None:
         "left seat: 2 messages refused (too many at once).",
         "left seat: 3 messages refused (too many at once).",
         "left seat: 1 message refused (wrong signature).",
-        "Referee's desk: 1 message refused (wrong token).",
+        "Desk of referee and office: 1 message refused (wrong token).",
         "Slow beats: 3 new, 3 in all. The worst of all began 61 ms late.",
         "The record m.mcap can't be written: disk full. Make room on its disk.",
         "The record can be written again.",

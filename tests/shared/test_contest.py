@@ -71,6 +71,19 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
     assert contest.courts["second"].connect == "tcp/court.example.org:7448"
 
 
+def test_an_office_opens_the_seats_of_its_courts(file: Path) -> None:
+    """With an office the seats need no tokens; a contest with keys can't have one."""
+    office = '[office]\ntoken = "token-of-the-office"\n'
+    court = '[court.main]\narena = "othello"\nreferee.token = "referee-token-of-main"\n'
+    file.write_text(office + court)
+    contest = contests.load(file)
+    assert contest.office is not None
+    assert (contest.office.token, contest.courts["main"].seat) == ("token-of-the-office", {})
+    file.write_text('[contest]\nkeys = "keys"\n' + office + court)
+    with pytest.raises(UserError, match="with keys can't have an office"):
+        contests.load(file)
+
+
 def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
     """A court makes links equal only if its entry says so, with at most 400 ms by default."""
     assert contests.load(file).courts["main"].most_delay_ms == 0
@@ -100,7 +113,11 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         ('"0.0.0.0"', '"http://x"', r'court.main.*"http://x" is not an address'),
         ('listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]', "listen = []", r"court.main.listen"),
         ("[court.main", "[court.Main", r'court.Main.*"Main"'),
-        ("[contest]", "[contst]", r"unknown field `contst`.*contest, limits, health, court"),
+        (
+            "[contest]",
+            "[contst]",
+            r"unknown field `contst`.*contest, limits, health, office, court",
+        ),
         ('arena = "othello"', 'arena = "a\\u0000/b"', "is not a path"),
         ('robot = "robots/own.toml"', 'robot = "~nobody-here/b"', "is not a path"),
         ('recordings = "records"', 'recordings = "a\\u0000b"', r"contest\.recordings"),
@@ -111,6 +128,12 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         ("silent_s = 2", "faults = -1", r"health.faults.*Expected `int` >= 0"),
         ("silent_s = 2", "silent_s = nan", r"health.silent_s"),
         ("silent_s = 2", "silent = 1", r"unknown field `silent`.*silent_s"),
+        ("[limits]", '[office]\ntoken = "short"\n[limits]', r"office\.token.*>= 12"),
+        (
+            "[limits]",
+            '[office]\ntoken = "left-token-of-main"\n[limits]',
+            r"\[office\]: two entries have the same token",
+        ),
         (GOOD, "[contest]\n", r"missing required field `court`"),
         (GOOD, "court = 1\n", r"\[court\]: Expected `object`, got `int`"),
         (GOOD, "[court]\nmain = 1\n", r"\[court.main\]: Expected `object`, got `int`"),

@@ -12,12 +12,14 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
+from lacoc_server.court.assigning import Preparation
 from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.keys.protection import protection
 from lacoc_server.doors.network import CourtNetwork
+from lacoc_server.doors.office_desk import OfficeDesk
 from lacoc_server.journal.recovery import unfinished
 from lacoc_server.match.entry import Admission
 from lacoc_shared.command import log, options, screen
@@ -82,6 +84,8 @@ def serve_command(
     Without a contest file the court makes its own tokens and prints the command line for each
     contestant and for the referee. Ctrl-C closes the court; the record is finished first.
 
+    With an office in the contest file, the court plays only what the office assigns.
+
     If the court was killed in a match, start it again in the same way. The match is then halted,
     and goes on where it stopped, with its seats, clock and score. A match without a referee resumes
     by itself when a contestant is back. Without a contest file both the new tokens and the old ones
@@ -89,8 +93,10 @@ def serve_command(
     """
     plan, made_here = _contest(contest, arena, listen, court)
     name, entry = plan.court(court)
-    loaded = arenas.load(entry.arena, _overrides(entry.settings, seconds), entry.looks)
-    _check_seats(name, entry, loaded)
+    own_settings = _overrides(entry.settings, seconds)
+    loaded = arenas.load(entry.arena, own_settings, entry.looks)
+    if plan.office is None:
+        _check_seats(name, entry, loaded)
     keys = Keys(name)
     folder = recordings or plan.recordings
     left = None if fresh else unfinished(folder, name, loaded)
@@ -127,10 +133,14 @@ def serve_command(
             former=left.token_hashes if left and made_here else None,
             most_delay_ms=entry.most_delay_ms,
         )
+        office = None
+        if plan.office is not None:
+            prepare = Preparation(entry.arena, own_settings, inbox.seats, admission, weighing.aside)
+            office = OfficeDesk(hash_token(plan.office.token), inbox.seats, prepare)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
-        network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard))
+        network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard, office))
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
-        running = Court(settings, network, left)
+        running = Court(settings, network, left, office)
         if exporter is not None:
             exporter.registry.register(running.metrics)
         stop = _stop_on_signal()

@@ -8,8 +8,6 @@ import time
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from lacoc_shared.office import AssignedSeat
-
 from lacoc_server.contest.calling import Ended, Seen, calls, lost, results, wanted
 from lacoc_server.contest.court_link import Asked, CourtLink
 from lacoc_server.contest.entries import EntryFolder
@@ -22,6 +20,7 @@ from lacoc_server.contest.league.schedule import due
 from lacoc_server.contest.store import FactStore
 from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.messages import Refusal
+from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
 

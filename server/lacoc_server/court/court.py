@@ -16,25 +16,28 @@ from typing import NamedTuple
 from lacoc_arenas.arena import Arena
 from lacoc_server.court import unjudged
 from lacoc_server.court.archive import Archive
+from lacoc_server.court.assigning import Prepared, staying
 from lacoc_server.court.health import MatchHealth
 from lacoc_server.court.log import CourtLog
 from lacoc_server.court.metrics import CourtMetrics
 from lacoc_server.court.pace import Pace
 from lacoc_server.doors.network import Arrival, CourtNetwork
+from lacoc_server.doors.office_desk import OfficeDesk, Wanted
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import IN_PLAY, Unfinished
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
 from lacoc_shared.contest.health_limits import HealthLimits
-from lacoc_shared.decisions import Halt
+from lacoc_shared.decisions import Abort, Halt
 from lacoc_shared.inputs import THE_COURT, Advice, Decide, Input, JoinSeat
 from lacoc_shared.messages import Health, HealthVerdict, Outcome
+from lacoc_shared.messages.office import WAITING
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
 from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, say
 
 HEALTH_BEATS = BEATS_PER_S // 2
 """Beats between two health messages: two messages a second."""
@@ -73,6 +76,8 @@ class Court:
         settings: what to play.
         network: connects the court to others; opened by the caller.
         left: a match that an earlier court left unfinished, to go on with.
+        office: the desk of the contest's office, if it has one: the court then plays only what the
+            office assigns.
     """
 
     def __init__(
@@ -80,7 +85,9 @@ class Court:
         settings: CourtSettings,
         network: CourtNetwork,
         left: Unfinished | None = None,
+        office: OfficeDesk[Prepared] | None = None,
     ) -> None:
+        self._office = office
         self._settings = settings
         self._network = network
         self._log = CourtLog(settings.name)
@@ -100,13 +107,14 @@ class Court:
         self._waits = 0
         """Number of beats skipped in a row because the disk refuses writes."""
         if left is None:
-            self._journal = self._open(1)
+            self._journal = self._open(1, None)
         else:
             self._journal = self._journal_of(left.match, left.segment, left.health)
             self._inputs = left.inputs
             network.publish_sheet(left.match.sheet())
             for event in left.events:
                 network.publish_event(event)
+        self._admit([*range(len(self._journal.match.seats))])
 
     @property
     def match_id(self) -> str:
@@ -116,7 +124,8 @@ class Court:
     def run(self, stopping: Callable[[], bool]) -> None:
         """Give the match its beats until `stopping` returns True; then finish the record.
 
-        An error in the loop ends the court but not its match: the next start goes on with it.
+        An error in the loop ends the court but not its match: the next start goes on with it. It
+        also goes on with an assigned match that is not over: the office waits for its result.
         """
         pace = self._pace
         self._archive.pack(self.match_id)
@@ -131,13 +140,17 @@ class Court:
         except BaseException:
             self._journal.leave()
             raise
-        self._close()
+        match = self._journal.match
+        if match.assigned is not None and not match.is_over:
+            self._journal.leave()
+        else:
+            self._close()
         self._archive.close()
 
     def _beat(self, now_s: float) -> None:
         try:
             if self._made is None:
-                if self._journal.match.next_wanted:
+                if self._journal.match.next_wanted or self._may_open:
                     self._open_next()
                 self._made = self._make(now_s)
             self._journal.flush()
@@ -145,6 +158,9 @@ class Court:
             self._wait(now_s, trouble.phrase)
             return
         made, self._made, self._waits = self._made, None, 0
+        if self._office is not None:
+            assigned = self._journal.match.assigned
+            self._office.hold(assigned.call if assigned else "", self._journal.match.phase)
         self._inputs = self._follow()
         self._tell(made, now_s)
 
@@ -198,16 +214,38 @@ class Court:
         # Making a match takes longer than a beat: while the disk fails, try it twice a second.
         if self._waits % HEALTH_BEATS:
             raise UserError(self._trouble or "")
-        match = self._journal.match
-        following = self._open(match.setup.match + 1)
+        match, wanted = self._journal.match, self._wanted
+        following = self._open(match.setup.match + 1, wanted and wanted.prepared)
         self._close()
         self._journal = following
         heap.give_back()  # return the memory of the last match's models
-        self._inputs = list(match.next_joins())
+        joins, assigned = match.next_joins(), following.match.assigned
+        if assigned is not None:
+            joins = staying(joins, assigned, [seat.id for seat in following.match.seats])
+            self._log.assigned(self.match_id, assigned)
+        self._inputs = list(joins)
+        self._admit([join.seat for join in joins])
+
+    def _admit(self, staying: Sequence[int]) -> None:
+        """Open the seats to the teams of an assigned match; sessions of all others end."""
+        assigned = self._journal.match.assigned
+        if assigned is not None:
+            self._network.admit(assigned, staying)
+
+    @property
+    def _wanted(self) -> Wanted[Prepared] | None:
+        return None if self._office is None else self._office.wanted
+
+    @property
+    def _may_open(self) -> bool:
+        """Whether the office wants another match, and nothing of this one is lost by it."""
+        return self._wanted is not None and self._journal.match.is_over
 
     def _follow(self) -> list[Input]:
         """Return the court's own inputs that follow a recorded beat: decisions, or its advice."""
         match, before = self._journal.match, self._trouble
+        if self._wanted is not None and not (match.is_over or match.has_begun):
+            return [Decide(THE_COURT, say("reason.office-takes-match"), Abort())]
         self._trouble = now = self._journal.trouble
         why = before or now
         if before != now and why is not None and match.phase in IN_PLAY:
@@ -223,17 +261,23 @@ class Court:
     def _held(self) -> list[bool]:
         return [bool(one.session) for one in self._network.seat_health(time.monotonic())]
 
-    def _open(self, number: int) -> Journal:
+    def _open(self, number: int, prepared: Prepared | None) -> Journal:
         settings = self._settings
+        arena, limits, assigned = settings.arena, settings.limits, None
+        if prepared is not None:
+            arena, limits, assigned = prepared.arena, prepared.limits, prepared.assigned
+        elif self._office is not None:
+            assigned = WAITING
         setup = Setup(
             match_id=str(MatchName.new(settings.recordings, settings.name, number)),
             court=settings.name,
             match=number,
-            arena=settings.arena.name,
-            settings=settings.arena.settings,
-            limits=dict(settings.limits),
+            arena=arena.name,
+            settings=arena.settings,
+            limits=dict(limits),
+            assigned=assigned,
         )
-        return self._journal_of(Match(setup, World, settings.arena.folder))
+        return self._journal_of(Match(setup, World, arena.folder))
 
     def _journal_of(
         self, match: Match, segment: int = 0, before: HealthVerdict | None = None
@@ -247,7 +291,9 @@ class Court:
             before=before,
             resumptions=segment,
         )
-        return Journal(match, settings.recordings, segment, self._health.measure)
+        is_played = match.assigned is None or not match.assigned.waits
+        folder = settings.recordings if is_played else None
+        return Journal(match, folder, segment, self._health.measure)
 
     def _close(self) -> None:
         """Have the archive finish the record of this match."""

@@ -7,6 +7,7 @@ import msgspec
 
 from lacoc_shared.command import log
 from lacoc_shared.messages import Event, Health
+from lacoc_shared.messages.office import Assigned
 from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, render, say
 
@@ -41,6 +42,12 @@ class CourtLog:
         if duration_ticks:
             fields["left_ticks"] = duration_ticks - event.clock_ticks
         _write(write, fields.pop("said"), match_id=match_id, **fields)
+
+    def assigned(self, match_id: str, assigned: Assigned) -> None:
+        """Log what the office assigned, or that the court waits for it."""
+        teams = [seat.team for seat in assigned.seats]
+        said = say("log.assigned", fixture=assigned.fixture, teams=teams)
+        _write(self._log.info, said, match_id=match_id, kind="assigned", call=assigned.call)
 
     def health(self, match_id: str, health: Health) -> None:
         """Log what is new in a health message: refusals, slow beats, and trouble with the disk."""

@@ -5,7 +5,7 @@ The court's loop reads the files; another thread tries whether the robots stand.
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Self
+from typing import Self, TypeVar
 
 from lacoc_robots.stand_test import try_standing
 from lacoc_robots.standing import standing_postures
@@ -14,6 +14,8 @@ from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import Join
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import Phrase
+
+T = TypeVar("T")
 
 _REMEMBERED = 32
 """Number of stand tests whose results are kept; older ones are forgotten."""
@@ -72,6 +74,10 @@ class Weighing:
         if mistakes:
             raise FileRefused(mistakes)
         return None if mistakes is None else (whole, notes)
+
+    def aside(self, do: Callable[[], T]) -> "Future[T]":
+        """Call a function on the thread of the stand tests, when those before it have ended."""
+        return self._worker.submit(do)
 
     def _tried(self, key: object, test: Callable[[], list[Mistake]]) -> list[Mistake] | None:
         future = self._tests.pop(key, None) or self._worker.submit(test)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import msgspec
 
 from lacoc_server.doors.links import Links
+from lacoc_server.doors.openings import Openings, frozen_join
 from lacoc_server.doors.sessions import Sessions, Why
 from lacoc_shared import codec, seal
 from lacoc_shared.gait.tables import Level
@@ -28,12 +29,14 @@ from lacoc_shared.keyspace import COMMAND_MAX_BYTES, JOIN_MAX_BYTES, Keys
 from lacoc_shared.messages import (
     PROTOCOL,
     Command,
+    Done,
     Join,
     Joined,
     Refusal,
     SeatHealth,
     SeatRequest,
 )
+from lacoc_shared.messages.office import Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, printable
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.seat import RESTART_KEY, SILENT_AFTER_S
@@ -60,10 +63,11 @@ _NO_SESSION = {
     Why.REPLACED: say("refused.replaced", seat=""),
     Why.LEFT: say("refused.left", seat=""),
     Why.NOT_YOUR_SEAT: say("refused.not-your-seat", seat=""),
+    Why.OTHER_MATCH: say("refused.other-match", seat=""),
 }
 
 
-Later = Callable[[], JoinSeat | Refusal | None]
+Later = Callable[[], JoinSeat | Done | Refusal | None]
 """A request that takes longer than a beat: called in each beat until it gives an answer."""
 CheckFiles = Callable[[Join, JoinSeat | None], tuple[Join, tuple[Phrase, ...]] | None]
 """Weighs in the files of a join.
@@ -116,7 +120,7 @@ class _Version(msgspec.Struct):
     protocol: int
 
 
-_MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
+MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
 
 
 class Inbox:
@@ -150,7 +154,10 @@ class Inbox:
         most_delay_ms: int = 0,
     ) -> None:
         self._keys = keys
-        self._token_hashes = (token_hashes, former or {})
+        hashes = (token_hashes, former or {})
+        self._openings = Openings(
+            {name: [by_seat[name] for by_seat in hashes if name in by_seat] for name in seats}
+        )
         self._check_files = check_files
         self._seats = [
             _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
@@ -176,6 +183,18 @@ class Inbox:
             has_begun: whether the match goes on with the files that it began with.
         """
         self._held, self._has_begun = held, has_begun
+
+    def admit(self, assigned: Assigned | None, staying: Collection[int]) -> None:
+        """Open the seats for the teams of a match; call it with each match that the court opens.
+
+        Args:
+            assigned: what the office assigned; None: the court's own tokens open the seats.
+            staying: the seats whose sessions go on. All others end.
+        """
+        self._openings.admit(assigned)
+        for seat in self._seats:
+            if seat.index not in staying:
+                self._empty(seat, Why.OTHER_MATCH)
 
     def commands(
         self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
@@ -216,10 +235,10 @@ class Inbox:
             join = codec.decode(payload, Join, JOIN_MAX_BYTES)
         except codec.BadMessage as error:
             return seat.refuse(Why.BAD_BYTES, say("refused.bad-join", error=str(error)))
-        hashes = [by_seat[seat.name] for by_seat in self._token_hashes if seat.name in by_seat]
-        token_hash = next((one for one in hashes if seal.verify_token(join.token, one)), None)
+        token_hash = self._openings.hash_of(seat.name, join.token)
         if token_hash is None:
-            return seat.refuse(Why.WRONG_TOKEN, say("refused.wrong-token", seat=seat.name))
+            why, said = self._openings.why_closed(seat.name, join.token)
+            return seat.refuse(why, said, again=why is Why.OTHER_MATCH)
         if not seat.joins.take(1, self._now_s):
             return seat.refuse(Why.FLOOD, say("refused.too-many-joins"), again=True)
         name = join.name.strip()
@@ -230,9 +249,22 @@ class Inbox:
         if not all(0 < len(one.name) <= FILE_NAME_MAX and one.name.isprintable() for one in files):
             return seat.refuse(Why.BAD_NAME, say("refused.file-name", most=FILE_NAME_MAX))
         join = msgspec.structs.replace(join, name=name)
+        if (assigned := self._openings.team(seat.name)) is not None:
+            return self._frozen(seat, join, assigned, token_hash)
         return self._weighed(seat, join, token_hash) or partial(
             self._weighed, seat, join, token_hash
         )
+
+    def _frozen(self, seat: _Seat, join: Join, assigned: AssignedSeat, token_hash: str) -> JoinSeat:
+        """Seat a team with the name and files that the office froze, whatever its join brings."""
+        sent = (join.robot, join.postures, join.locomotion)
+        differs = any(
+            one is not None and (frozen is None or one.data != frozen.data)
+            for one, frozen in zip(sent, assigned.files, strict=True)
+        )
+        seat.asking = assigned.team
+        seat.notes = (say("note.files-frozen"),) if differs else ()
+        return frozen_join(seat.index, assigned, token_hash)
 
     def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
         """Check a join's files; return None while they are being weighed in.
@@ -250,10 +282,10 @@ class Inbox:
             if held is not None and self._has_begun:
                 seat.notes = refused.notes()
                 return msgspec.structs.replace(held, team=join.name, token_hash=token_hash)
-            first = _MISTAKES_TOLD if len(mistakes) > _MISTAKES_TOLD else None
+            first = MISTAKES_TOLD if len(mistakes) > MISTAKES_TOLD else None
             return Refusal(
                 say("refused.mistakes", count=len(mistakes), first=first),
-                tuple(mistakes[:_MISTAKES_TOLD]),
+                tuple(mistakes[:MISTAKES_TOLD]),
             )
         if checked is None:
             return None
@@ -302,11 +334,13 @@ class Inbox:
 
     def left(self, index: int) -> None:
         """Free a seat after the match has accepted a leave request."""
-        seat = self._seats[index]
-        self._sessions.end(index, Why.LEFT)
+        self._empty(self._seats[index], Why.LEFT)
+
+    def _empty(self, seat: _Seat, why: Why) -> None:
+        self._sessions.end(seat.index, why)
         seat.joined = False
         seat.heard_s = None
-        self.links.drop(index)
+        self.links.drop(seat.index)
 
     def doors(self) -> tuple[Door, ...]:
         """Return the counts of valid commands and refusals, for each seat."""

@@ -5,13 +5,14 @@ the same order. The inbox decides what can be believed. A request is answered on
 taken it in and the record is written. An outbox sends the rest.
 """
 
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter, deque
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox, Later
+from lacoc_server.doors.office_desk import Answer, OfficeDesk
 from lacoc_server.doors.outbox import Outbox
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
@@ -27,6 +28,7 @@ from lacoc_shared.messages import (
     SeatHealth,
     Sheet,
 )
+from lacoc_shared.messages.office import Assigned
 from lacoc_shared.network.access_rules import Protection
 from lacoc_shared.network.session import Desk, Request, Ring, open_court
 from lacoc_shared.words import Phrase
@@ -59,6 +61,7 @@ class CourtNetwork:
         decision_desk: checks what comes from referees.
         protection: the court's certificate and users; None: anybody may connect, and nothing is
             encrypted.
+        office_desk: checks what comes from the office; None: the court has no office.
 
     Raises:
         UserError: if the court can't listen on an address.
@@ -71,10 +74,12 @@ class CourtNetwork:
         inbox: Inbox,
         decision_desk: DecisionDesk,
         protection: Protection | None = None,
+        office_desk: OfficeDesk[Any] | None = None,
     ) -> None:
         self._inbox = inbox
         self._decision_desk = decision_desk
-        self._session = session = open_court(listen, protection)
+        self._office_desk = office_desk
+        self._session = session = open_court(listen, protection, office_desk is not None)
         self._outbox = Outbox()
         self._frame = session.publisher(keys.frame)
         self._event = session.publisher(keys.event)
@@ -91,6 +96,8 @@ class CourtNetwork:
             for index, seat in enumerate(inbox.seats)
         ]
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
+        if office_desk is not None:
+            self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
         self._waiting: dict[Desk, tuple[Request, Later]] = {}
         """The request at each desk that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
@@ -109,6 +116,10 @@ class CourtNetwork:
     def __exit__(self, *_: object) -> None:
         self._outbox.close()
         self._session.close()
+
+    def admit(self, assigned: Assigned | None, staying: Collection[int]) -> None:
+        """Open the seats for the teams of a match; see `Inbox.admit`."""
+        self._inbox.admit(assigned, staying)
 
     def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
         """Take note of what the match has, for the joins of the next `poll`.
@@ -213,7 +224,8 @@ class CourtNetwork:
     @property
     def dropped(self) -> dict[str, int]:
         """Number of refusals that belong to no seat, by `Why`."""
-        return dict(self._decision_desk.refused)
+        office = self._office_desk.refused if self._office_desk is not None else Counter[str]()
+        return dict(self._decision_desk.refused + office)
 
     def _serve_fetches(self) -> None:
         if self._sheet_bytes:  # a client that asks earlier waits
@@ -263,6 +275,13 @@ class CourtNetwork:
 
 def _seat_judge(judge: Callable[[int, bytes], Input | Refusal | Later], seat: int) -> _Judge:
     return lambda request: judge(seat, request.payload)
+
+
+def _office_judge(desk: OfficeDesk[Any]) -> _Judge:
+    def judge(request: Request) -> Answer:
+        return desk.judge(request.key.rpartition("/")[2], request.payload)
+
+    return judge
 
 
 def _empty(ring: Ring) -> list[bytes]:

@@ -25,6 +25,7 @@ class Why(StrEnum):
     AHEAD = "ahead"
     FLOOD = "flood"
     WRONG_TOKEN = "wrong-token"
+    OTHER_MATCH = "other-match"
     WRONG_VERSION = "wrong-version"
     BAD_NAME = "bad-name"
     BAD_FILES = "bad-files"

@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from lacoc_arenas.arena import Arena
+from lacoc_arenas.arena import Arena, is_installed
 from lacoc_server.journal.replay import Resumed, resume
 from lacoc_server.journal.verdict import other_arithmetic
 from lacoc_server.match.match import Match
 from lacoc_server.world import arithmetic
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import THE_COURT, Decide, Input, KeySeat
+from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Event, HealthVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import is_held
@@ -20,9 +21,9 @@ from lacoc_shared.words import Phrase, say
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """Phases in which a court halts its match after a restart, and when its disk fails or recovers."""
-_OPENING_BYTES = 1 << 14
+_OPENING_BYTES = ASSIGN_MAX_BYTES + (1 << 14)
 """A file smaller than this [bytes] that holds no match is skipped: its court was killed while it
-opened the match.
+opened the match. A header has the files of an assigned match.
 """
 
 
@@ -108,7 +109,8 @@ def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
         raise UserError(
             say("resume.other-match", match=setup.match_id[:80], court=setup.court[:40])
         )
-    if not arena.plays(setup.arena):
+    is_assigned = setup.assigned is not None and is_installed(setup.arena)
+    if not (is_assigned or arena.plays(setup.arena)):
         raise UserError(say("resume.other-arena", played=setup.arena[:80], arena=arena.name[:80]))
 
 

@@ -26,6 +26,8 @@ def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
     one. A join for a seat that nobody has is then refused until the match is official or void.
     """
     seat = match.seats[item.seat]
+    if not _is_assigned(match, seat, item):
+        return Refusal(say("refused.other-match", seat=seat.id), again=True)
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)
     if seat.join is None and match.has_begun:
@@ -38,6 +40,14 @@ def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
     if _files(seat.join) == _files(item):
         return Done()
     return Done(say("note.files-next-match"))
+
+
+def _is_assigned(match: MatchState, seat: Seat, item: JoinSeat) -> bool:
+    """Return whether the office lets this team sit here with these files, or has no say."""
+    if match.assigned is None:
+        return True
+    found = match.assigned.seat(seat.id)
+    return found is not None and (found.team, found.files) == (item.team, _files(item))
 
 
 def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:

@@ -55,6 +55,8 @@ class _Rule:
 
     def why_not(self, match: MatchState) -> Phrase | None:
         """Say why no decision of this kind is legal now; None if one may be."""
+        if match.assigned is not None and match.assigned.waits:
+            return say("why.waits-for-office")
         if match.phase in self.phases:
             return self.also(match)
         return say(
@@ -323,6 +325,10 @@ def _missing(match: MatchState) -> Phrase | None:
     return say("plain.sentences", sentences=missing) if missing else None
 
 
+def _by_office(match: MatchState) -> Phrase | None:
+    return None if match.assigned is None else say("why.office-opens-next")
+
+
 def _no_end(match: MatchState) -> Phrase | None:
     return None if match.duration_ticks else say("why.no-end")
 
@@ -367,5 +373,5 @@ _RULES: dict[type[d.Decision], _Rule] = {
     d.Abort: _Rule(_OPEN, _abort, _enter(Phase.VOID)),
     d.Declare: _Rule(frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play),
     d.Official: _Rule(frozenset({Phase.FINISHED}), _official, _enter(Phase.OFFICIAL)),
-    d.Next: _Rule(frozenset({Phase.OFFICIAL, Phase.VOID}), _next),
+    d.Next: _Rule(frozenset({Phase.OFFICIAL, Phase.VOID}), _next, also=_by_office),
 }

@@ -23,6 +23,8 @@ class Seat:
     id: str
     colour: str
     pattern: str
+    assigned_team: str = ""
+    """The team that the office seated; "": anybody may join."""
     join: JoinSeat | None = None
     entry: Entry | None = None
     coming: JoinSeat | None = None
@@ -51,8 +53,8 @@ class Seat:
 
     @property
     def team(self) -> str:
-        """The team's name; the seat's id while nobody has joined."""
-        return self.join.team if self.join else self.id
+        """The team's name, also the one that the office seated; without one, the seat's id."""
+        return self.join.team if self.join else self.assigned_team or self.id
 
     def begin(self, repeat: bool, level: Level) -> None:
         """Make a new drive, with which the robot stands; do nothing if nobody has the seat."""
@@ -121,7 +123,9 @@ class Seat:
     def sheet(self) -> SheetSeat:
         """Return the seat as the sheet describes it."""
         if self.join is None or self.entry is None:
-            return SheetSeat(id=self.id, colour=self.colour, pattern=self.pattern)
+            return SheetSeat(
+                id=self.id, team=self.assigned_team, colour=self.colour, pattern=self.pattern
+            )
         gait = self.entry.gait
         return SheetSeat(
             id=self.id,

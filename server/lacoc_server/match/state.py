@@ -83,8 +83,10 @@ class MatchState:
         """Beats for which all seats have been silent without a break."""
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
+        self.assigned = setup.assigned
+        """What the office assigned; None: the court opened the match itself."""
         self.seats = [
-            Seat(index, seat.id, seat.colour, seat.pattern)
+            Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
         ]
         self.history = History(self.game)
@@ -111,6 +113,10 @@ class MatchState:
 
     # Questions.
 
+    def _assigned_team(self, seat: str) -> str:
+        found = None if self.assigned is None else self.assigned.seat(seat)
+        return "" if found is None else found.team
+
     @property
     def physics(self) -> Physics:
         """The robots on their field; in the lobby the field is empty."""
@@ -120,6 +126,12 @@ class MatchState:
     def has_begun(self) -> bool:
         """True from the first countdown to FINISHED, also in a halt; not when OFFICIAL or VOID."""
         return self.phase in _BEGUN
+
+    @property
+    def is_over(self) -> bool:
+        """True if nothing more is played: the result is official, or no match is assigned."""
+        waits = self.assigned is not None and self.assigned.waits
+        return waits or self.phase in (Phase.OFFICIAL, Phase.VOID)
 
     @property
     def clock_ticks(self) -> int:
@@ -206,6 +218,8 @@ class MatchState:
             seats=tuple(seat.sheet() for seat in self.seats),
             markers=self.game.markers,
             scene=self.physics.scene_hash,
+            call=self.assigned.call if self.assigned else "",
+            fixture=self.assigned.fixture if self.assigned else None,
         )
 
     def result(self) -> Result:

@@ -128,6 +128,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Limits beyond which a match should be played again."""
     keys: KeyFolder | None = None
     """Certificates for encryption and access; None: tokens alone, and no encryption."""
+    office: Holder | None = None
+    """Whoever assigns matches to the courts; None: each court opens its matches itself."""
     courts: dict[str, Court]
     stages: dict[str, dict[str, Any]] = {}
     """The stages in their order, as they stand in the file (docs/contest.md)."""
@@ -238,6 +240,7 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     contest: dict[str, Any] = {}
     limits: dict[str, Any] = {}
     health: dict[str, Any] = {}
+    office: dict[str, Any] | None = None
     court: Annotated[dict[str, Any], msgspec.Meta(min_length=1)]
     stage: dict[str, dict[str, Any]] = {}
 
@@ -250,6 +253,9 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         name: _court(name, entry, folder, keys is not None) for name, entry in file.court.items()
     }
     _check_ports(courts)
+    office = None if file.office is None else _convert(file.office, Holder, "office")
+    if office is not None:
+        _check_office(office, courts, keys)
     return Contest(
         name=general.name,
         recordings=folder / general.recordings,
@@ -257,6 +263,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         limits={name: _limit(name, value) for name, value in file.limits.items()},
         health=_convert(file.health, HealthLimits, "health"),
         keys=keys,
+        office=office,
         courts=courts,
         stages=file.stage,
         least_rest_s=general.least_rest_s,
@@ -290,6 +297,18 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
         )
     except UserError as error:
         raise _Wrong(say("contest.in", where=where, wrong=error.phrase)) from None
+
+
+def _check_office(office: Holder, courts: dict[str, Court], keys: KeyFolder | None) -> None:
+    tokens = {
+        holder.token
+        for court in courts.values()
+        for holder in (court.referee, *court.seat.values())
+    }
+    if office.token in tokens:
+        raise _Wrong(say("contest.same-tokens", where="office"))
+    if keys is not None:
+        raise _Wrong(say("contest.office-with-keys"))
 
 
 def _check_ports(courts: dict[str, Court]) -> None:

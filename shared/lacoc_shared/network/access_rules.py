@@ -50,7 +50,8 @@ def access_control(protection: Protection | None) -> dict[str, Any]:
             tokens and seals show whose they are.
     """
     if protection is None:
-        anyone = _acting(["lacoc/*/seat/*/key"], ["lacoc/*/seat/*/*", "lacoc/*/referee/*"])
+        requests = ["lacoc/*/seat/*/*", "lacoc/*/referee/*", "lacoc/*/office/*"]
+        anyone = _acting(["lacoc/*/seat/*/key"], requests)
         groups: dict[str, tuple[dict[str, Any], Rules]] = {"anyone": ({}, _watching() | anyone)}
     else:
         groups = {"anyone": ({"usernames": list(protection.passwords)}, _watching())}

@@ -10,7 +10,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from lacoc_shared.keyspace import COMMAND_MAX_BYTES, DECISION_MAX_BYTES, JOIN_MAX_BYTES
+from lacoc_shared.keyspace import (
+    ASSIGN_MAX_BYTES,
+    COMMAND_MAX_BYTES,
+    DECISION_MAX_BYTES,
+    JOIN_MAX_BYTES,
+)
 from lacoc_shared.network.access_rules import (
     Credentials,
     Protection,
@@ -41,7 +46,10 @@ _LEASE_MS = 3000
 
 
 def court_config(
-    listen: Sequence[str], protection: Protection | None = None, users: Path | None = None
+    listen: Sequence[str],
+    protection: Protection | None = None,
+    users: Path | None = None,
+    office: bool = False,
 ) -> Config:
     """Make the configuration of a court's own session.
 
@@ -49,7 +57,9 @@ def court_config(
         listen: complete addresses.
         protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
         users: file with the users' passwords, which Zenoh reads when the session opens.
+        office: whether an office may assign matches; its requests are larger than all others.
     """
+    largest = ASSIGN_MAX_BYTES if office else JOIN_MAX_BYTES
     return {
         **_common("router"),
         "listen": {"endpoints": list(listen)},
@@ -62,8 +72,9 @@ def court_config(
             _limit("leave", "lacoc/*/seat/*/leave", COMMAND_MAX_BYTES),
             _limit("decisions", "lacoc/*/referee/*", DECISION_MAX_BYTES),
             _limit("joins", "lacoc/*/seat/*/join", JOIN_MAX_BYTES),
+            _limit("office", "lacoc/*/office/*", ASSIGN_MAX_BYTES),
         ],
-        "transport": _transport(JOIN_MAX_BYTES + _HEADERS_BYTES, _court_tls(protection))
+        "transport": _transport(largest + _HEADERS_BYTES, _court_tls(protection))
         | _court_users(users)
         | {"unicast": _unicast()},
     }

@@ -300,12 +300,15 @@ class Session:
         return tuple(found)
 
 
-def open_court(listen: Sequence[str], protection: Protection | None = None) -> Session:
+def open_court(
+    listen: Sequence[str], protection: Protection | None = None, office: bool = False
+) -> Session:
     """Open a court's session: the router to which everyone else connects.
 
     Args:
         listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
         protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
+        office: whether an office may assign matches to the court.
 
     Raises:
         UserError: if it can't listen on one of them; the message says why.
@@ -316,7 +319,7 @@ def open_court(listen: Sequence[str], protection: Protection | None = None) -> S
     address.check_protocols(endpoints, keys=protection is not None)
     try:
         with _user_file(protection) as users:
-            config = network_config.court_config(endpoints, protection, users)
+            config = network_config.court_config(endpoints, protection, users, office)
             return Session(_open(config), endpoints)
     except zenoh.ZError as error:
         raise UserError(address.why_not_listening(endpoints, error)) from None

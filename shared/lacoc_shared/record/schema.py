@@ -6,6 +6,7 @@ import msgspec
 
 from lacoc_shared.inputs import Input
 from lacoc_shared.messages import Event, Frame, HealthVerdict, Scene, Sheet
+from lacoc_shared.messages.office import Assigned
 from lacoc_shared.words import Phrase
 
 
@@ -22,6 +23,8 @@ class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """The arena file as played, with the contest's overrides."""
     limits: dict[str, float]
     """Contest limits for robots (rules 1) that differ from the defaults."""
+    assigned: Assigned | None = None
+    """What the office assigned; None: the court has no office, or the record is older."""
 
 
 class Header(msgspec.Struct, frozen=True, kw_only=True):

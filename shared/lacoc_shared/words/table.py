@@ -23,6 +23,7 @@ FILES = (
     "class",
     "tournament",
     "league",
+    "office",
     "commands",
 )
 ON_PAGES = FILES[:-1]

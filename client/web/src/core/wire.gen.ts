@@ -173,6 +173,8 @@ export interface Sheet {
   seats: SheetSeat[];
   markers: MarkerInfo[];
   scene: Uint8Array;
+  call: string;
+  fixture: Phrase | null;
 }
 
 export interface SceneBody {
@@ -269,6 +271,28 @@ export interface Mistake {
   field?: string | null;
 }
 
+export interface SentFile {
+  name: string;
+  data: Uint8Array;
+}
+
+export interface AssignedSeat {
+  id: string;
+  team: string;
+  token_hashes: string[];
+  robot: SentFile | null;
+  postures: SentFile | null;
+  locomotion: SentFile | null;
+  colour: string | null;
+  pattern: "plain" | "stripes" | "dots" | null;
+}
+
+export interface Assigned {
+  call: string;
+  fixture: Phrase;
+  seats: AssignedSeat[];
+}
+
 export interface Setup {
   match_id: string;
   court: string;
@@ -276,6 +300,7 @@ export interface Setup {
   arena: string;
   settings: Record<string, unknown>;
   limits: Record<string, number>;
+  assigned: Assigned | null;
 }
 
 export interface Header {
@@ -467,7 +492,7 @@ export interface Phases {
 export interface Draft {
   table: FileTable;
   sequences: number[][] | null;
-  robot: unknown | null;
+  robot: SentFile | null;
   file: string;
   file_version: string;
   saved: boolean;

@@ -13,7 +13,7 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.file import Court
+from lacoc_shared.contest.file import Contest, Court
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
@@ -103,7 +103,7 @@ def check(file: FileToRead = FILE) -> None:
     contest = contests.load(file)
     Limits.of(contest.limits)
     for name, court in contest.courts.items():
-        _check_court(name, court)
+        _check_court(name, court, contest)
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
 
@@ -187,8 +187,10 @@ def show(
         screen.note(say("contest.host", host=any_host))
 
 
-def _check_court(name: str, court: Court) -> None:
+def _check_court(name: str, court: Court, contest: Contest) -> None:
     arena = arenas.load(court.arena, court.settings, court.looks)
+    if contest.office is not None:  # it opens the seats
+        return
     there = {seat.id for seat in arena.seats}
     if there != set(court.seat):
         raise UserError(

@@ -213,7 +213,7 @@ class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
     id: str
     """The arena's name for the seat: "left"."""
     team: str = ""
-    """"" while nobody has joined."""
+    """"" while nobody has joined, unless the office assigned the match."""
     colour: str
     """#rrggbb"""
     pattern: str
@@ -260,6 +260,11 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     markers: tuple[MarkerInfo, ...]
     scene: bytes
     """Hash of the scene, 8 bytes."""
+    call: str = ""
+    """Id of the office's call that is played; "": none, or the court has no office."""
+    fixture: Phrase | None = None
+    """What is played, or that the court waits for the office (`fixture.*`); None: the court has no
+    office."""
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,0 +1,290 @@
+"""The office's connection to one court: it assigns matches, and hears what becomes of them.
+
+Nothing here waits. What a court says is asked for whenever its health names something newer, so a
+lost message, a restart of the court or of the office costs half a second and no fact.
+"""
+
+import time
+from collections.abc import Sequence
+from enum import Enum
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import msgspec
+
+from lacoc_shared import codec
+from lacoc_shared.codec import encode, message_hash
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import Done, Event, Frame, Health, Refusal, Sheet
+from lacoc_shared.messages.office import Assign, AssignedSeat, Withdraw
+from lacoc_shared.network.session import Mailbox, NoReply, Question, Refused, Session
+from lacoc_shared.seat import BEAT_S, Phase
+from lacoc_shared.words import Phrase
+
+T = TypeVar("T")
+
+ANSWER_S = 5.0
+"""Longest wait for an answer to an assignment: a court weighs the files in first."""
+GONE_S = 2.0
+"""A court that has sent no health for this long does not count as there."""
+_FETCH_S = 2.0
+_MAX_BYTES = 1 << 20  # of a sheet, or of the list of events
+
+
+class NoAnswer(Enum):
+    """The court did not answer: it may have done the request. Ask again, with the same call."""
+
+    NO_ANSWER = "no-answer"
+
+
+class Asked:
+    """A request to a court that is under way."""
+
+    def __init__(self, question: Question) -> None:
+        self._question = question
+
+    def take(self) -> Done | Refusal | NoAnswer | None:
+        """Return the court's answer, or None if it has not come yet; never blocks."""
+        return self._read(wait=False)
+
+    def wait(self) -> Done | Refusal | NoAnswer:
+        """Wait for the court's answer."""
+        found = self._read(wait=True)
+        assert found is not None, "a question that is waited for has an answer"
+        return found
+
+    def _read(self, wait: bool) -> Done | Refusal | NoAnswer | None:
+        try:
+            answer = self._question.wait() if wait else self._question.take()
+            return None if answer is None else codec.decode(answer, Done)
+        except Refused as refused:
+            try:
+                return codec.decode(refused.payload, Refusal, _MAX_BYTES)
+            except codec.BadMessage:
+                return NoAnswer.NO_ANSWER
+        except (NoReply, codec.BadMessage):
+            return NoAnswer.NO_ANSWER
+
+
+class CourtResult(NamedTuple):
+    """How an assigned match ended."""
+
+    call: str
+    match_id: str
+    """Names the record."""
+    teams: tuple[str, ...]
+    scores: tuple[int, ...]
+    """Points by seat, with the referee's adjustments; zeros if play never ended."""
+    outcome: str
+    """Id of the official winner's seat, "draw" or "void"."""
+
+
+class CourtLink:
+    """Everything between the office and one court; one thread uses it.
+
+    Args:
+        session: an open client session at the court's address.
+        court: the court's name.
+        token: the office's token.
+    """
+
+    def __init__(self, session: Session, court: str, token: str) -> None:
+        self.court = court
+        self._session = session
+        self._token = token
+        self._keys = Keys(court)
+        self._frames = session.mailbox(self._keys.frame, 1)
+        self._healths = session.mailbox(self._keys.health, 1)
+        self._heard_s: float | None = None
+        self.health: Health | None = None
+        """The newest health."""
+        self.frame: Frame | None = None
+        """The newest frame: phase, clock and scores."""
+        self._sheet: _Fetched[Sheet] = _Fetched(session, self._keys.sheet, Sheet)
+        self._events: _Fetched[tuple[Event, ...]] = _Fetched(
+            session, self._keys.event, tuple[Event, ...]
+        )
+
+    def assign(
+        self,
+        call: str,
+        fixture: Phrase,
+        seats: Sequence[AssignedSeat],
+        *,
+        arena: str = "",
+        arena_settings: dict[str, Any] | None = None,
+        limits: dict[str, float] | None = None,
+    ) -> Asked:
+        """Assign a match to the court; the answer comes when the match is open and on disk.
+
+        Args:
+            call: id of the call. The same call twice opens one match.
+            fixture: what is played, a phrase of `fixture.*`.
+            seats: a team for each seat of the court.
+            arena: name of an installed arena; "": the court's own.
+            arena_settings: entries that replace those of the arena file.
+            limits: limits for robots, where they differ from the defaults.
+        """
+        request = Assign(
+            token=self._token,
+            call=call,
+            fixture=fixture,
+            seats=tuple(seats),
+            arena=arena,
+            arena_settings=arena_settings or {},
+            limits=limits or {},
+        )
+        return self._ask("assign", request)
+
+    def withdraw(self, call: str) -> Asked:
+        """Take an assigned match back; refused if it has begun or is official."""
+        return self._ask("withdraw", Withdraw(token=self._token, call=call))
+
+    def poll(self) -> None:
+        """Take in what arrived."""
+        frame = _newest(self._frames, Frame)
+        self.frame = frame or self.frame
+        health = _newest(self._healths, Health)
+        if health is not None:
+            self.health, self._heard_s = health, time.monotonic()
+        match_id = self._sheet.value and self._sheet.value.match_id
+        if self._sheet.take() and self._sheet.value and self._sheet.value.match_id != match_id:
+            self._events.forget()  # a restarted court may count its matches from 1 again
+        self._events.take()
+        if self.health is None or not self.is_there:
+            return
+        if self.health.sheet != self._sheet.hash:
+            self._sheet.ask()
+        if not self._has_events:
+            self._events.ask()
+
+    @property
+    def is_there(self) -> bool:
+        """Whether the court has been heard in the last two seconds."""
+        return self._heard_s is not None and time.monotonic() - self._heard_s < GONE_S
+
+    @property
+    def sheet(self) -> Sheet | None:
+        """The court's sheet; None while the court is away or a newer one is under way."""
+        if self.health is None or not self.is_there or self.health.sheet != self._sheet.hash:
+            return None
+        return self._sheet.value
+
+    @property
+    def call(self) -> str | None:
+        """The call that the court has; "": it waits for one; None: not known now."""
+        sheet = self.sheet
+        return None if sheet is None else sheet.call
+
+    @property
+    def phase(self) -> Phase | None:
+        """Phase of the match that `sheet` describes; None: not known now."""
+        sheet, frame = self.sheet, self.frame
+        if sheet is None or frame is None or frame.match != sheet.match:
+            return None
+        return Phase(frame.phase)
+
+    @property
+    def clock_s(self) -> float | None:
+        """Used time of the match that `sheet` describes [s]; None: not known now."""
+        if self.phase is None or self.frame is None:
+            return None
+        return self.frame.clock_ticks * BEAT_S
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """The newest events of the match that `sheet` describes; empty while not known."""
+        if self.sheet is None or not self._has_events:
+            return ()
+        return self._events.value or ()
+
+    @property
+    def result(self) -> CourtResult | None:
+        """The result of the call that the court has; None while it has none."""
+        sheet = self.sheet
+        if sheet is None or not sheet.call:
+            return None
+        return result_of(sheet, self.events)
+
+    @property
+    def _has_events(self) -> bool:
+        """Whether the list of events here is as new as the newest health."""
+        health, events = self.health, self._events.value or ()
+        if health is None or health.events == 0:
+            return True
+        newest = events[-1] if events else None
+        return (
+            newest is not None and newest.match == health.match and newest.number >= health.events
+        )
+
+    def _ask(self, what: str, request: msgspec.Struct) -> Asked:
+        key = self._keys.office(what)
+        return Asked(self._session.question(key, encode(request), ANSWER_S))
+
+
+def result_of(sheet: Sheet, events: Sequence[Event]) -> CourtResult | None:
+    """Read the official result from the events of a match; None if there is none yet."""
+    phases = [event.data.get("after") for event in events if event.kind == "phase"]
+    if not phases or phases[-1] not in (Phase.OFFICIAL.name, Phase.VOID.name):
+        return None
+    results = [event.data for event in events if event.kind == "result"]
+    ruled = [
+        event.data["arguments"]["winner"]
+        for event in events
+        if event.kind == "decision" and event.data.get("decision") == "declare"
+    ]
+    outcome = "void"
+    if phases[-1] == Phase.OFFICIAL.name:
+        outcome = str(ruled[-1] if ruled else results[-1]["winner"])
+    return CourtResult(
+        call=sheet.call,
+        match_id=sheet.match_id,
+        teams=tuple(seat.team for seat in sheet.seats),
+        scores=tuple(results[-1]["scores"]) if results else (0,) * len(sheet.seats),
+        outcome=outcome,
+    )
+
+
+class _Fetched(Generic[T]):
+    """Something that a court is asked for: the newest answer, and its hash."""
+
+    def __init__(self, session: Session, key: str, kind: type[T]) -> None:
+        self._session = session
+        self._key = key
+        self._kind = kind
+        self._question: Question | None = None
+        self.value: T | None = None
+        self.hash = b""
+
+    def ask(self) -> None:
+        """Ask for it, unless an answer is under way."""
+        if self._question is None:
+            self._question = self._session.question(self._key, timeout_s=_FETCH_S)
+
+    def forget(self) -> None:
+        """Forget the answer, and the one that is under way."""
+        self._question, self.value, self.hash = None, None, b""
+
+    def take(self) -> bool:
+        """Take in an answer; return whether there was a new one."""
+        try:
+            answer = None if self._question is None else self._question.take()
+            if answer is None:
+                return False
+            self.value, self.hash = (
+                codec.decode(answer, self._kind, _MAX_BYTES),
+                message_hash(answer),
+            )
+        except (NoReply, Refused, codec.BadMessage):  # whoever still needs it asks again
+            self._question = None
+            return False
+        self._question = None
+        return True
+
+
+def _newest(mailbox: Mailbox, kind: type[T]) -> T | None:
+    """Return the message in a mailbox; None if there is none, or none of this version."""
+    mail = mailbox.take()
+    try:
+        return None if mail is None else codec.decode(mail.payload, kind, _MAX_BYTES)
+    except codec.BadMessage:
+        return None

@@ -1,0 +1,188 @@
+"""The door for the office of a contest: it checks token and form of what the office assigns.
+
+Pure: bytes come in, answers come out. What the office wants waits here until the court opens the
+match. An answer comes only when the match is open and on disk, so the office may send a request
+again whenever an answer did not arrive: the same call is accepted once.
+"""
+
+from collections import Counter, deque
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Generic, NamedTuple, TypeVar
+
+import msgspec
+
+from lacoc_server.doors.inbox import FILE_NAME_MAX, NAME_MAX
+from lacoc_server.doors.sessions import Why
+from lacoc_shared import codec, seal
+from lacoc_shared.codec import encode
+from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
+from lacoc_shared.messages import Done, Refusal
+from lacoc_shared.messages.office import Assign, AssignedSeat, Withdraw
+from lacoc_shared.mistakes import printable
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase, faults, say
+
+_FIXTURE_BYTES = 2000  # of the encoded phrase; every page gets it
+_REMEMBERED = 256
+
+_BEFORE = frozenset({Phase.CREATED, Phase.LOBBY, Phase.READY})
+_OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
+
+T = TypeVar("T")
+
+Prepare = Callable[[Assign], Callable[[], T | Refusal | None]]
+"""Starts to load an arena and to weigh files in, beside the beats.
+
+It returns a function that is called in each beat until it returns what the court needs to open the
+match, or a refusal.
+"""
+Answer = Done | Refusal | Callable[[], Done | Refusal | None]
+"""An answer, or a function that is called in each beat until it returns one."""
+
+
+class Wanted(NamedTuple, Generic[T]):
+    """What the office wants the court to open next."""
+
+    prepared: T | None
+    """The prepared match; None: the court shall wait."""
+
+
+class _Token(msgspec.Struct):
+    token: str
+
+
+class OfficeDesk(Generic[T]):
+    """Takes the requests of the office, one at a time.
+
+    Args:
+        token_hash: hash of the office's token.
+        seats: names of the court's seats, in the arena's order.
+        prepare: prepares a match.
+    """
+
+    def __init__(self, token_hash: str, seats: Sequence[str], prepare: Prepare[T]) -> None:
+        self._token_hash = token_hash
+        self._seats = tuple(seats)
+        self._prepare = prepare
+        self.wanted: Wanted[T] | None = None
+        """What the court shall open next, as soon as its match allows it; None: nothing."""
+        self.refused: Counter[str] = Counter()
+        """Number of refusals by `Why`."""
+        self._call = ""
+        self._phase = Phase.CREATED
+        self._past: deque[str] = deque(maxlen=_REMEMBERED)
+        """Calls whose matches this court has closed; a late copy must not open one again."""
+
+    def hold(self, call: str, phase: Phase) -> None:
+        """Take note of the court's match, after each beat that is on disk.
+
+        Args:
+            call: call of the match; "": the office did not assign it.
+            phase: phase of the match.
+        """
+        if self._call not in ("", call):
+            self._past.append(self._call)
+        if self._call != call:
+            self.wanted = None  # it is open now
+        self._call, self._phase = call, phase
+
+    def judge(self, what: str, payload: bytes) -> Answer:
+        """Judge a request.
+
+        Args:
+            what: "assign" or "withdraw", from the key expression of the request.
+            payload: should be an `Assign` or a `Withdraw`.
+        """
+        try:
+            token = codec.decode(payload, _Token, ASSIGN_MAX_BYTES).token
+            if not seal.verify_token(token, self._token_hash):
+                return self._refuse(Why.WRONG_TOKEN, say("refused.no-office-token"))
+            match what:
+                case "assign":
+                    return self._assign(codec.decode(payload, Assign, ASSIGN_MAX_BYTES))
+                case "withdraw":
+                    return self._withdraw(codec.decode(payload, Withdraw, ASSIGN_MAX_BYTES).call)
+        except codec.BadMessage as error:
+            return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
+        return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=what[:40]))
+
+    def _assign(self, assign: Assign) -> Answer:
+        if assign.call == self._call:
+            return Done()
+        if assign.call in self._past:
+            return self._refuse(Why.OLD, say("refused.call-is-over", call=assign.call))
+        if (why := self._why_not(assign)) is not None:
+            return self._refuse(Why.BAD_BYTES, why)
+        if self._plays:
+            return self._busy()
+        return partial(self._prepared, assign.call, self._prepare(assign))
+
+    def _prepared(
+        self, call: str, prepared: Callable[[], T | Refusal | None]
+    ) -> Done | Refusal | None:
+        """Put a prepared match where the court finds it, until the court has opened it."""
+        if self._call == call:
+            return Done()
+        if self._plays:  # it began while the next one was prepared
+            self.wanted = None
+            return self._busy()
+        if self.wanted is None:
+            found = prepared()
+            if isinstance(found, Refusal):
+                self.refused[Why.BAD_FILES.value] += 1
+                return found
+            self.wanted = None if found is None else Wanted(found)
+        return None
+
+    def _withdraw(self, call: str) -> Answer:
+        return self._withdrawn(call) or partial(self._withdrawn, call)
+
+    def _withdrawn(self, call: str) -> Done | Refusal | None:
+        if self._call != call:
+            return Done()
+        if self._plays:
+            self.wanted = None
+            return self._busy()
+        if self._phase is Phase.OFFICIAL:
+            return self._refuse(Why.OLD, say("refused.call-is-over", call=call))
+        self.wanted = Wanted(None)
+        return None
+
+    @property
+    def _plays(self) -> bool:
+        return self._phase not in _BEFORE and self._phase not in _OVER
+
+    def _busy(self) -> Refusal:
+        return Refusal(say("refused.match-is-played", phase=self._phase.word), again=True)
+
+    def _why_not(self, assign: Assign) -> Phrase | None:
+        """Say what is wrong with the form of an assignment; None if nothing is."""
+        if len(encode(assign.fixture)) > _FIXTURE_BYTES:
+            return say("refused.bad-fixture", error=assign.fixture.code[:40])
+        found = [] if assign.fixture.code.startswith("fixture.") else [assign.fixture.code[:40]]
+        if found := found or faults(assign.fixture):
+            return say("refused.bad-fixture", error=found[0][:200])
+        seats = [seat.id for seat in assign.seats]
+        if sorted(seats) != sorted(self._seats):
+            return say("refused.assigned-seats", found=seats[:20], seats=self._seats)
+        hashes = [one for seat in assign.seats for one in {*seat.token_hashes}]
+        if len({*hashes}) < len(hashes) or len({seat.team for seat in assign.seats}) < len(seats):
+            return say("refused.same-team-twice")
+        return next(filter(None, map(_wrong_name, assign.seats)), None)
+
+    def _refuse(self, why: Why, said: Phrase) -> Refusal:
+        self.refused[why.value] += 1
+        return Refusal(said)
+
+
+def _wrong_name(seat: AssignedSeat) -> Phrase | None:
+    if not _is_name(seat.team, NAME_MAX) or seat.team != seat.team.strip():
+        return say("refused.team-name", most=NAME_MAX, name=printable(seat.team))
+    if not all(_is_name(file.name, FILE_NAME_MAX) for file in seat.files if file is not None):
+        return say("refused.file-name", most=FILE_NAME_MAX)
+    return None
+
+
+def _is_name(name: str, most: int) -> bool:
+    return 0 < len(name) <= most and name.isprintable()

@@ -1,0 +1,155 @@
+"""A court of a contest with an office, in a process of its own, and teams that play there."""
+
+import functools
+import itertools
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ports import free_port
+from running import WAIT_S, served
+
+from lacoc_arenas import arena as arenas
+from lacoc_client.bot_player import BotPlayer
+from lacoc_client.controller import Controller
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.contest.court_link import CourtLink, CourtResult, NoAnswer
+from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.messages import Done, Refusal, SentFile
+from lacoc_shared.messages.office import AssignedSeat
+from lacoc_shared.network.session import Session, open_client
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
+
+OFFICE = "the token of the office"
+WHISTLE = "the token of the referee"
+SEATS = ("left", "right")
+QUICK = {"match": {"countdown_s": 0.1, "duration_s": 1.0, "start": "ready"}}
+"""Settings of a match of one second without a referee."""
+FIXTURE = say(
+    "fixture.game", match=say("fixture.semi-final", stage=None, number=1), game=2, games=3
+)
+
+_calls = itertools.count(1)
+
+
+@functools.cache
+def hash_of(team: str) -> str:
+    """Return the hash of a team's token, the same in all its matches."""
+    return hash_token(token(team))
+
+
+def token(team: str) -> str:
+    return f"the token of {team}"
+
+
+def entry(seat: str, team: str, robot: str = "hexapod", **changes: Any) -> AssignedSeat:
+    """Return a team in a seat, with the files of a sample robot."""
+    postures, locomotion = sample_gait_files(robot)
+    files: dict[str, Any] = {"robot": SentFile(*find_robot(robot))}
+    files |= {"postures": postures, "locomotion": locomotion, "token_hashes": (hash_of(team),)}
+    return AssignedSeat(id=seat, team=team, **(files | changes))
+
+
+def new_call() -> str:
+    return f"call-{next(_calls)}"
+
+
+class Office:
+    """The office's side of one court, and the players of its matches."""
+
+    def __init__(self, session: Session, process: subprocess.Popen[str]) -> None:
+        self.session = session
+        self.process = process
+        self.link = CourtLink(session, "main", OFFICE)
+
+    def assign(
+        self, left: str | AssignedSeat, right: str | AssignedSeat, call: str = "", **changes: Any
+    ) -> str:
+        """Assign a match, and return its call once the court has it."""
+        call = call or new_call()
+        answer = self.asks(left, right, call, **changes)
+        assert answer == Done(), answer
+        self.until(lambda: self.link.call == call)
+        return call
+
+    def asks(
+        self, left: str | AssignedSeat, right: str | AssignedSeat, call: str = "", **changes: Any
+    ) -> Done | Refusal | NoAnswer:
+        """Ask the court to play a match, and return its answer."""
+        sides = zip(SEATS, (left, right), strict=True)
+        seats = [entry(seat, one) if isinstance(one, str) else one for seat, one in sides]
+        changes = {"arena_settings": QUICK} | changes
+        return self.link.assign(call or new_call(), FIXTURE, seats, **changes).wait()
+
+    def refusal(self, *sides: str | AssignedSeat, **changes: Any) -> Refusal:
+        """Return the refusal of an assignment."""
+        answer = self.asks(*sides, **changes)
+        assert isinstance(answer, Refusal)
+        return answer
+
+    def until(self, true: Callable[[], bool]) -> None:
+        end_s = time.monotonic() + WAIT_S
+        while not true():
+            assert time.monotonic() < end_s, "it did not come true"
+            self.link.poll()
+            time.sleep(0.005)
+
+    def phase(self, phase: Phase) -> None:
+        """Wait for a phase."""
+        self.until(lambda: self.link.phase is phase)
+
+    def controller(self, seat: str, team: str, **files: SentFile | None) -> Controller:
+        return Controller(self.session, "main", seat, token(team), "any name", **files)
+
+    def plays(self, *teams: str, until: Callable[[], bool] | None = None) -> list[Controller]:
+        """Let bots of two teams play the court's match, until it has a result."""
+        players = [self.controller(seat, team) for seat, team in zip(SEATS, teams, strict=True)]
+        for player in players:
+            player.join()
+        self.go_on(players, until or (lambda: self.link.result is not None))
+        return players
+
+    def go_on(self, players: list[Controller], until: Callable[[], bool]) -> None:
+        """Let bots go on to play with controllers that are joined."""
+        arena = arenas.load("othello")
+        bots = [BotPlayer(player, arena, next(iter(arena.bots))) for player in players]
+
+        def done() -> bool:
+            for player, bot in zip(players, bots, strict=True):
+                if (frame := player.wait_frame(0.02)) is not None:
+                    bot.see(frame)
+            return until()
+
+        self.until(done)
+
+    @property
+    def result(self) -> CourtResult:
+        assert self.link.result is not None
+        return self.link.result
+
+
+def write_office_contest(path: Path) -> Path:
+    """Write the contest file of one court and its office; the seats have no tokens."""
+    path.write_text(f"""
+[office]
+token = "{OFFICE}"
+
+[court.main]
+arena = "othello"
+listen = ["tcp/127.0.0.1:{free_port()}"]
+settings.match.countdown_s = 0.1
+referee.token = "{WHISTLE}"
+""")
+    return path
+
+
+@contextmanager
+def office_of(contest: Path, folder: Path, *words: str) -> Iterator[Office]:
+    """Run the court of a contest, and give the office's side of it."""
+    address = contest.read_text().partition('listen = ["')[2].partition('"')[0]
+    with served(contest, folder, *words) as process, open_client([address]) as session:
+        yield Office(session, process)

@@ -1,0 +1,333 @@
+"""A court plays what the office of its contest assigns, and nothing else."""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from assigned import (
+    FIXTURE,
+    QUICK,
+    WHISTLE,
+    Office,
+    entry,
+    new_call,
+    office_of,
+    write_office_contest,
+)
+
+from lacoc_client.asking import NotNow
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_server.contest.court_link import CourtLink, NoAnswer
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start
+from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
+from lacoc_shared.messages import Done, Refusal, SentFile
+from lacoc_shared.messages.office import WAITING
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import NoReply
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
+
+REFEREED = {"match": {"countdown_s": 0.1, "duration_s": 600.0}}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("office")
+
+
+@pytest.fixture(scope="module")
+def office(folder: Path) -> Iterator[Office]:
+    """Give a court at twenty times real time, which all tests of this module share."""
+    contest = write_office_contest(folder / "contest.toml")
+    with office_of(contest, folder / "recordings", "--speed", "20") as office:
+        yield office
+
+
+@pytest.fixture
+def waiting(office: Office) -> Office:
+    """Give the court while it waits for the office."""
+    office.until(lambda: office.link.call is not None)
+    with suppress(UserError):  # it is over, or there is none
+        referee(office).decide(Abort(), "the test has ended", "Kubota")
+    call = office.link.call
+    if office.link.result is not None and office.link.result.outcome != "void":
+        call = office.assign("Wasps", "Moths")
+    if call:
+        assert office.link.withdraw(call).wait() == Done()
+    office.until(lambda: office.link.call == "")
+    return office
+
+
+def referee(office: Office) -> RefereeClient:
+    return RefereeClient(office.session, "main", WHISTLE)
+
+
+def why_not(controller: Controller) -> str:
+    """Return the code with which a join is refused."""
+    with pytest.raises(UserError) as error:
+        controller.join()
+    return error.value.phrase.code
+
+
+def record(folder: Path, match_id: str) -> Record:
+    return Record.read(sorted((folder / "recordings").glob(f"{match_id}*.mcap")))
+
+
+def test_a_court_waits_for_the_office(waiting: Office) -> None:
+    """Without an assignment the court says that it waits; joins and decisions are refused."""
+    sheet = waiting.link.sheet
+    assert sheet is not None
+    assert (sheet.call, sheet.fixture) == ("", WAITING.fixture)
+    with pytest.raises(NotNow) as error:
+        waiting.controller("left", "Ants").join()
+    assert error.value.phrase == say("refused.waits-for-office")
+    for decision in (Abort(), Next()):
+        with pytest.raises(UserError) as refused:
+            referee(waiting).decide(decision, "a test", "Kubota")
+        assert refused.value.phrase.values["why"] == say("why.waits-for-office")
+
+
+def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
+    """Two teams play an assigned match without a referee; the office gets the result.
+
+    The sheet has call, fixture and teams before anybody joins. The record is proven, and the court
+    then waits for another assignment, which may have another arena.
+    """
+    call = waiting.assign("Ants", "Bees")
+    sheet = waiting.link.sheet
+    assert sheet is not None
+    assert (sheet.call, sheet.fixture) == (call, FIXTURE)
+    assert [seat.team for seat in sheet.seats] == ["Ants", "Bees"]
+    assert sheet.settings["match"]["duration_s"] == QUICK["match"]["duration_s"]
+    players = waiting.plays("Ants", "Bees")
+    result, match = waiting.result, sheet.match
+    assert (result.call, result.teams) == (call, ("Ants", "Bees"))
+    assert result.outcome in ("left", "right", "draw")
+    waiting.until(lambda: players[0].wait_frame(0.1) is not None)
+    assert waiting.link.sheet is not None
+    assert (waiting.link.sheet.match, waiting.link.phase) == (match, Phase.OFFICIAL)
+    other = waiting.assign("Cats", "Dogs", arena="flag-strike")
+    assert waiting.link.sheet.arena == "flag-strike"
+    assert why_not(players[0]) == "refused.other-match"
+    played = record(folder, result.match_id)
+    assert played.header.setup.assigned is not None
+    assert played.header.setup.assigned.call == call
+    assert played.result is not None
+    assert (played.result.teams, played.result.scores) == (result.teams, result.scores)
+    assert played.result.official == result.outcome
+    *_, verdict = verify(played)
+    assert isinstance(verdict, Verdict)
+    assert verdict.kind is Kind.SAME
+    assert waiting.link.call == other
+
+
+def test_only_the_tokens_of_the_match_open_its_seats(waiting: Office) -> None:
+    """A stranger's token is wrong; a team at the wrong seat is told which seat it has."""
+    waiting.assign("Ants", "Bees")
+    assert why_not(waiting.controller("left", "strangers")) == "refused.wrong-token"
+    left = Controller(waiting.session, "main", "left", WHISTLE, "Ants")
+    assert why_not(left) == "refused.wrong-token"
+    with pytest.raises(NotNow) as error:
+        waiting.controller("left", "Bees").join()
+    assert error.value.phrase == say("refused.other-seat", team="Bees", seat="right")
+
+
+def test_frozen_files_win(waiting: Office) -> None:
+    """A team plays with the files that the office froze; other files are not used, with a note."""
+    waiting.assign(entry("left", "Ants", "quadruped"), "Bees")
+    other = SentFile("my.txt", b"not even a gait")
+    left = waiting.controller("left", "Ants", postures=other)
+    assert left.join() == (say("note.files-frozen"),)
+    right = waiting.controller("right", "Bees")
+    assert right.join() == ()
+    waiting.until(lambda: bool(waiting.link.sheet and waiting.link.sheet.seats[1].robot))
+    assert waiting.link.sheet is not None
+    seats = [(seat.team, seat.robot) for seat in waiting.link.sheet.seats]
+    assert seats == [("Ants", "Quadruped"), ("Bees", "Hexapod")]
+
+
+def test_the_same_call_twice_opens_one_match(waiting: Office) -> None:
+    """The same call is accepted again and changes nothing; after its match it is refused."""
+    call = waiting.assign("Ants", "Bees")
+    left = waiting.controller("left", "Ants")
+    left.join()
+    assert waiting.asks("Ants", "Bees", call) == Done()
+    assert left.view.sheet.call == call
+    left.ready()
+    waiting.assign("Cats", "Dogs")
+    assert waiting.refusal("Ants", "Bees", call=call).why == say("refused.call-is-over", call=call)
+
+
+def test_a_match_that_has_not_begun_is_withdrawn(waiting: Office, folder: Path) -> None:
+    """The office takes a match back until its countdown begins; its record says so."""
+    call = waiting.assign("Ants", "Bees", arena_settings=REFEREED)
+    assert waiting.link.sheet is not None
+    match_id = waiting.link.sheet.match_id
+    assert waiting.link.withdraw(new_call()).wait() == Done()
+    assert waiting.link.call == call
+    assert waiting.link.withdraw(call).wait() == Done()
+    waiting.until(lambda: waiting.link.call == "")
+    withdrawn = record(folder, match_id).result
+    assert withdrawn is not None
+    assert withdrawn.official == "void"
+
+
+def test_a_match_that_is_played_goes_on(waiting: Office) -> None:
+    """While a match is played the office can neither replace nor withdraw it.
+
+    The official result is the referee's ruling, and only the office opens the next match.
+    """
+    call = waiting.assign("Ants", "Bees", arena_settings=REFEREED)
+    judge = referee(waiting)
+    waiting.plays("Ants", "Bees", until=lambda: waiting.link.phase is Phase.READY)
+    judge.decide(Start(), "", "Kubota")
+    waiting.phase(Phase.PLAYING)
+    refusal = waiting.refusal("Cats", "Dogs")
+    assert (refusal.why.code, refusal.again) == ("refused.match-is-played", True)
+    answer = waiting.link.withdraw(call).wait()
+    assert isinstance(answer, Refusal)
+    assert answer.why.code == "refused.match-is-played"
+    judge.decide(Halt(), "", "Kubota")
+    judge.decide(Declare("right"), "a test", "Kubota")
+    judge.decide(Official(), "", "Kubota")
+    waiting.until(lambda: waiting.link.result is not None)
+    assert (waiting.result.outcome, waiting.result.call) == ("right", call)
+    with pytest.raises(UserError) as error:
+        judge.decide(Next(), "", "Kubota")
+    assert error.value.phrase.values["why"] == say("why.office-opens-next")
+
+
+def test_a_void_match_has_a_result_too(waiting: Office) -> None:
+    """A referee's abort makes the match void; the court keeps it until the next assignment."""
+    call = waiting.assign("Ants", "Bees", arena_settings=REFEREED)
+    referee(waiting).decide(Abort(), "nobody came", "Kubota")
+    waiting.until(lambda: waiting.link.result is not None)
+    assert (waiting.result.call, waiting.result.outcome) == (call, "void")
+    assert waiting.result.teams == ("Ants", "Bees")
+
+
+def test_a_team_that_plays_again_in_its_seat_keeps_it(waiting: Office) -> None:
+    """A team with the same seat and token goes on with its session; the other one must leave."""
+    waiting.assign("Ants", "Bees")
+    players = waiting.plays("Ants", "Bees")
+    call = waiting.assign("Ants", "Cats", arena_settings=REFEREED)
+    waiting.until(lambda: players[0].wait_frame(0.1) is not None)
+    players[0].ready()
+    with pytest.raises(UserError) as error:
+        players[1].ready()
+    assert error.value.phrase.code == "refused.other-match"
+    right = waiting.controller("right", "Cats")
+    right.join()
+    right.ready()
+    waiting.go_on([players[0], right], until=lambda: waiting.link.phase is Phase.READY)
+    assert waiting.link.call == call
+
+
+@pytest.mark.parametrize(
+    ("changes", "code"),
+    [
+        ({"arena": "no-such-arena"}, "refused.assigned-arena"),
+        ({"arena": "/tmp"}, "refused.assigned-arena"),
+        ({"arena": "practice"}, "refused.assigned-seats"),
+        ({"arena_settings": {"match": {"duration_s": "long"}}}, "refused.assigned-arena"),
+        ({"limits": {"no_such_limit": 1.0}}, "refused.assigned-arena"),
+        ({"limits": {"legs_max": 4.0}}, "refused.assigned-files"),
+    ],
+)
+def test_what_can_not_be_played_is_refused(
+    waiting: Office, changes: dict[str, object], code: str
+) -> None:
+    """The court refuses arenas that it does not have, and files that do not pass the weigh-in."""
+    assert waiting.refusal("Ants", "Bees", **changes).why.code == code
+    assert waiting.link.call == ""
+
+
+def test_mistakes_in_frozen_files_are_told(waiting: Office) -> None:
+    """The refusal names the team, and every mistake in its files."""
+    wrong = entry("right", "Bees", postures=SentFile("bees.txt", b"Num of Posture\t1\n0 Key\t1"))
+    refusal = waiting.refusal("Ants", wrong)
+    assert refusal.why.code == "refused.assigned-files"
+    assert refusal.why.values["team"] == "Bees"
+    assert {mistake.file for mistake in refusal.mistakes} == {"bees.txt"}
+
+
+def test_strangers_are_refused_and_counted(waiting: Office) -> None:
+    """A wrong token is refused and counted, and no message disturbs the court."""
+    stranger = CourtLink(waiting.session, "main", "the token of nobody")
+    before = waiting.link.health
+    assert before is not None
+    seats = [entry("left", "Ants"), entry("right", "Bees")]
+    answer = stranger.assign(new_call(), FIXTURE, seats).wait()
+    assert answer == Refusal(say("refused.no-office-token"))
+    assert stranger.withdraw(new_call()).wait() == answer
+    session, key = waiting.session, waiting.link._keys.office("assign")
+    with pytest.raises(NoReply):
+        session.ask(key, bytes(ASSIGN_MAX_BYTES + 1), 0.5)
+    large = {"token": "x", "more": bytes(ASSIGN_MAX_BYTES - 100)}
+    answer = stranger._ask("assign", large).wait()  # type: ignore[arg-type]
+    assert answer == Refusal(say("refused.no-office-token"))
+    counted = before.dropped.get("wrong-token", 0) + 3
+
+    def told() -> bool:
+        health = waiting.link.health
+        return health is not None and health.dropped.get("wrong-token", 0) == counted
+
+    waiting.until(told)
+    assert waiting.link.call == ""
+
+
+def test_a_link_without_a_court_says_that_there_is_no_answer(office: Office) -> None:
+    """A request that reaches no court gives `NoAnswer`, and nothing is known of such a court."""
+    link = CourtLink(office.session, "nowhere", "any token of an office")
+    assert link.withdraw("a-call").wait() is NoAnswer.NO_ANSWER
+    link.poll()
+    assert (link.is_there, link.call, link.phase, link.result) == (False, None, None, None)
+
+
+def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
+    """After kill -9 in play, a court has its call, teams, tokens and files from the record alone.
+
+    The match is played to its end, and its record is proven.
+    """
+    contest = write_office_contest(tmp_path / "contest.toml")
+    settings = {"match": {"countdown_s": 0.1, "duration_s": 6.0, "start": "ready"}}
+    teams = (entry("left", "Ants", "quadruped"), entry("right", "Bees"))
+    records = tmp_path / "recordings"
+    with office_of(contest, records, "--speed", "4") as office:
+        call = office.assign(*teams, arena_settings=settings)
+        assert office.link.sheet is not None
+        match_id = office.link.sheet.match_id
+        office.plays("Ants", "Bees", until=lambda: (office.link.clock_s or 0) > 1)
+        assert office.link.phase is Phase.PLAYING
+        office.process.kill()
+        office.process.wait()
+    with office_of(contest, records, "--speed", "4") as office:
+        office.until(lambda: office.link.call == call)
+        assert office.asks(*teams, call=call) == Done()
+        office.phase(Phase.HALTED)
+        assert why_not(office.controller("left", "strangers")) == "refused.wrong-token"
+        office.plays("Ants", "Bees")
+        result, sheet = office.result, office.link.sheet
+        assert (result.call, result.match_id, result.teams) == (call, match_id, ("Ants", "Bees"))
+        assert sheet is not None
+        assert [seat.robot for seat in sheet.seats] == ["Quadruped", "Hexapod"]
+    *_, verdict = verify(record(tmp_path, match_id))
+    assert isinstance(verdict, Verdict)
+    assert verdict.kind is Kind.SAME
+
+
+def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
+    """A court that is ended in an assigned match goes on with it at the next start."""
+    contest = write_office_contest(tmp_path / "contest.toml")
+    with office_of(contest, tmp_path / "recordings", "--speed", "10") as office:
+        call = office.assign("Ants", "Bees", arena="flag-strike")
+    with office_of(contest, tmp_path / "recordings", "--speed", "10") as office:
+        office.until(lambda: office.link.phase is Phase.LOBBY)
+        assert office.link.sheet is not None
+        assert (office.link.sheet.call, office.link.sheet.arena) == (call, "flag-strike")
+        office.plays("Ants", "Bees")
