@@ -111,7 +111,7 @@ def _faults(published: Published, game: Played) -> Iterator[Phrase]:
     pairing, number = game.pairing, game.game
     path = published.folder / RECORDS / Path(game.record).name
     try:
-        if file_hash(path) != game.record_hash:
+        if game.record_hash and file_hash(path) != game.record_hash:
             yield say("verify.record-changed", record=game.record, pairing=pairing, game=number)
         record = Record.read(path)
     except OSError as error:
