@@ -173,7 +173,9 @@ class Student:
         """Count the lost edits that were acknowledged more than 2 s before the last kill."""
         angle_deg = draft["table"]["rows"][0]["angles_deg"][0] if draft else None
         killed_s = self._lesson.killed_s[-1] if self._lesson.killed_s else 0.0
-        for at_s, made_deg in reversed(self._acknowledged):
+        newest_deg = self._table["rows"][0]["angles_deg"][0]
+        # The newest edit may have been kept although the kill came before its acknowledgement.
+        for at_s, made_deg in () if angle_deg == newest_deg else reversed(self._acknowledged):
             if made_deg == angle_deg:
                 break
             self._lesson.lost_edits += at_s < killed_s - _OLD_S

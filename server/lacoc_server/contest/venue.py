@@ -12,10 +12,13 @@ from lacoc_server.contest.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.command.child import apart, command_line, kept_child
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 _SEATS = ("left", "right")
 _END_S = 5.0
+_ADDRESS_S = 20.0
+_LOOK_S = 0.5
 _AGAIN_S = 5.0
 """Shortest time between two starts of a bot in the same seat."""
 
@@ -38,16 +41,25 @@ def courts(where: ContestFolder, folder: Path, speed: float) -> Iterator[dict[st
             words += ["--speed", str(speed)]
             place = folder / name
             place.mkdir()
-            opened = stack.enter_context(
-                kept_child(
-                    words,
-                    place,
-                    say("child.contest-court", court=name),
-                    _at_same_place(words),
-                )
-            )
-            addresses[name] = opened["locators"][0]
+            addresses[name] = stack.enter_context(_court(name, words, place))["locators"][0]
         yield addresses
+
+
+@contextmanager
+def _court(name: str, words: list[str], folder: Path) -> Iterator[dict[str, Any]]:
+    """Run a court; one of an office that was killed may hold its address for some seconds more."""
+    end_s = time.monotonic() + _ADDRESS_S
+    with ExitStack() as stack:
+        while True:
+            what = say("child.contest-court", court=name)
+            try:
+                opened = stack.enter_context(kept_child(words, folder, what, _at_same_place(words)))
+                break
+            except UserError:
+                if time.monotonic() > end_s:
+                    raise
+                time.sleep(_LOOK_S)
+        yield opened
 
 
 @contextmanager
