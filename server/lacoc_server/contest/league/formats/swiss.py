@@ -6,6 +6,7 @@ sat left once more than right must sit right. Where the system knows no way out,
 large for its engine, a matching breaks as few rules as possible.
 """
 
+import logging
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
@@ -17,6 +18,9 @@ from lacoc_server.contest.league.formats.format import Pair, Stage
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.pairing import Bye, Entry, Pairing
 from lacoc_server.contest.league.standings import DRAW, WIN, Table, counted, standings
+
+# The engine warns when it must break a rule; then the matching takes over, and nothing is wrong.
+logging.getLogger("caissify_pairings").setLevel(logging.CRITICAL)
 
 ORDER = ("points", "buchholz-cut", "buchholz", "sonneborn", "direct", "difference", "seed")
 
