@@ -9,6 +9,7 @@ from rich.text import Text
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.limits import Limits
+from lacoc_server.contest.plans import plans
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import entrances
@@ -74,20 +75,84 @@ token = "{referee}"
 """
 
 
+_EVENT = """\
+# A contest of LACOC with many matches. Check it with 'lacoc contest check', enter each team with
+# 'lacoc contest enter NAME FOLDER', then start everything with 'lacoc contest run'.
+# Whoever has a token is let in with it: keep this file to yourself.
+
+[contest]
+name = "Contest"
+recordings = "recordings"  # folder of the records, beside this file
+robot = "hexapod"          # for a team that brings none: an installed robot or a file
+least_rest_s = 60          # shortest time between two matches of a team
+# entries_close = 2030-05-01T18:00:00   # else with the first draw
+
+[limits]                   # for robots that teams bring; see 'lacoc contest init' without --event
+
+[office]                   # gives the courts their matches
+token = "{office}"
+
+# A stage after another one; docs/contest.md has all formats and settings. Without start = "ready"
+# a referee starts each game.
+[stage.groups]
+format = "round-robin"     # or "swiss", "single-knockout", "double-knockout"
+groups = 2
+arena = "{arena}"
+settings = {{ match = {{ start = "ready" }} }}
+
+[stage.finals]
+format = "single-knockout"
+after = "groups"
+teams = 4                  # the best four of the groups
+games = 3                  # best of three, sides swapped after each game
+third_place = true
+arena = "{arena}"
+settings = {{ match = {{ start = "ready" }} }}
+{courts}"""
+_EVENT_COURT = """
+[court.{court}]
+arena = "{arena}"
+listen = ["0.0.0.0:{port}"]
+# connect = "192.168.1.20:{port}"    # where others reach it
+[court.{court}.referee]
+token = "{referee}"
+"""
+_FIRST_PORT = 7447
+
+
 def init(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The contest file to write.")] = FILE,
     arena: Annotated[
         str, typer.Option(metavar="NAME", help="The court's game: an arena's name or folder.")
     ] = "othello",
     court: Annotated[str, typer.Option(metavar="NAME", help="The court's name.")] = contests.MAIN,
+    event: Annotated[
+        bool,
+        typer.Option(
+            "--event",
+            help="Plan a whole event: groups and a knockout, whose matches an office gives to the "
+            "courts.",
+        ),
+    ] = False,
+    courts: Annotated[
+        int, typer.Option(metavar="N", help="Number of courts, with --event.", min=1, max=64)
+    ] = 1,
 ) -> None:
     """Write a contest file with comments and fresh tokens; an older one is kept."""
     Keys(court)
-    seats = "\n".join(
-        f'[court.{court}.seat.{seat.id}]\ntoken = "{new_token()}"\n'
-        for seat in arenas.load(arena).seats
-    )
-    text = _TEMPLATE.format(file=file, court=court, arena=arena, seats=seats, referee=new_token())
+    if event:
+        arenas.load(arena)
+        text = _event(
+            arena, [court] if courts == 1 else [f"{court}-{n + 1}" for n in range(courts)]
+        )
+    else:
+        seats = "\n".join(
+            f'[court.{court}.seat.{seat.id}]\ntoken = "{new_token()}"\n'
+            for seat in arenas.load(arena).seats
+        )
+        text = _TEMPLATE.format(
+            file=file, court=court, arena=arena, seats=seats, referee=new_token()
+        )
     before = os.umask(0o077)  # nobody but its owner may ever read it
     try:
         kept = save(file, text.encode())
@@ -95,15 +160,28 @@ def init(
         os.umask(before)
     if kept is not None:
         screen.note(say("command.kept", path=str(file), kept=str(kept)))
-    screen.note(say("contest.written", file=str(file)))
+    if event:
+        screen.note(say("contest.written-event", file=str(file)))
+    else:
+        screen.note(say("contest.written", file=str(file)))
+
+
+def _event(arena: str, courts: list[str]) -> str:
+    """Return the text of the contest file of an event."""
+    tables = [
+        _EVENT_COURT.format(court=court, arena=arena, port=port, referee=new_token())
+        for port, court in enumerate(courts, _FIRST_PORT)
+    ]
+    return _EVENT.format(arena=arena, office=new_token(), courts="".join(tables))
 
 
 def check(file: FileToRead = FILE) -> None:
-    """Check a contest file, its arenas' settings and its limits for robots."""
+    """Check a contest file, its stages, its arenas' settings and its limits for robots."""
     contest = contests.load(file)
     Limits.of(contest.limits)
     for name, court in contest.courts.items():
         _check_court(name, court, contest)
+    plans(contest, file)
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
 
