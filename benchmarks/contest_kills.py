@@ -74,7 +74,7 @@ def _contest(folder: Path, teams: int, courts: int) -> Path:
         text += f'[court.court-{number}.referee]\ntoken = "{new_token()}"\n'
     file = folder / "contest.toml"
     file.write_text(text + _STAGES)
-    bot = folder / "still.py"
+    bot = folder / "bot.py"
     bot.write_text(_BOT)
     for number in range(1, teams + 1):
         organiser.enter(file, f"Team {number:02d}", None, str(bot), "")

@@ -50,15 +50,25 @@ def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
             )
 
 
-def lost(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Iterator[AnyFact]:
-    """Yield the games that are taken back from courts that are gone and had not begun them.
+def taken_back(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Iterator[AnyFact]:
+    """Yield the games that are taken back from their courts.
 
-    A game that has begun stays with its court: a court that was killed goes on with it.
+    These are games that are not needed any more, because a team has left, and games of courts that
+    are gone. A game that has begun stays with its court: a court that was killed goes on with it.
     """
+    needed = {
+        (match.pairing.id, match.next_game, match.next_seats)
+        for view in contest.stages
+        for match in view.matches
+        if match.state == "open"
+    }
     for call in contest.running:
         court = seen.get(call.court, Seen(0))
-        has_begun = court.call == call.id and court.begun
-        if not has_begun and now_ms - max(court.heard_ms, call.at_ms) > LOST_MS:
+        if court.call == call.id and court.begun:
+            continue
+        if (call.pairing, call.game, call.teams) not in needed:
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
+        elif now_ms - max(court.heard_ms, call.at_ms) > LOST_MS:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="court lost")
 
 
@@ -81,11 +91,9 @@ def calls(
         first: pairings that a referee wants first.
     """
     here = [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
-    given = assign(contest, here, now_ms, least_rest_ms, first)
     return [
         new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
-        for one in given
-        if (one.pairing, one.game) not in held
+        for one in assign(contest, here, now_ms, least_rest_ms, first, held)
     ]
 
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from lacoc_server.contest.calling import Ended, Seen, calls, lost, results, wanted
+from lacoc_server.contest.calling import Ended, Seen, calls, results, taken_back, wanted
 from lacoc_server.contest.court_link import Asked, CourtLink
 from lacoc_server.contest.entries import EntryFolder
 from lacoc_server.contest.fixture import fixture
@@ -81,10 +81,11 @@ class Office:
         self._append(*results(self.contest, seen))
         while (draw := due(self.contest, FORMATS)) is not None:
             self._append(draw)
-        self._append(*self._answers(), *lost(self.contest, seen, now_ms))
+        self._append(*self._answers(), *taken_back(self.contest, seen, now_ms))
         self._append(*calls(self.contest, seen, now_ms, self._least_rest_ms, self.held))
         for call in wanted(self.contest, seen):
-            if self._may_ask(call.id, now_ms) and self._links[call.court].call is not None:
+            link = self._links.get(call.court)
+            if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
                 self._asked[call.id] = self._assign(call)
         self._take_back(now_ms)
         return self.contest is not before

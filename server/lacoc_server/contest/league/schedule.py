@@ -1,6 +1,6 @@
 """The schedule: what is drawn next, and which game goes to which free court."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -49,6 +49,7 @@ def assign(
     now_ms: int,
     least_rest_ms: int = 0,
     first: Sequence[str] = (),
+    without: Collection[tuple[str, int]] = (),
 ) -> list[Assignment]:
     """Give the next games to the free courts.
 
@@ -60,24 +61,32 @@ def assign(
         least_rest_ms: shortest time between two matches of a team; games of one match follow each
             other without it.
         first: pairings that a referee wants first, in this order.
+        without: games that are not given, by pairing and number.
 
     Returns:
         At most one game for each free court, and for each team.
     """
     taken = {call.court for call in contest.running}
     free = [court for court in dict.fromkeys(courts) if court not in taken]
-    return list(_assigned(contest, free, now_ms, least_rest_ms, first))
+    return list(_assigned(contest, free, now_ms, least_rest_ms, first, without))
 
 
 def _assigned(
-    contest: Contest, free: list[str], now_ms: int, least_rest_ms: int, first: Sequence[str]
+    contest: Contest,
+    free: list[str],
+    now_ms: int,
+    least_rest_ms: int,
+    first: Sequence[str],
+    without: Collection[tuple[str, int]],
 ) -> Iterator[Assignment]:
     busy = {team for call in contest.running for team in call.teams}
     for match in playable(contest, first):
         if not free:
             return
         teams = match.next_seats
-        if teams is None or busy & {*teams} or rested_ms(contest, match, least_rest_ms) > now_ms:
+        if teams is None or busy & {*teams} or (match.pairing.id, match.next_game) in without:
+            continue
+        if rested_ms(contest, match, least_rest_ms) > now_ms:
             continue
         busy |= {*teams}
         yield Assignment(
