@@ -63,43 +63,49 @@ LEAGUE = "A league knows facts, not robots"
 CLIENT = "A client needs nothing of a court's"
 
 
+PLANTED = [
+    ("shared/lacoc_shared/gait/tables.py", "import lacoc_robots", {ONE_WAY}),
+    ("arenas/lacoc_arenas/othello/rules.py", "import time", {PURE}),
+    ("server/lacoc_server/match/staging.py", "import lacoc_server.world.world", {BEAT, PURE}),
+    ("server/lacoc_server/journal/journal.py", "import lacoc_server.court.health", {BEAT}),
+    (
+        "server/lacoc_server/contest/league/facts.py",
+        "import lacoc_server.match.match",
+        {LEAGUE},
+    ),
+    ("shared/lacoc_shared/messages/__init__.py", "import lacoc_shared.gait.tables", {CONTRACT}),
+    ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
+    ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),
+    ("server/lacoc_server/journal/replay.py", "import zenoh.ext", {ZENOH}),
+    ("client/lacoc_client/__init__.py", "import lacoc_robots.model", {CLIENT}),
+    ("client/lacoc_client/__init__.py", "import mujoco", {CLIENT, MUJOCO}),
+    ("client/lacoc_client/__init__.py", "import lacoc_server", {CLIENT, ONE_WAY}),
+]
+"""Module, planted import, and the walls that it breaks: one for each set of walls."""
+MORE = [
+    ("arenas/lacoc_arenas/othello/field.py", "import lacoc_server.match.drive", {ONE_WAY}),
+    ("robots/lacoc_robots/robot_file.py", "import lacoc_arenas.game", {ONE_WAY}),
+    ("arenas/lacoc_arenas/arena.py", "import lacoc_robots.robot_file", {ONE_WAY}),
+    ("server/lacoc_server/match/drive.py", "import lacoc_client", {ONE_WAY}),
+    ("arenas/lacoc_arenas/flag_strike/rules.py", "from random import random", {PURE}),
+    ("arenas/lacoc_arenas/practice/rules.py", "import threading", {PURE}),
+    ("arenas/lacoc_arenas/othello/bots.py", "import asyncio", {PURE}),
+    ("robots/lacoc_robots/robot_file.py", "from datetime import datetime", {PURE}),
+    ("server/lacoc_server/match/drive.py", "import secrets", {PURE}),
+    ("server/lacoc_server/match/referee.py", "import subprocess", {PURE}),
+    ("server/lacoc_server/doors/inbox.py", "import lacoc_server.match.match", {BEAT}),
+    ("server/lacoc_server/doors/inbox.py", "import secrets", {PURE}),
+    ("server/lacoc_server/court/health.py", "import time", {PURE}),
+    ("server/lacoc_server/contest/league/schedule.py", "import time", {PURE}),
+    ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
+    ("client/lacoc_client/phases/predicates.py", "import time", {PURE}),
+    ("client/lacoc_client/__init__.py", "import lacoc_arenas.othello.field", {CLIENT}),
+]
+
+
 @pytest.mark.parametrize(
     ("module", "line", "walls"),
-    [
-        ("shared/lacoc_shared/gait/tables.py", "import lacoc_robots", {ONE_WAY}),
-        ("arenas/lacoc_arenas/othello/field.py", "import lacoc_server.match.drive", {ONE_WAY}),
-        ("robots/lacoc_robots/robot_file.py", "import lacoc_arenas.game", {ONE_WAY}),
-        ("arenas/lacoc_arenas/arena.py", "import lacoc_robots.robot_file", {ONE_WAY}),
-        ("server/lacoc_server/match/drive.py", "import lacoc_client", {ONE_WAY}),
-        ("arenas/lacoc_arenas/othello/rules.py", "import time", {PURE}),
-        ("arenas/lacoc_arenas/flag_strike/rules.py", "from random import random", {PURE}),
-        ("arenas/lacoc_arenas/practice/rules.py", "import threading", {PURE}),
-        ("arenas/lacoc_arenas/othello/bots.py", "import asyncio", {PURE}),
-        ("robots/lacoc_robots/robot_file.py", "from datetime import datetime", {PURE}),
-        ("server/lacoc_server/match/drive.py", "import secrets", {PURE}),
-        ("server/lacoc_server/match/referee.py", "import subprocess", {PURE}),
-        ("server/lacoc_server/match/staging.py", "import lacoc_server.world.world", {BEAT, PURE}),
-        ("server/lacoc_server/journal/journal.py", "import lacoc_server.court.health", {BEAT}),
-        ("server/lacoc_server/doors/inbox.py", "import lacoc_server.match.match", {BEAT}),
-        ("server/lacoc_server/doors/inbox.py", "import secrets", {PURE}),
-        ("server/lacoc_server/court/health.py", "import time", {PURE}),
-        ("server/lacoc_server/contest/league/schedule.py", "import time", {PURE}),
-        (
-            "server/lacoc_server/contest/league/facts.py",
-            "import lacoc_server.match.match",
-            {LEAGUE},
-        ),
-        ("shared/lacoc_shared/messages/__init__.py", "import lacoc_shared.gait.tables", {CONTRACT}),
-        ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
-        ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
-        ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),
-        ("server/lacoc_server/journal/replay.py", "import zenoh.ext", {ZENOH}),
-        ("client/lacoc_client/phases/predicates.py", "import time", {PURE}),
-        ("client/lacoc_client/__init__.py", "import lacoc_robots.model", {CLIENT}),
-        ("client/lacoc_client/__init__.py", "import lacoc_arenas.othello.field", {CLIENT}),
-        ("client/lacoc_client/__init__.py", "import mujoco", {CLIENT, MUJOCO}),
-        ("client/lacoc_client/__init__.py", "import lacoc_server", {CLIENT, ONE_WAY}),
-    ],
+    [*PLANTED, *(pytest.param(*one, marks=pytest.mark.long) for one in MORE)],
 )
 def test_a_broken_wall_is_found(tree: Path, module: str, line: str, walls: set[str]) -> None:
     """A planted import breaks exactly the contracts that forbid it."""

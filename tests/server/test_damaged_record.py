@@ -115,7 +115,10 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
     assert "has no end:" in render(left.cut)
 
 
-def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
+@pytest.mark.parametrize("flips", [20, pytest.param(60, marks=pytest.mark.long)])
+def test_a_flipped_byte_anywhere_is_told_or_harmless(
+    left_behind: bytes, folder: Path, flips: int
+) -> None:
     """A flipped bit in a record never crashes verify or a court's start; an error is a message.
 
     The record stays as it is, and `verify` finds most flips.
@@ -123,7 +126,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
     whole = Record.read(segment(folder, left_behind))
     chance = random.Random(7)
     told = {"verify": 0, "start": 0}
-    for _ in range(60):
+    for _ in range(flips):
         data = bytearray(left_behind)
         data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
         path = segment(folder, bytes(data))
@@ -139,8 +142,8 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
             told["start"] += 1
         assert path.read_bytes() == data
     # The other flips have no effect on the match: in versions, publish times, message numbers.
-    assert told["verify"] > 50
-    assert told["start"] > 10
+    assert told["verify"] > 0.8 * flips
+    assert told["start"] > flips / 6
     assert whole.last_beat == BEATS - 1
 
 

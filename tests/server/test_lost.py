@@ -48,6 +48,7 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
         yield Hall(tmp_path, stack)
 
 
+@pytest.mark.long
 def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
     """From LOBBY to FINISHED, only the seat's own token takes back a killed controller's seat."""
     with open_client([hall.court.address()]) as session:
