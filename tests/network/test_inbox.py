@@ -33,6 +33,7 @@ from lacoc_shared.messages import (
     SeatRequest,
     SentFile,
 )
+from lacoc_shared.messages.office import WAITING, Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import RESTART_KEY
 from lacoc_shared.words import Phrase, faults, render, say
@@ -639,3 +640,70 @@ def test_no_numbers_ever_raise(numbers: tuple[int, int, int], mac: bytes) -> Non
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.beat(0.0, [[encode(Command(joined.session, *numbers, 0, 0, mac))], []]) == []
+
+
+def team(name: str, seat: int) -> AssignedSeat:
+    """Return a team in a seat; its token is its name."""
+    return AssignedSeat(
+        id=SEATS[seat],
+        team=name,
+        token_hashes=(tokens.hash_token(name),),
+        robot=CONTEST_ROBOT,
+        locomotion=SentFile("own.txt", b"frozen"),
+    )
+
+
+def assigned(left: AssignedSeat, right: AssignedSeat) -> Assigned:
+    return Assigned(call="c", fixture=say("fixture.final", stage=None), seats=(left, right))
+
+
+def why_refused(inbox: Inbox, token: str, seat: int = LEFT) -> tuple[str, bool]:
+    refusal = inbox.join(seat, join_bytes(seat, token=token))
+    assert isinstance(refusal, Refusal)
+    assert faults(refusal.why) == []
+    return refusal.why.code, refusal.again
+
+
+def test_an_assigned_seat_opens_for_its_team_alone() -> None:
+    """A team gets its name and frozen files; the court's own tokens open nothing meanwhile."""
+    inbox = make()
+    ants, bees = team("Ants", LEFT), team("Bees", RIGHT)
+    inbox.admit(assigned(ants, bees), [])
+    sent = join_bytes(token="Ants", name="X", postures=SentFile("a.txt", b"wrong"))
+    taken = inbox.join(LEFT, sent)
+    (ants_hash,) = ants.token_hashes
+    assert taken == JoinSeat(LEFT, "Ants", CONTEST_ROBOT, None, ants.locomotion, ants_hash)
+    assert inbox.seated(LEFT).notes == (say("note.files-frozen"),)
+    assert isinstance(
+        inbox.join(LEFT, join_bytes(token="Ants", locomotion=ants.locomotion)), JoinSeat
+    )
+    assert inbox.seated(LEFT).notes == ()
+    assert why_refused(inbox, TOKENS["left"]) == ("refused.wrong-token", False)
+    assert why_refused(inbox, "Bees") == ("refused.other-seat", True)
+    assert refusals(inbox) == {"wrong-token": 1, "other-match": 1}
+
+
+def test_sessions_of_other_teams_end_with_the_next_assignment() -> None:
+    """A seat that changes hands loses its session; a team that stays keeps it."""
+    inbox = make()
+    inbox.admit(assigned(team("Ants", LEFT), team("Bees", RIGHT)), [])
+    joined = []
+    for seat, name in enumerate(("Ants", "Bees")):
+        inbox.join(seat, join_bytes(seat, token=name))
+        joined.append(inbox.seated(seat))
+    inbox.admit(assigned(team("Ants", LEFT), team("Cats", RIGHT)), [LEFT])
+    assert isinstance(inbox.ready(LEFT, request(joined[LEFT], "ready")), ReadySeat)
+    refusal = inbox.ready(RIGHT, request(joined[RIGHT], "ready", seat=RIGHT))
+    assert refusal == Refusal(say("refused.other-match", seat="right"))
+    assert [seat.joined for seat in inbox.health(0.0)] == [True, False]
+    assert why_refused(inbox, "Bees", RIGHT) == ("refused.other-match", True)
+
+
+def test_nobody_joins_while_the_court_waits() -> None:
+    """While no match is assigned, each join is refused with a reason that says so."""
+    inbox = make()
+    inbox.admit(WAITING, [])
+    for token in (TOKENS["left"], "Ants"):
+        assert why_refused(inbox, token) == ("refused.waits-for-office", True)
+    inbox.admit(None, [])
+    assert isinstance(inbox.join(LEFT, join_bytes()), JoinSeat)

@@ -322,7 +322,10 @@ def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
 
 
 def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
-    """A court that is ended in an assigned match goes on with it at the next start."""
+    """A court that is ended in an assigned match goes on with it at the next start.
+
+    If it is ended after the match, it shows the result again, so that the office hears it.
+    """
     contest = write_office_contest(tmp_path / "contest.toml")
     with office_of(contest, tmp_path / "recordings", "--speed", "10") as office:
         call = office.assign("Ants", "Bees", arena="flag-strike")
@@ -331,3 +334,12 @@ def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
         assert office.link.sheet is not None
         assert (office.link.sheet.call, office.link.sheet.arena) == (call, "flag-strike")
         office.plays("Ants", "Bees")
+        result = office.result
+    recorded = record(tmp_path, result.match_id).result
+    with office_of(contest, tmp_path / "recordings", "--speed", "10") as office:
+        office.until(lambda: office.link.result is not None)
+        assert office.result == result
+        assert office.asks("Ants", "Bees", call=call) == Done()
+        office.assign("Cats", "Dogs")
+    assert recorded is not None
+    assert record(tmp_path, result.match_id).result == recorded

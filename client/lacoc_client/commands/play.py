@@ -16,6 +16,7 @@ from lacoc_client.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal.keys import open_keys
 from lacoc_client.terminal.play import TerminalPlay, keys_table
+from lacoc_client.terminal.words import played
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.gait.tables import Level
@@ -147,7 +148,7 @@ def _await_own_entry(controller: Controller, team: str) -> None:
     deadline_s = time.monotonic() + _SHEET_S
     while time.monotonic() < deadline_s:
         controller.wait_frame(0.05)
-        if controller.view.sheet.seats[controller.index].team:
+        if controller.view.sheet.seats[controller.index].robot:
             return
 
 
@@ -163,7 +164,7 @@ def _greet(controller: Controller, team: str, greeting: Text | None) -> None:
                         team=team,
                         seat=controller.seat,
                         court=sheet.court,
-                        title=sheet.title,
+                        title=played(sheet),
                     )
                 ),
                 "bold",

@@ -377,7 +377,7 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
         time_left = say("referee.left", clock=clock, hint=hint)
     else:
         time_left = say("referee.played", clock=clock, hint=hint)
-    match = say("referee.match", title=sheet.title, court=sheet.court, match=sheet.match)
+    match = say("referee.match", title=words.played(sheet), court=sheet.court, match=sheet.match)
     screen.show(
         Text.assemble(
             (render(match), "bold"),

@@ -80,7 +80,7 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
     left = render(say("terminal.left") if sheet.duration_s else say("terminal.played"))
     lines = [
         Text(
-            render(say("terminal.match", title=sheet.title, match=sheet.match)),
+            render(say("terminal.match", title=words.played(sheet), match=sheet.match)),
             style="bold",
             no_wrap=True,
         ),

@@ -39,6 +39,8 @@ def _shown_ticks(clock_ticks: int, sheet: Sheet) -> int:
 
 def phase_hint(frame: Frame, sheet: Sheet) -> str:
     """Say what a phase other than PLAYING means, and in the lobby who is missing."""
+    if frame.phase == Phase.LOBBY and sheet.fixture is not None and not sheet.call:
+        return render(sheet.fixture)
     if frame.phase == Phase.LOBBY:
         missing = map(render, _missing(frame, sheet))
         return render(say("join.semicolon")).join(missing) or render(say("hint.lobby"))
@@ -65,6 +67,13 @@ def phase_hint(frame: Frame, sheet: Sheet) -> str:
 def score(frame: Frame) -> str:
     """Format the score: "18 : 20"."""
     return " : ".join(str(seat.score) for seat in frame.seats)
+
+
+def played(sheet: Sheet) -> str:
+    """Say what is played: the fixture that an office assigned ("Semi-final 1"), and the game."""
+    if not sheet.call or sheet.fixture is None:
+        return sheet.title
+    return f"{render(sheet.fixture)} · {sheet.title}"
 
 
 def teams(sheet: Sheet) -> list[str]:

@@ -20,7 +20,7 @@ from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.keys.protection import protection
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk
-from lacoc_server.journal.recovery import unfinished
+from lacoc_server.journal.recovery import last_result, unfinished
 from lacoc_server.match.entry import Admission
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
@@ -100,6 +100,7 @@ def serve_command(
     keys = Keys(name)
     folder = recordings or plan.recordings
     left = None if fresh else unfinished(folder, name, loaded)
+    over = last_result(folder, name, loaded) if plan.office and not (left or fresh) else None
     levels = {*loaded.match.open_levels}
     if left is not None:
         levels |= {*left.match.rules.open_levels}  # the match that goes on keeps its own levels
@@ -140,7 +141,7 @@ def serve_command(
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard, office))
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
-        running = Court(settings, network, left, office)
+        running = Court(settings, network, left or over, office)
         if exporter is not None:
             exporter.registry.register(running.metrics)
         stop = _stop_on_signal()

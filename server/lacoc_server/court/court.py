@@ -109,7 +109,8 @@ class Court:
         if left is None:
             self._journal = self._open(1, None)
         else:
-            self._journal = self._journal_of(left.match, left.segment, left.health)
+            folder = None if left.is_recorded else settings.recordings
+            self._journal = self._journal_of(left.match, folder, left.segment, left.health)
             self._inputs = left.inputs
             network.publish_sheet(left.match.sheet())
             for event in left.events:
@@ -277,10 +278,15 @@ class Court:
             limits=dict(limits),
             assigned=assigned,
         )
-        return self._journal_of(Match(setup, World, arena.folder))
+        folder = None if assigned is not None and assigned.waits else settings.recordings
+        return self._journal_of(Match(setup, World, arena.folder), folder)
 
     def _journal_of(
-        self, match: Match, segment: int = 0, before: HealthVerdict | None = None
+        self,
+        match: Match,
+        folder: Path | None,
+        segment: int = 0,
+        before: HealthVerdict | None = None,
     ) -> Journal:
         settings = self._settings
         self._health = MatchHealth(
@@ -291,8 +297,6 @@ class Court:
             before=before,
             resumptions=segment,
         )
-        is_played = match.assigned is None or not match.assigned.waits
-        folder = settings.recordings if is_played else None
         return Journal(match, folder, segment, self._health.measure)
 
     def _close(self) -> None:

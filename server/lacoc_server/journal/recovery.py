@@ -1,6 +1,6 @@
 """A match that a killed court left behind, ready to go on (docs/architecture.md)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lacoc_arenas.arena import Arena, is_installed
@@ -13,7 +13,7 @@ from lacoc_shared.inputs import THE_COURT, Decide, Input, KeySeat
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Event, HealthVerdict
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.files import is_held
+from lacoc_shared.record.files import is_held, packed_path
 from lacoc_shared.record.matches import MatchName, court_matches, is_over
 from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import Phase
@@ -48,6 +48,8 @@ class Unfinished:
     """How this machine computes differently from the machine that made the record; None: both gave
     the same bits.
     """
+    is_recorded: bool = False
+    """True: the match is over and its record finished, so nothing more is written."""
 
     @property
     def inputs(self) -> list[Input]:
@@ -96,6 +98,34 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
             raise _can_not_go_on(newest, error) from None
         return _as_left(record, resumed, number + 1)
     return None
+
+
+def last_result(folder: Path, court: str, arena: Arena) -> Unfinished | None:
+    """Find the newest match of a court, if the office assigned it and it is over; else None.
+
+    Perhaps the court was ended before the office heard the result. So the court shows it again
+    until the next assignment.
+
+    Args:
+        folder: folder of the records.
+        court: the court's name.
+        arena: arena that the court is to play.
+    """
+    name, segments = next(reversed(court_matches(folder, court).items()), (None, {}))
+    if name is None or not is_over(name, segments):
+        return None
+    packed = packed_path(folder, str(name))
+    try:
+        record = Record.read([packed] if packed.exists() else segments.values())
+        if record.header.setup.assigned is None:
+            return None
+        _check_origin(record, name, arena)
+        resumed = resume(record, folder=arena.folder)
+        _check_seats(resumed.match, arena)
+    except UserError:  # another version made it, or it is damaged: the record itself remains
+        return None
+    found = _as_left(record, resumed, len(record.headers))
+    return replace(found, is_recorded=True) if found.match.is_over else None
 
 
 def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:

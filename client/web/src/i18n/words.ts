@@ -2,7 +2,7 @@
 
 import type { Match } from "../core/match";
 import { BEATS_PER_S, type Event, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
-import { type MessageName, t } from "./index";
+import { type MessageName, said, t } from "./index";
 
 export { BEATS_PER_S };
 
@@ -34,6 +34,11 @@ export function eventClock(event: Event, sheet: Sheet | null): string {
 export function team(sheet: Sheet, index: number): string {
   const seat = sheet.seats[index];
   return seat ? seat.team || seatName(seat.id) : "";
+}
+
+/** What is played: the fixture that an office assigned ("Semi-final 1"), and the game. */
+export function played(sheet: Sheet): string {
+  return sheet.call && sheet.fixture ? `${said(sheet.fixture)} · ${sheet.title}` : sheet.title;
 }
 
 /** A seat's name in the reader's language. */
@@ -74,7 +79,7 @@ export function hint(match: Match): string {
     case Phase.CREATED:
       return t("hint.opens");
     case Phase.LOBBY:
-      return missing(frame, sheet);
+      return sheet.fixture && !sheet.call ? said(sheet.fixture) : missing(frame, sheet);
     case Phase.READY:
       return t("hint.start");
     case Phase.COUNTDOWN:

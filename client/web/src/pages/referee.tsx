@@ -7,6 +7,7 @@ import { Court } from "../core/court";
 import { part } from "../core/match";
 import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
+import { played } from "../i18n/words";
 import { LinkBanner } from "../ui/banner";
 import { Dialog } from "../ui/dialog";
 import { ScoreBug } from "../ui/score";
@@ -101,7 +102,7 @@ function TopBar({ onHelp, onSettings }: { onHelp: () => void; onSettings: () => 
           {court.welcome.value?.contest && `${court.welcome.value.contest} · `}
           {sheet && `${t("referee.court", { court: sheet.court })} · `}
           {match > 0 && t("referee.match", { match })}
-          {sheet && ` · ${sheet.title}`}
+          {sheet && ` · ${played(sheet)}`}
         </span>
       </h1>
       <ScoreBug match={court} />

@@ -8,7 +8,7 @@ import { part } from "../core/match";
 import { quality, remembered } from "../core/settings";
 import { LEAST_HZ, MOST_HZ, USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
-import { team } from "../i18n/words";
+import { played, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
@@ -135,8 +135,8 @@ function Brand() {
       <a class="brand" href="/">
         <b>{court.welcome.value?.contest || "LACOC"}</b>
         <small>
-          {sheet && `${sheet.title} · `}
-          {sheet && <span>{t("watch.match", { number: sheet.match })}</span>}
+          {sheet && played(sheet)}
+          {sheet && !sheet.fixture && <span> · {t("watch.match", { number: sheet.match })}</span>}
           {sheet && delay > 0 && " · "}
           {delay > 0 && <span>{t("watch.delayed", { seconds: delay })}</span>}
         </small>

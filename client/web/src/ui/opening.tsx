@@ -5,7 +5,7 @@ import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
 import { Phase, SeatFlag, type Sheet } from "../core/wire";
 import { catalogue, type MessageName, t } from "../i18n";
-import { BEATS_PER_S, clock, hint, team } from "../i18n/words";
+import { BEATS_PER_S, clock, hint, played, team } from "../i18n/words";
 import { SeatMark } from "./score";
 import "./opening.css";
 
@@ -34,7 +34,7 @@ export function OpeningCard({ match }: { match: Match }) {
   return (
     <section class="opening" aria-label={t("opening.title")}>
       <p class="kicker">
-        {sheet.title}
+        {played(sheet)}
         {sheet.duration_s > 0 && ` · ${clock(sheet.duration_s * BEATS_PER_S)}`}
       </p>
       <div class="meeting">

@@ -7,7 +7,7 @@ import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
 import { NAME_MAX, SeatFlag, type Sheet } from "../../core/wire";
 import { said, sentence, t } from "../../i18n";
-import { seatName, team } from "../../i18n/words";
+import { played, seatName, team } from "../../i18n/words";
 import { Mistakes } from "../../ui/mistakes";
 import { FilePicker } from "./files";
 
@@ -130,7 +130,7 @@ function JoinCard({ court, player, alone }: Props) {
       {sheet && (
         <fieldset class="seats">
           <legend>
-            {t("join.seat")} · {sheet.title}
+            {t("join.seat")} · {played(sheet)}
           </legend>
           {sheet.seats.map((one, index) => (
             <label key={one.id} class={`seat${one.id === seat ? " on" : ""}`} data-seat={index}>

@@ -4,7 +4,7 @@ import { useComputed } from "@preact/signals";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { t } from "../../i18n";
-import { seatName, team } from "../../i18n/words";
+import { played, seatName, team } from "../../i18n/words";
 import { canChange } from "./files";
 
 interface Props {
@@ -26,7 +26,7 @@ export function Footer({ court, player, onFiles, onSettings }: Props) {
   return (
     <footer class="foot">
       <p class="who">
-        {sheet && <span>{sheet.title}</span>}
+        {sheet && <span>{played(sheet)}</span>}
         <span class="muted">
           {t("join.court")} {court.welcome.value?.court}
         </span>

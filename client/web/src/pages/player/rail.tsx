@@ -92,7 +92,7 @@ function NoKeys({ court, player }: { court: Court; player: Player }) {
   const file = useComputed(() => {
     const sheet = court.sheet.value;
     const seat = sheet?.seats[player.index.value];
-    if (!sheet || !seat?.team) return "";
+    if (!sheet || !seat?.robot) return "";
     if (sheet.levels.some((level) => seat.keys[level as 0 | 1]?.length)) return "";
     return sheet.levels.includes(Level.POSTURE) ? "Loco-data" : "LocoTra-data";
   }).value;
