@@ -8,9 +8,9 @@ import hashlib
 import os
 import platform
 from collections import Counter
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Container, Iterator, Sequence
 from concurrent.futures import Future
-from functools import cache
+from functools import cache, partial
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
@@ -63,6 +63,12 @@ class _Game(NamedTuple):
         """The pairing, and the number of the game in it."""
         return self.match.pairing.id, self.match.next_game
 
+    @property
+    def teams(self) -> tuple[str, str]:
+        """Who sits left and right."""
+        left, right = self.job.teams
+        return left, right
+
 
 def play(
     folder: ContestFolder,
@@ -99,7 +105,7 @@ def play(
         if due(contest, FORMATS) is not None:
             store.decide(_due)
             continue
-        known: list[AnyFact] = []
+        known: list[Played | Replaced] = []
         busy = {game.name for game in playing.values()} | {*failed}
         for game in _games(contest, facts, entry, steer, busy):
             if (fact := _result(game, folder, facts)) is not None:
@@ -108,15 +114,16 @@ def play(
                 assert game.job.match_id not in played, "a game that was played has a record"
                 playing[engine.submit(game.job)] = game
         if known:
-            store.append(*known)
+            store.decide(partial(_still_due, known))
             continue
         if not playing:
             break
         for future in first_done(set(playing))[0]:
             game = playing.pop(future)
-            deaths[game.job.match_id] += isinstance(future.exception(), WorkerDied)
-            if 0 < deaths[game.job.match_id] <= _MOST_DEATHS:
-                continue  # it is played again
+            if isinstance(future.exception(), WorkerDied):
+                deaths[game.job.match_id] += 1
+                if deaths[game.job.match_id] <= _MOST_DEATHS:
+                    continue  # it is played again
             try:
                 record = ended(game.job, future).record
             except UserError as error:  # a bot with a mistake ends no game of other teams
@@ -128,6 +135,13 @@ def play(
         job, why = next(iter(failed.values()))
         raise UserError(say("contest.game-failed", teams=job.teams, why=why, count=len(failed)))
     return len(played)
+
+
+def _still_due(known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+    """Yield the results that no other program has appended meanwhile, and nothing has overtaken."""
+    contest = compute(facts, FORMATS)
+    due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in playable(contest)}
+    yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)
 
 
 def _due(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
@@ -225,7 +239,9 @@ def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
         part.unlink(missing_ok=True)
 
 
-def _result(game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]) -> AnyFact | None:
+def _result(
+    game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]
+) -> Played | Replaced | None:
     """Return what the record of a game says; None: there is no record of it."""
     path = packed_path(folder.records, game.job.match_id)
     found = summary(path)
@@ -237,7 +253,7 @@ def _result(game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]) -> A
             Replaced,
             pairing=pairing,
             game=number,
-            teams=game.job.teams,
+            teams=game.teams,
             scores=(0, 0),
             outcome="draw",
             reason="physics stopped",
@@ -246,7 +262,7 @@ def _result(game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]) -> A
         Played,
         pairing=pairing,
         game=number,
-        teams=game.job.teams,
+        teams=game.teams,
         scores=(found.scores[0], found.scores[1]),
         outcome=outcome(found.seats, found.winner),
         record=path.name,

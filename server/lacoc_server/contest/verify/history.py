@@ -1,10 +1,11 @@
 """The order of facts: what must have come before what, and which draws follow from it; pure."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lacoc_server.contest.league.contest import Contest, StageView, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
+    Called,
     Closed,
     Disqualified,
     Drawn,
@@ -45,8 +46,11 @@ def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase
     yield from _entries(facts)
     yield from _draws(facts)
     yield from _begun_too_early(facts, contest)
+    by_id = {fact.id: fact for fact in facts}
     for unused in contest.unused:
-        if unused.why.code not in _HARMLESS:
+        fact = by_id[unused.fact]
+        was_right = _was_due(facts, fact) if isinstance(fact, Played) else True
+        if unused.why.code not in _HARMLESS or not was_right:
             yield say("verify.unused", fact=unused.fact, why=unused.why)
 
 
@@ -144,8 +148,24 @@ def _content(draw: Closed | Drawn | RoundDrawn) -> tuple[object, ...]:
     return ()
 
 
+def _was_due(facts: Sequence[AnyFact], played: Played) -> bool:
+    """Return whether a game was the next one of its match when it was called or had been played."""
+    at = facts.index(played)
+    for number, fact in enumerate(facts[:at]):
+        if isinstance(fact, Called) and _game(fact) == _game(played):
+            at = number
+    before = compute(facts[:at], FORMATS)
+    matches = {match.pairing.id: match for view in before.stages for match in view.matches}
+    match = matches.get(played.pairing)
+    return match is not None and (match.next_game, match.next_seats) == (played.game, played.teams)
+
+
+def _game(fact: Called | Played | Replaced) -> tuple[str, int, frozenset[str]]:
+    return fact.pairing, fact.game, frozenset(fact.teams)
+
+
 def _begun_too_early(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
-    """Name results that came before the draw, or before a match that had to be played first."""
+    """Name games that came before their draw, or before a game that had to be played first."""
     drawn: dict[tuple[str, int], int] = {}
     first: dict[tuple[str, int, frozenset[str]], int] = {}
     for fact in facts:
@@ -153,26 +173,28 @@ def _begun_too_early(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phr
             drawn.setdefault((fact.stage, 0), fact.number)
         elif isinstance(fact, RoundDrawn):
             drawn.setdefault((fact.stage, fact.round), fact.number)
-        elif isinstance(fact, Played) and fact.outcome != "void":
-            name = (fact.pairing, fact.game, frozenset(fact.teams))
-            first.setdefault(name, fact.number)
-
-    def began(match: Match) -> list[int]:
-        """Return when the games of a match were first played."""
-        games = ((match.pairing.id, one.number, frozenset(one.teams)) for one in match.games)
-        return [first[name] for name in games if name in first]
-
+        elif isinstance(fact, Replaced) or (isinstance(fact, Played) and fact.outcome != "void"):
+            first.setdefault(_game(fact), fact.number)
     for view in contest.stages:
         matches = {match.pairing.id: match for match in view.matches}
         for match in view.matches:
-            before = [_draw_of(view, match, drawn)]
+            before = _draw_of(view, match, drawn)
             for source in match.pairing.sources:
                 if isinstance(source, WinnerOf | LoserOf):
-                    before += began(matches[source.pairing])
-            numbers = began(match)
-            if numbers != sorted(numbers) or any(n < max(before) for n in numbers):
-                yield say("verify.too-early", pairing=match.pairing.id)
+                    before = max(before, _last(matches[source.pairing], first))
+            for game in match.games:
+                number = first[match.pairing.id, game.number, frozenset(game.teams)]
+                if number < before:
+                    yield say("verify.too-early", pairing=match.pairing.id)
+                    break
+                before = number
 
 
-def _draw_of(view: StageView, match: Match, drawn: dict[tuple[str, int], int]) -> int:
+def _last(match: Match, first: Mapping[tuple[str, int, frozenset[str]], int]) -> int:
+    """Return where the last game of a match stands among the facts; 0: it has none."""
+    games = ((match.pairing.id, game.number, frozenset(game.teams)) for game in match.games)
+    return max((first[name] for name in games), default=0)
+
+
+def _draw_of(view: StageView, match: Match, drawn: Mapping[tuple[str, int], int]) -> int:
     return drawn.get((view.name, match.pairing.round)) or drawn[view.name, 0]
