@@ -179,9 +179,11 @@ def load(
 
 
 def load_installed(
-    name: str, overrides: Mapping[str, Any], looks: Mapping[str, Mapping[str, str]]
+    name: str,
+    overrides: Mapping[str, Any],
+    looks: Mapping[str, Mapping[str, str]] | None = None,
 ) -> Arena:
-    """Load an arena whose name comes from the network: no folder's code runs.
+    """Load an arena whose name comes from the network or from a stranger: no folder's code runs.
 
     Raises:
         UserError: as `load`, and if no arena of this name is installed.

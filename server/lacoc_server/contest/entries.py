@@ -1,6 +1,7 @@
 """Entries: the files and the bot with which a team plays, frozen under their hash."""
 
 import hashlib
+import re
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
@@ -11,6 +12,7 @@ import msgspec
 
 from lacoc_arenas import brains
 from lacoc_arenas.arena import Arena
+from lacoc_arenas.checked_bot import broken
 from lacoc_robots.library import GAIT_NAMES, find_robot, gait_files_in, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.stand_test import try_standing
@@ -22,6 +24,7 @@ from lacoc_shared.words import say
 
 _ROBOT, _PROGRAM, _BOT = "robot.toml", "bot.py", "entry.json"
 """Names of the files of an entry besides the gait files."""
+_HASH = re.compile("[0-9a-f]{32}")
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True):
@@ -100,6 +103,22 @@ def weigh(entry: Entry, games: Iterable[Arena], limits: Mapping[str, Any]) -> No
             raise FileRefused(falls)
         if entry.bot and entry.program is None:
             brains.find(arena, entry.bot)
+    if entry.program is not None:
+        _check_program(f"{entry.bot}.py", entry.program)
+
+
+def _check_program(name: str, source: bytes) -> None:
+    """Check a bot's program without running it.
+
+    Raises:
+        UserError: if it is no Python, or has no function `bot`.
+    """
+    try:
+        code = compile(source, name, "exec", dont_inherit=True)
+    except (SyntaxError, ValueError) as error:
+        raise broken(name, error, name) from None
+    if "bot" not in code.co_names:
+        raise UserError(say("bot.no-function", path=name))
 
 
 class EntryFolder:
@@ -143,6 +162,9 @@ class EntryFolder:
             UserError: if it is not there, or if its files are not those that were frozen.
         """
         place = self.path / entry_hash
+        if not _HASH.fullmatch(entry_hash):  # it may come from facts that a stranger wrote
+            why = say("contest.no-hash")
+            raise UserError(say("contest.no-entry", folder=str(place), why=why)) from None
         try:
             bot = msgspec.json.decode((place / _BOT).read_bytes(), type=dict[str, str])["bot"]
             robot = (place / _ROBOT).read_bytes()

@@ -7,9 +7,10 @@ same contest again, or one in which a single entry has changed, finds the other 
 import hashlib
 import os
 import platform
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Container, Iterator, Sequence
 from concurrent.futures import Future
-from functools import cache
+from functools import cache, partial
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
@@ -27,6 +28,7 @@ from lacoc_server.contest.league.schedule import due, playable
 from lacoc_server.contest.pool import Ended, Job, ended, first_done
 from lacoc_server.contest.store import FactStore
 from lacoc_server.simulate import Seated
+from lacoc_server.studio.workers import WorkerDied
 from lacoc_server.world import arithmetic
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
@@ -35,6 +37,8 @@ from lacoc_shared.words import Phrase, say
 
 LATE_TICKS = 7
 """Ticks by which bots start later each time that two teams meet in the same seats."""
+_MOST_DEATHS = 3
+"""A game is played again so many times because its process died."""
 _MOST_VOIDS = 3
 """After so many games in which physics stopped, a game counts as a draw without points."""
 _PACKAGES = ("lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server")
@@ -56,7 +60,14 @@ class _Game(NamedTuple):
 
     @property
     def name(self) -> tuple[str, int]:
+        """The pairing, and the number of the game in it."""
         return self.match.pairing.id, self.match.next_game
+
+    @property
+    def teams(self) -> tuple[str, str]:
+        """Who sits left and right."""
+        left, right = self.job.teams
+        return left, right
 
 
 def play(
@@ -79,35 +90,63 @@ def play(
         How many games were played now; others were known.
 
     Raises:
-        UserError: if a file has a mistake, a process died, or something can't be written. What was
-            played is kept.
+        UserError: if something can't be written; what was played is kept. Also if games can't be
+            played, because of a bot with a mistake for example: all others are played before.
     """
     playing: dict[Future[Ended | Phrase], _Game] = {}
+    failed: dict[tuple[str, int], tuple[Job, Phrase]] = {}
+    deaths: Counter[str] = Counter()
     entry = cache(folder.entries.load)
-    played = 0
+    played: set[str] = set()
     while True:
         facts = store.facts()
         contest = compute(facts, FORMATS)
         changed(contest)
-        if (draw := due(contest, FORMATS)) is not None:
-            store.append(draw)
+        if due(contest, FORMATS) is not None:
+            store.decide(_due)
             continue
-        busy = {game.name for game in playing.values()}
-        known: list[AnyFact] = []
-        for game in _games(contest, facts, entry, steer):
-            if game.name not in busy:
-                if (fact := _known(game, folder, facts)) is not None:
-                    known.append(fact)
-                else:
-                    playing[engine.submit(game.job)] = game
-        if not known and not playing:
-            return played
-        for future in () if known else first_done(set(playing))[0]:
+        known: list[Played | Replaced] = []
+        busy = {game.name for game in playing.values()} | {*failed}
+        for game in _games(contest, facts, entry, steer, busy):
+            if (fact := _result(game, folder, facts)) is not None:
+                known.append(fact)
+            else:
+                assert game.job.match_id not in played, "a game that was played has a record"
+                playing[engine.submit(game.job)] = game
+        if known:
+            store.decide(partial(_still_due, known))
+            continue
+        if not playing:
+            break
+        for future in first_done(set(playing))[0]:
             game = playing.pop(future)
-            _keep(folder, game.job, ended(game.job, future))
-            played += 1
-            known += [fact] if (fact := _known(game, folder, facts)) is not None else []
-        store.append(*known)
+            if isinstance(future.exception(), WorkerDied):
+                deaths[game.job.match_id] += 1
+                if deaths[game.job.match_id] <= _MOST_DEATHS:
+                    continue  # it is played again
+            try:
+                record = ended(game.job, future).record
+            except UserError as error:  # a bot with a mistake ends no game of other teams
+                failed[game.name] = (game.job, error.phrase)
+                continue
+            _keep(folder, game.job, record)
+            played.add(game.job.match_id)
+    if failed:
+        job, why = next(iter(failed.values()))
+        raise UserError(say("contest.game-failed", teams=job.teams, why=why, count=len(failed)))
+    return len(played)
+
+
+def _still_due(known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+    """Yield the results that no other program has appended meanwhile, and nothing has overtaken."""
+    contest = compute(facts, FORMATS)
+    due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in playable(contest)}
+    yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)
+
+
+def _due(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+    if (draw := due(compute(facts, FORMATS), FORMATS)) is not None:
+        yield draw
 
 
 def _games(
@@ -115,14 +154,16 @@ def _games(
     facts: tuple[AnyFact, ...],
     entry: Callable[[str], Entry],
     steer: str,
+    busy: Container[tuple[str, int]],
 ) -> Iterator[_Game]:
-    """Yield the games that can be played now."""
+    """Yield the games that can be played now, besides those that are `busy`."""
     files = {team.name: team.files for team in contest.teams}
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     for match in playable(contest):
-        if match.next_seats is None:
+        name = (match.pairing.id, match.next_game)
+        if match.next_seats is None or name in busy:
             continue
-        late = _late_ticks(contest, match) + _voids(match, facts)
+        late = _late_ticks(contest, match) + _tries(match, facts)
         seated = tuple(
             _seated(seat, team, entry(files[team]), steer)
             for seat, team in enumerate(match.next_seats)
@@ -150,12 +191,12 @@ def _late_ticks(contest: Contest, match: Match) -> int:
     return LATE_TICKS * before
 
 
-def _voids(match: Match, facts: tuple[AnyFact, ...]) -> int:
-    """Count the void games that this one replaces."""
+def _tries(match: Match, facts: tuple[AnyFact, ...]) -> int:
+    """Count the results of this game that do not count: void ones, and those to be replayed."""
     return sum(
         isinstance(fact, Played)
-        and fact.outcome == "void"
         and (fact.pairing, fact.game) == (match.pairing.id, match.next_game)
+        and {*fact.teams} == {*match.teams}
         for fact in facts
     )
 
@@ -175,36 +216,44 @@ def _job(view: StageView, seated: tuple[Seated, ...], late: int) -> Job:
     return msgspec.structs.replace(job, match_id=digest.hexdigest())
 
 
-def _keep(folder: ContestFolder, job: Job, played: Ended) -> None:
-    """Write the record of a game; it gets its name when it is complete and on the disk."""
-    assert played.record is not None
+def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
+    """Write the record of a game; it gets its name when it is complete and on the disk.
+
+    A record that another program has written meanwhile stays, because facts may have its hash.
+    """
+    assert record is not None
     path = packed_path(folder.records, job.match_id)
-    part = path.with_name(f"{path.name}.part")
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         folder.records.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as file:
-            file.write(played.record)
+            file.write(record)
             file.flush()
             os.fsync(file.fileno())
-        part.replace(path)
+        if summary(path) is None:
+            part.replace(path)
     except OSError as error:
         why = error.strerror or str(error)
         raise UserError(say("command.cannot-write", path=str(path), why=why)) from None
+    finally:
+        part.unlink(missing_ok=True)
 
 
-def _known(game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]) -> AnyFact | None:
+def _result(
+    game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]
+) -> Played | Replaced | None:
     """Return what the record of a game says; None: there is no record of it."""
     path = packed_path(folder.records, game.job.match_id)
-    found = summary(path) if path.exists() else None
-    if found is None or not found.scores or game.match.next_seats is None:
+    found = summary(path)
+    if found is None or not found.scores:
         return None
     pairing, number = game.name
-    if found.winner == "void" and _voids(game.match, facts) >= _MOST_VOIDS:
+    if found.winner == "void" and _tries(game.match, facts) >= _MOST_VOIDS:
         return new(
             Replaced,
             pairing=pairing,
             game=number,
-            teams=game.match.next_seats,
+            teams=game.teams,
             scores=(0, 0),
             outcome="draw",
             reason="physics stopped",
@@ -213,7 +262,7 @@ def _known(game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]) -> An
         Played,
         pairing=pairing,
         game=number,
-        teams=game.match.next_seats,
+        teams=game.teams,
         scores=(found.scores[0], found.scores[1]),
         outcome=outcome(found.seats, found.winner),
         record=path.name,

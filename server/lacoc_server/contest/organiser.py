@@ -1,16 +1,17 @@
 """What an organiser does with a contest: enter teams, take them out, let their games be played."""
 
+import unicodedata
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import NamedTuple
 
 from lacoc_server.contest import headless, publish
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest import verify as checks
 from lacoc_server.contest.entries import gather, weigh
 from lacoc_server.contest.folder import ContestFolder
-from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import (
+    AnyFact,
     Closed,
     Disqualified,
     Entered,
@@ -24,7 +25,6 @@ from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_server.contest.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.store import FactStore
-from lacoc_server.studio.workers import Workers
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -46,27 +46,36 @@ def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> 
         FileRefused: with every mistake of every file.
         UserError: if the team can't enter, or a file can't be read.
     """
-    team = team.strip()
+    team = unicodedata.normalize("NFC", team.strip())
     if not 0 < len(team) <= NAME_MAX or not team.isprintable():
         raise UserError(say("contest.team-name", most=NAME_MAX))
     where = ContestFolder(file)
     entry = gather(folder, bot, where.contest.robot)
     weigh(entry, where.games, where.contest.limits)
     with FactStore(where.facts) as store:
-        contest = _close_in_time(where, store)
-        known = {one.name: one for one in contest.teams}
-        if team in known and known[team].files == entry.hash:
-            return say("contest.entered-same", team=team)
-        if contest.closed and team not in known:
-            raise UserError(say("league.closed", team=team))
-        if contest.closed and not reason.strip():
-            raise UserError(say("contest.needs-reason", team=team))
-        files = where.entries.save(entry)
-        if team not in known:
-            store.append(new(Entered, team=team, files=files, bot=entry.bot))
-            return say("contest.entered", team=team, hash=files)
-        store.append(new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason))
-        return say("contest.entered-again", team=team, hash=files)
+        _close_in_time(where, store)
+        said = say("contest.entered-same", team=team)
+
+        def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+            nonlocal said
+            contest = compute(facts, FORMATS)
+            known = {one.name: one for one in contest.teams}
+            if team in known and known[team].files == entry.hash:
+                return
+            if contest.closed and team not in known:
+                raise UserError(say("league.closed", team=team))
+            if contest.closed and not reason.strip():
+                raise UserError(say("contest.needs-reason", team=team))
+            files = where.entries.save(entry)
+            if team in known:
+                said = say("contest.entered-again", team=team, hash=files)
+                yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
+            else:
+                said = say("contest.entered", team=team, hash=files)
+                yield new(Entered, team=team, files=files, bot=entry.bot)
+
+        store.decide(decision)
+    return said
 
 
 def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phrase:
@@ -81,12 +90,18 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
     Raises:
         UserError: if the team has not entered.
     """
-    with FactStore(ContestFolder(file).facts) as store:
-        teams = [one.name for one in compute(store.facts(), FORMATS).teams]
+
+    def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+        teams = {one.name: one for one in compute(facts, FORMATS).teams}
         if team not in teams:
-            raise UserError(say("contest.not-in", team=team, teams=teams or None))
-        kind = Disqualified if disqualified else Withdrawn
-        store.append(kind(id="new", number=0, team=team, reason=reason))
+            raise UserError(say("contest.not-in", team=team, teams=[*teams] or None))
+        if disqualified and not teams[team].disqualified:
+            yield new(Disqualified, team=team, reason=reason)
+        elif not teams[team].gone:
+            yield new(Withdrawn, team=team, reason=reason)
+
+    with FactStore(ContestFolder(file).facts) as store:
+        store.decide(decision)
     return say("contest.left", team=team)
 
 
@@ -130,64 +145,19 @@ def publish_to(file: Path, folder: Path) -> None:
         publish.publish(where, store.facts(), folder)
 
 
-class Checked(NamedTuple):
-    """What the check of a published contest found."""
-
-    findings: tuple[Phrase, ...]
-    """What does not follow; empty: everything does."""
-    facts: int
-    games: int
-    """Games that were proven."""
-    all_games: int
-    least_share: float
-    """Smallest share of forged games that would have been found with `verify.CONFIDENCE`."""
-
-
-def check(
-    folder: Path, sample: int | None, seed: int, jobs: int | None, progress: Progress
-) -> Checked:
-    """Check a published contest on all cores.
-
-    Args:
-        folder: the published folder.
-        sample: number of games to prove, chosen by chance; None: all.
-        seed: chooses the games.
-        jobs: number of processes; None: one for each core.
-        progress: told how many games are proven.
-
-    Raises:
-        UserError: if the facts can't be read.
-    """
-    published = checks.read(folder)
-    findings = list(checks.check_facts(published))
-    games = list(published.games)
-    if sample is not None:
-        games = checks.sample(games, sample, seed)
-    with Workers(jobs, limit_s=3600.0) as workers:
-        futures = [workers.submit(checks.check_game, published, game) for game in games]
-        for number, future in enumerate(futures, 1):
-            findings += future.result()
-            progress(number, len(games))
-    everything = len(published.games)
-    share = checks.least_share(everything, len(games))
-    return Checked(tuple(findings), len(published.facts), len(games), everything, share)
-
-
 def prepare(where: ContestFolder, store: FactStore) -> None:
     """Append the plans of the contest file, and check that a contest can be played."""
     if not where.plans:
         raise UserError(say("contest.no-stages", file=str(where.file)))
     note_plans(store, where.plans)
-    here = [team for team in compute(store.facts(), FORMATS).teams if not team.gone]
-    if len(here) < 2:
-        raise UserError(say("contest.few-teams", teams=len(here), file=str(where.file)))
-
-
-def _close_in_time(where: ContestFolder, store: FactStore) -> Contest:
-    """Close entries if their time is over; return the contest."""
     contest = compute(store.facts(), FORMATS)
+    here = sum(not team.gone for team in contest.teams)
+    if here < 2 and not contest.stages:
+        raise UserError(say("contest.few-teams", teams=here, file=str(where.file)))
+
+
+def _close_in_time(where: ContestFolder, store: FactStore) -> None:
+    """Close entries if their time is over."""
     end = where.contest.entries_close
-    if contest.closed or end is None or end.astimezone(UTC) > datetime.now(UTC):
-        return contest
-    store.append(new(Closed))
-    return compute(store.facts(), FORMATS)
+    if end is not None and end.astimezone(UTC) <= datetime.now(UTC):
+        store.decide(lambda facts: [] if compute(facts, FORMATS).closed else [new(Closed)])

@@ -1,6 +1,6 @@
 """The stages of a contest, as its contest file plans them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +9,7 @@ import msgspec
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import Planned, Settings, new
+from lacoc_server.contest.league.facts import AnyFact, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_server.contest.store import FactStore
@@ -78,20 +78,19 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
     Raises:
         UserError: if the plan of a stage that is drawn has changed; nothing is appended then.
     """
-    contest = compute(store.facts(), FORMATS)
-    drawn = {view.name: view.plan for view in contest.stages}
-    planned = {plan.stage: plan for plan in contest.planned}
-    for plan in wanted:
-        if plan.stage in drawn and _content(drawn[plan.stage]) != _content(plan):
-            raise UserError(say("contest.stage-began", stage=plan.stage))
-    known = {**planned, **drawn}
-    store.append(
-        *(
-            plan
-            for plan in wanted
-            if plan.stage not in known or _content(known[plan.stage]) != _content(plan)
-        )
-    )
+
+    def decision(facts: tuple[AnyFact, ...]) -> Iterator[Planned]:
+        contest = compute(facts, FORMATS)
+        drawn = {view.name: view.plan for view in contest.stages}
+        known = {**{plan.stage: plan for plan in contest.planned}, **drawn}
+        for plan in wanted:
+            if plan.stage in known and _content(known[plan.stage]) == _content(plan):
+                continue
+            if plan.stage in drawn:
+                raise UserError(say("contest.stage-began", stage=plan.stage))
+            yield plan
+
+    store.decide(decision)
 
 
 def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> Planned:

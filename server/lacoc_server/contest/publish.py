@@ -9,8 +9,9 @@ from pathlib import Path
 
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.entries import EntryFolder
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.folder import ContestFolder, file_hash
 from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet
@@ -21,6 +22,8 @@ from lacoc_shared.words import say
 FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", "games.csv"
 ENTRIES, RECORDS = "entries", "records"
 """Names of what a published folder has."""
+_FORMULA = (*"=+-@＝＋－＠", "\t", "\r")
+"""With these a spreadsheet takes a text for a formula, in Japanese also with the wide ones."""
 _SITES = "lacoc.site"
 """Entry points that add the pages: functions that are given the folder."""
 
@@ -29,7 +32,7 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
     """Write a contest as a folder: facts, sheet, tables, entries, records and pages.
 
     The folder can be written again while the contest goes on. Each file is replaced at once, and
-    the sheet is the last.
+    the sheet is the last. The files of teams are left out until entries are closed.
 
     Args:
         folder: the contest.
@@ -37,16 +40,17 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
         out: the folder to write.
 
     Raises:
-        UserError: if a record is missing, or something can't be written.
+        UserError: if a record or an entry is missing or has changed, or something can't be written.
     """
-    sheet = sheets.sheet_of(folder.contest.name, facts, FORMATS)
+    contest = compute(facts, FORMATS)
+    sheet = sheets.sheet(folder.contest.name, contest)
     try:
         for name in (ENTRIES, RECORDS):
             (out / name).mkdir(parents=True, exist_ok=True)
-        for name in sorted(_records(facts)):
-            _copy(folder.records / name, out / RECORDS / name)
+        for name, wanted in sorted(_records(facts).items()):
+            _copy(folder.records / name, out / RECORDS / name, wanted)
         entries = EntryFolder(out / ENTRIES)
-        for entry in sorted(_entries(facts)):
+        for entry in sorted(_entries(facts)) if contest.closed else ():
             entries.save(folder.entries.load(entry))
         write(out / FACTS, league_facts.encode(facts))
         for name, content in tables(sheet).items():
@@ -82,23 +86,35 @@ def write(path: Path, content: bytes) -> None:
         part.unlink(missing_ok=True)
 
 
-def _records(facts: Iterable[AnyFact]) -> set[str]:
-    return {fact.record for fact in facts if isinstance(fact, Played) and fact.record}
+def _records(facts: Iterable[AnyFact]) -> dict[str, str]:
+    """Return the hashes of all records by file name; "": it is not known."""
+    played = (fact for fact in facts if isinstance(fact, Played) and fact.record)
+    return {Path(fact.record).name: fact.record_hash for fact in played}
 
 
 def _entries(facts: Iterable[AnyFact]) -> set[str]:
     return {fact.files for fact in facts if isinstance(fact, Entered | FilesChanged) and fact.files}
 
 
-def _copy(source: Path, to: Path) -> None:
-    """Copy a record; one that is there already with the same size is not copied again."""
+def _copy(source: Path, to: Path, wanted: str) -> None:
+    """Copy a record; one that is there already is not copied again.
+
+    Raises:
+        UserError: if it is missing, or has not the hash that the facts want.
+    """
     if not source.is_file():
         raise UserError(say("contest.no-record", file=str(source)))
-    if to.exists() and to.stat().st_size == source.stat().st_size:
+    found = file_hash(source)
+    if wanted not in ("", found):
+        raise UserError(say("contest.record-changed", file=str(source)))
+    if to.exists() and file_hash(to) == found:
         return
-    part = to.with_name(f".{to.name}.part")
-    shutil.copyfile(source, part)
-    part.replace(to)
+    part = to.with_name(f".{to.name}.{os.getpid()}.part")
+    try:
+        shutil.copyfile(source, part)
+        part.replace(to)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _standings(sheet: ContestSheet) -> list[Sequence[object]]:
@@ -131,4 +147,4 @@ def _csv(rows: Iterable[Sequence[object]]) -> bytes:
 
 
 def _cell(value: object) -> object:
-    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") else value
+    return f"'{value}" if isinstance(value, str) and value[:1] in _FORMULA else value

@@ -2,6 +2,7 @@
 
 import sqlite3
 import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Self
 
@@ -56,11 +57,25 @@ class FactStore:
         Raises:
             UserError: if the file can't be written; nothing is appended then.
         """
+        self.decide(lambda _: facts)
+
+    def decide(self, decision: Callable[[tuple[AnyFact, ...]], Iterable[AnyFact]]) -> None:
+        """Append what follows from all facts; no other program appends anything meanwhile.
+
+        Args:
+            decision: is given all facts, and returns those to append. If it raises an exception,
+                nothing is appended.
+
+        Raises:
+            UserError: if the file can't be written; nothing is appended then.
+        """
         now_ms = time.time_ns() // 1_000_000
         try:
             with self._db:
-                (last,) = self._db.execute("SELECT ifnull(max(number), 0) FROM facts").fetchone()
-                for number, fact in enumerate(facts, last + 1):
+                self._db.execute("BEGIN IMMEDIATE")
+                known = self.facts()
+                last = known[-1].number if known else 0
+                for number, fact in enumerate(decision(known), last + 1):
                     placed = msgspec.structs.replace(
                         fact, id=f"f{number}", number=number, at_ms=now_ms
                     )

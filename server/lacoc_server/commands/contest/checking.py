@@ -2,7 +2,7 @@
 
 from pathlib import Path
 from secrets import randbits
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -10,6 +10,9 @@ from lacoc_server.commands.contest.playing import Contest
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import options, screen
 from lacoc_shared.words import render, say
+
+if TYPE_CHECKING:
+    from lacoc_server.contest.verify.check import Checked
 
 NOT_FOLLOWING = 1
 """Exit code: the standings do not follow from what is published."""
@@ -31,9 +34,17 @@ def publish(folder: _Folder, contest: Contest = FILE) -> None:
 
 def verify(
     folder: _Folder,
+    earlier: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="The same contest as it was published before, or its facts.json: what it said "
+            "then must still be there.",
+        ),
+    ] = None,
     sample: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Prove only N games, chosen by chance."),
+        typer.Option(metavar="N", min=1, help="Prove the records of only N games, by chance."),
     ] = None,
     seed: Annotated[
         int | None,
@@ -44,12 +55,12 @@ def verify(
 ) -> None:
     """Check a published contest: whether its standings follow from entries, facts and records.
 
-    All tables are computed again from the facts. Each result is compared with its record, and each
-    record is proven by playing its inputs again. The exit code is 0 if everything follows, 1 if
-    something does not, and 2 if the folder can't be read.
+    All draws and tables are computed again from the facts. Each result is compared with its record,
+    and each record is proven by playing its inputs again. What people decided is listed, because
+    nothing can prove it. The exit code is 0 if everything follows, 1 if something does not, and 2
+    if the folder can't be read.
     """
-    from lacoc_server.contest import organiser
-    from lacoc_server.contest.verify import CONFIDENCE
+    from lacoc_server.contest.verify.check import check
 
     seed = randbits(32) if seed is None else seed
     with screen.progress() as progress:
@@ -58,22 +69,41 @@ def verify(
         def changed(done: int, there: int) -> None:
             progress.update(task, completed=done, total=there)
 
-        found = organiser.check(folder, sample, seed, jobs, changed)
+        found = check(folder, changed, earlier=earlier, sampled=sample, seed=seed, jobs=jobs)
     if json:
-        lines = [{"code": one.code, "text": render(one)} for one in found.findings]
-        end = {"follows": not lines, "games": found.games, "of": found.all_games, "seed": seed}
-        screen.print_json({**end, "facts": found.facts, "findings": lines})
+        screen.print_json(_told(found, seed))
     else:
-        for finding in found.findings:
-            screen.show(finding)
-        if found.findings:
-            screen.show(say("verify.wrong", count=len(found.findings)))
-        else:
-            screen.show(say("verify.follows", games=found.games, facts=found.facts))
-        if sample is not None:
-            share, sure = 100 * found.least_share, 100 * CONFIDENCE
-            there = found.all_games
-            said = say("verify.sampled", games=found.games, all=there, share=share, sure=sure)
-            screen.note(said)
+        _show(found)
     if found.findings:
         raise typer.Exit(NOT_FOLLOWING)
+
+
+def _told(found: "Checked", seed: int) -> dict[str, Any]:
+    return {
+        "follows": not found.findings,
+        "findings": [{"code": one.code, "text": render(one)} for one in found.findings],
+        "decisions": [render(one) for one in found.decisions],
+        "facts": found.facts,
+        "games": found.games,
+        "proven": found.proven,
+        "least_forged": found.least_forged,
+        "seed": seed,
+    }
+
+
+def _show(found: "Checked") -> None:
+    from lacoc_server.contest.verify.sampling import CONFIDENCE
+
+    for finding in found.findings:
+        screen.show(finding)
+    if found.decisions:
+        screen.note(say("verify.decisions", count=len(found.decisions)))
+    for decision in found.decisions:
+        screen.note(decision)
+    if found.findings:
+        screen.show(say("verify.wrong", count=len(found.findings)))
+    else:
+        screen.show(say("verify.follows", games=found.games, facts=found.facts))
+    if found.proven < found.games:
+        numbers = {"proven": found.proven, "games": found.games, "forged": found.least_forged}
+        screen.note(say("verify.sampled", **numbers, sure=100 * CONFIDENCE))

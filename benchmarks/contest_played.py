@@ -1,0 +1,61 @@
+"""A small contest that was played and published, for tests and forgeries."""
+
+from pathlib import Path
+
+from lacoc_server.contest import organiser
+
+TOKENS = {seat: f"token-of-{seat}-{seat}" for seat in ("left", "right", "referee")}
+CONTEST = f"""\
+[contest]
+name = "Cup"
+recordings = "records"
+[court.main]
+arena = "othello"
+seat.left.token = "{TOKENS["left"]}"
+seat.right.token = "{TOKENS["right"]}"
+referee.token = "{TOKENS["referee"]}"
+"""
+SWISS = """\
+[stage.swiss]
+format = "swiss"
+rounds = 2
+arena = "flag-strike"
+settings.match = { duration_s = 4.0, countdown_s = 0.1 }
+settings.game = { clearance_m = 0.05, starts = [[-0.42, -0.22], [-0.42, 0.22]] }
+"""
+FINAL = """\
+[stage.final]
+format = "single-knockout"
+after = "swiss"
+teams = 2
+games = 3
+settings.match = { duration_s = 4.0, countdown_s = 0.1 }
+settings.game = { pitch_m = 0.12, disc_radius_m = 0.06, opening = "neutral" }
+"""
+IDLE = "def bot(sheet, seat):\n    return lambda frame: None\n"
+"""A program of a bot that presses no key; it loses."""
+BOTS = {"Ann": "planner", "Bob": "straight", "Café 日本": "nearest", "=Dé": "", "Eve": "planner"}
+"""The teams in the order in which they enter, and their bots; "": `IDLE`."""
+
+
+def enter(folder: Path, contest: str = CONTEST + SWISS + FINAL) -> Path:
+    """Write a contest file and enter the teams; return the file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    file, idle = folder / "contest.toml", folder / "idle.py"
+    file.write_text(contest, "utf-8")
+    idle.write_text(IDLE)
+    for team, bot in BOTS.items():
+        organiser.enter(file, team, None, bot or str(idle), "")
+    return file
+
+
+def play(file: Path, jobs: int = 2) -> int:
+    """Play a contest without a network; return how many games were played now."""
+    return organiser.play_headless(file, "planner", jobs, lambda done, there: None)[1]
+
+
+def publish(file: Path) -> Path:
+    """Publish a contest; return the folder."""
+    folder = file.parent / "published"
+    organiser.publish_to(file, folder)
+    return folder

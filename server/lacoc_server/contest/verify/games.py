@@ -1,0 +1,153 @@
+"""A game of a published contest: its result is compared with its record, and that is proven."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.contest.entries import Entry, EntryFolder
+from lacoc_server.contest.folder import file_hash
+from lacoc_server.contest.headless import outcome
+from lacoc_server.contest.league.facts import AnyFact, Planned, Played
+from lacoc_server.contest.publish import ENTRIES, RECORDS
+from lacoc_server.contest.verify.history import files_of, plan_of
+from lacoc_server.journal.replay import verify as prove
+from lacoc_server.journal.verdict import Verdict
+from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.files import packed_path
+from lacoc_shared.record.reader import Record
+from lacoc_shared.words import Phrase, say
+
+
+class Game(msgspec.Struct, frozen=True, kw_only=True):
+    """A game to check: what the facts say about it. A process can take it."""
+
+    played: Played
+    plan: Planned | None
+    """The plan of its stage; None: the stage was never drawn."""
+    files: tuple[tuple[str, ...], ...]
+    """By seat: hashes of the entries with which the team may have played."""
+
+
+def games_of(facts: Sequence[AnyFact]) -> list[Game]:
+    """Return all games that were played, also void ones, in the order of their facts."""
+    return [
+        Game(
+            played=fact,
+            plan=plan_of(facts, fact),
+            files=tuple(files_of(facts, fact, team) for team in fact.teams),
+        )
+        for fact in facts
+        if isinstance(fact, Played)
+    ]
+
+
+def check_game(folder: Path, game: Game, proven: bool) -> list[Phrase]:
+    """Compare the result of a game with its record; return what is wrong.
+
+    Args:
+        folder: the published folder.
+        game: the game.
+        proven: whether to prove the record too: its inputs are played again.
+    """
+    return [*_faults(folder, game, proven)]
+
+
+def _faults(folder: Path, game: Game, proven: bool) -> Iterator[Phrase]:
+    played = game.played
+    at: dict[str, str | int] = {
+        "record": played.record,
+        "pairing": played.pairing,
+        "game": played.game,
+    }
+    if not played.record or Path(played.record).name != played.record or "\0" in played.record:
+        yield say("verify.no-record", pairing=played.pairing, game=played.game)
+        return
+    path = folder / RECORDS / played.record
+    try:
+        if played.record_hash and file_hash(path) != played.record_hash:
+            yield say("verify.record-changed", **at)
+        record = Record.read(path)
+        wrong = [*_differences(folder, game, record)]
+        verdict = _verdict(record) if proven and not wrong else None
+    except OSError as error:
+        yield say("verify.no-file", file=played.record, why=error.strerror or str(error))
+    except UserError as error:
+        yield say("verify.bad-record", **at, why=error.phrase)
+    else:
+        yield from (say("verify.other-game", **at, what=what) for what in wrong)
+        if verdict is not None and (not verdict.same or record.lost):
+            yield say("verify.not-proven", **at, why=verdict.said)
+
+
+def _verdict(record: Record) -> Verdict:
+    """Prove a record.
+
+    Raises:
+        UserError: if its arena is not installed, other physics made it, or it is damaged.
+    """
+    return next(step for step in prove(record, processes=1) if isinstance(step, Verdict))
+
+
+def _differences(folder: Path, game: Game, record: Record) -> Iterator[Phrase]:
+    """Yield what in a record is not what the facts say about the game.
+
+    Raises:
+        UserError: if the arena of the plan is not installed, or its settings are wrong.
+    """
+    played, plan = game.played, game.plan
+    setup, result = record.header.setup, record.result
+    if packed_path(Path(), record.header.match_id).name != played.record:
+        yield say("verify.of-name")
+    # An installed arena alone is loaded: a folder's code must not run because the facts name it.
+    arena = None if plan is None else arenas.load_installed(plan.arena, plan.arena_settings)
+    if arena is None or setup.arena != arena.name:
+        yield say("verify.of-arena")
+        return
+    if _rules(setup.settings) != _rules(arena.settings):
+        yield say("verify.of-arena")
+        return
+    if plan is not None and setup.limits != plan.limits:
+        yield say("verify.of-limits")
+    if result is None or result.teams != played.teams:
+        yield say("verify.of-teams")
+        return
+    seats = tuple(seat.id for seat in arena.seats)
+    if result.scores != played.scores or outcome(seats, result.official) != played.outcome:
+        yield say("verify.of-result")
+    entries = EntryFolder(folder / ENTRIES)
+    for seat, team in enumerate(played.teams):
+        allowed = (_load(entries, one) for one in game.files[seat])
+        wanted = [_content(entry.join(seat, team)) for entry in allowed if entry is not None]
+        joins = [
+            one
+            for inputs in record.inputs.values()
+            for one in inputs
+            if isinstance(one, JoinSeat) and one.seat == seat
+        ]
+        if not joins or any(_content(join) not in wanted for join in joins):
+            yield say("verify.of-files", team=team)
+
+
+def _rules(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return settings without the looks of the robots, which every court may choose."""
+    seats = [
+        {name: value for name, value in seat.items() if name not in ("colour", "pattern")}
+        for seat in settings.get("seat", ())
+    ]
+    return {**settings, "seat": seats}
+
+
+def _content(join: JoinSeat) -> tuple[bytes | None, ...]:
+    files = (join.robot, join.postures, join.locomotion)
+    return tuple(None if file is None else file.data for file in files)
+
+
+def _load(entries: EntryFolder, entry: str) -> Entry | None:
+    try:
+        return entries.load(entry)
+    except UserError:
+        return None

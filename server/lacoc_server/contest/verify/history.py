@@ -1,0 +1,200 @@
+"""The order of facts: what must have come before what, and which draws follow from it; pure."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from lacoc_server.contest.league.contest import Contest, StageView, compute
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    Called,
+    Closed,
+    Disqualified,
+    Drawn,
+    Entered,
+    FilesChanged,
+    NoShow,
+    Planned,
+    Played,
+    Replaced,
+    Replay,
+    RoundDrawn,
+    Voided,
+    Withdrawn,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
+from lacoc_server.contest.league.schedule import due
+from lacoc_shared.words import Phrase, say
+
+OfFiles = Entered | FilesChanged
+"""Facts that give a team its files."""
+_Decision = Withdrawn | Disqualified | NoShow | Replaced | Replay | Voided
+_HARMLESS = ("league.result-replaced", "league.result-unneeded", "league.other-teams")
+"""Why facts of an honest contest may change nothing: a later decision has changed the bracket."""
+
+
+def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
+    """Yield what an honest contest can't have.
+
+    Times are not compared: a clock may have been corrected. The order is that of the numbers.
+
+    Args:
+        facts: all facts in their order.
+        contest: what follows from them.
+    """
+    yield from _gaps(facts)
+    yield from _entries(facts)
+    yield from _draws(facts)
+    yield from _begun_too_early(facts, contest)
+    by_id = {fact.id: fact for fact in facts}
+    for unused in contest.unused:
+        fact = by_id[unused.fact]
+        was_right = _was_due(facts, fact) if isinstance(fact, Played) else True
+        if unused.why.code not in _HARMLESS or not was_right:
+            yield say("verify.unused", fact=unused.fact, why=unused.why)
+
+
+def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
+    """Yield what people decided: verification can't say whether they did, or were right."""
+    closed = False
+    for fact in facts:
+        closed = closed or isinstance(fact, Closed)
+        if isinstance(fact, _Decision) or (closed and isinstance(fact, FilesChanged)):
+            kind = str(fact.__struct_config__.tag)
+            teams = getattr(fact, "teams", None) or [getattr(fact, "team", "")]
+            pairing = getattr(fact, "pairing", None)
+            yield say(
+                "verify.decision",
+                fact=fact.id,
+                kind=kind,
+                teams=[*teams],
+                pairing=pairing,
+                reason=fact.reason or None,
+            )
+
+
+def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Iterator[Phrase]:
+    """Yield the first fact of an earlier publication that is missing now, or another one."""
+    for before, now in zip(earlier, (*facts, *(None,) * len(earlier)), strict=False):
+        if before != now:
+            yield say("verify.rewritten", fact=before.id)
+            return
+
+
+def plan_of(facts: Iterable[AnyFact], game: Played) -> Planned | None:
+    """Return the plan by which the stage of a game was drawn; None: it never was."""
+    stage = game.pairing.partition(":")[0]
+    plan = None
+    for fact in facts:
+        if isinstance(fact, Planned) and fact.stage == stage:
+            plan = fact
+        elif isinstance(fact, Drawn) and fact.stage == stage:
+            return plan
+    return None
+
+
+def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ...]:
+    """Return the hashes of the files with which a team may have played a game.
+
+    A game goes on with the files with which it began, so if they were changed since entries were
+    closed, those before the newest change count too.
+    """
+    hashes: list[str] = []
+    closed = False
+    for fact in facts:
+        if fact.number >= game.number:
+            break
+        closed = closed or isinstance(fact, Closed)
+        if isinstance(fact, OfFiles) and fact.team == team:
+            hashes = [*hashes, fact.files] if closed else [fact.files]
+    return tuple(hashes[-2:])
+
+
+def _gaps(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
+    for number, fact in enumerate(facts, 1):
+        if fact.number != number:
+            yield say("verify.gap", fact=fact.id, number=number)
+            return
+
+
+def _entries(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
+    closed = False
+    for fact in facts:
+        if isinstance(fact, Closed):
+            closed = True
+        elif isinstance(fact, Drawn) and not closed:
+            yield say("verify.never-closed")
+            closed = True
+        elif isinstance(fact, Entered) and closed:
+            yield say("verify.entered-late", team=fact.team)
+        elif isinstance(fact, FilesChanged) and closed and not fact.reason.strip():
+            yield say("verify.no-reason", team=fact.team)
+
+
+def _draws(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
+    """Draw again: each draw must be what was due after the facts before it."""
+    for at, fact in enumerate(facts):
+        if isinstance(fact, Drawn | RoundDrawn):
+            again = due(compute(facts[:at], FORMATS), FORMATS)
+            if again is None or _content(again) != _content(fact):
+                yield say("verify.other-draw", fact=fact.id, stage=fact.stage)
+
+
+def _content(draw: Closed | Drawn | RoundDrawn) -> tuple[object, ...]:
+    if isinstance(draw, Drawn):
+        return draw.stage, draw.entries
+    if isinstance(draw, RoundDrawn):
+        return draw.stage, draw.round, draw.pairs
+    return ()
+
+
+def _was_due(facts: Sequence[AnyFact], played: Played) -> bool:
+    """Return whether a game was the next one of its match when it was called or had been played."""
+    at = facts.index(played)
+    for number, fact in enumerate(facts[:at]):
+        if isinstance(fact, Called) and _game(fact) == _game(played):
+            at = number
+    before = compute(facts[:at], FORMATS)
+    matches = {match.pairing.id: match for view in before.stages for match in view.matches}
+    match = matches.get(played.pairing)
+    return match is not None and (match.next_game, match.next_seats) == (played.game, played.teams)
+
+
+def _game(fact: Called | Played | Replaced) -> tuple[str, int, frozenset[str]]:
+    return fact.pairing, fact.game, frozenset(fact.teams)
+
+
+def _begun_too_early(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
+    """Name games that came before their draw, or before a game that had to be played first."""
+    drawn: dict[tuple[str, int], int] = {}
+    first: dict[tuple[str, int, frozenset[str]], int] = {}
+    for fact in facts:
+        if isinstance(fact, Drawn):
+            drawn.setdefault((fact.stage, 0), fact.number)
+        elif isinstance(fact, RoundDrawn):
+            drawn.setdefault((fact.stage, fact.round), fact.number)
+        elif isinstance(fact, Replaced) or (isinstance(fact, Played) and fact.outcome != "void"):
+            first.setdefault(_game(fact), fact.number)
+    for view in contest.stages:
+        matches = {match.pairing.id: match for match in view.matches}
+        for match in view.matches:
+            before = _draw_of(view, match, drawn)
+            for source in match.pairing.sources:
+                if isinstance(source, WinnerOf | LoserOf):
+                    before = max(before, _last(matches[source.pairing], first))
+            for game in match.games:
+                number = first[match.pairing.id, game.number, frozenset(game.teams)]
+                if number < before:
+                    yield say("verify.too-early", pairing=match.pairing.id)
+                    break
+                before = number
+
+
+def _last(match: Match, first: Mapping[tuple[str, int, frozenset[str]], int]) -> int:
+    """Return where the last game of a match stands among the facts; 0: it has none."""
+    games = ((match.pairing.id, game.number, frozenset(game.teams)) for game in match.games)
+    return max((first[name] for name in games), default=0)
+
+
+def _draw_of(view: StageView, match: Match, drawn: Mapping[tuple[str, int], int]) -> int:
+    return drawn.get((view.name, match.pairing.round)) or drawn[view.name, 0]
