@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lacoc_server.contest import organiser
+from lacoc_server.contest.pool import Pool
 
 TOKENS = {seat: f"token-of-{seat}-{seat}" for seat in ("left", "right", "referee")}
 CONTEST = f"""\
@@ -41,7 +42,7 @@ BOTS = {"Ann": "planner", "Bob": "straight", "Café 日本": "nearest", "=Dé": 
 def enter(folder: Path, contest: str = CONTEST + SWISS + FINAL) -> Path:
     """Write a contest file and enter the teams; return the file."""
     folder.mkdir(parents=True, exist_ok=True)
-    file, idle = folder / "contest.toml", folder / "idle.py"
+    file, idle = folder / "contest.toml", folder / "bot.py"
     file.write_text(contest, "utf-8")
     idle.write_text(IDLE)
     for team, bot in BOTS.items():
@@ -51,7 +52,7 @@ def enter(folder: Path, contest: str = CONTEST + SWISS + FINAL) -> Path:
 
 def play(file: Path, jobs: int = 2) -> int:
     """Play a contest without a network; return how many games were played now."""
-    return organiser.play_headless(file, "planner", jobs, lambda done, there: None)[1]
+    return organiser.play_headless(file, "planner", Pool(jobs), lambda done, there: None)[1]
 
 
 def publish(file: Path) -> Path:

@@ -2,6 +2,7 @@
 
 import unicodedata
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -21,7 +22,6 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.plans import note_plans
-from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_server.contest.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.store import FactStore
@@ -106,14 +106,14 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
 
 
 def play_headless(
-    file: Path, steer: str, jobs: int | None, progress: Progress
+    file: Path, steer: str, engine: AbstractContextManager[headless.Engine], progress: Progress
 ) -> tuple[ContestSheet, int]:
     """Play a contest to its end without a network.
 
     Args:
         file: the contest file.
         steer: the bot that steers teams without a bot.
-        jobs: number of processes; None: one for each core.
+        engine: plays the games; it is opened and closed here.
         progress: told about each change.
 
     Returns:
@@ -126,8 +126,8 @@ def play_headless(
     with FactStore(where.facts) as store:
         prepare(where, store)
         writer = SheetWriter(where, progress)
-        with Pool(jobs) as pool:
-            played = headless.play(where, store, pool, steer, writer)
+        with engine as opened:
+            played = headless.play(where, store, opened, steer, writer)
         return writer.write(), played
 
 

@@ -75,6 +75,14 @@ def run(
         str, typer.Option(metavar="BOT", help="The bot that steers teams without a bot.")
     ] = "planner",
     jobs: options.Jobs = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="With --headless: play at the workers of this Dask cluster, such as "
+            "tcp://192.168.1.20:8786.",
+        ),
+    ] = None,
     listen: Annotated[
         str | None,
         typer.Option(
@@ -102,7 +110,7 @@ def run(
     the files of both teams, the rules and the software, and is never played twice. If one entry
     changes, a new contest with the same folder of records plays only the games of that team.
     """
-    from lacoc_server.contest.pool import interrupted_by_signals
+    from lacoc_server.contest.pool import Pool, interrupted_by_signals
 
     with interrupted_by_signals(), screen.progress() as progress:
         task = progress.add_task(render(say("simulate.matches")), total=None)
@@ -112,8 +120,10 @@ def run(
 
         if headless:
             from lacoc_server.contest import organiser
+            from lacoc_server.contest.cluster import Cluster
 
-            sheet, played = organiser.play_headless(file, steer, jobs, changed)
+            engine = Pool(jobs) if cluster is None else Cluster(cluster)
+            sheet, played = organiser.play_headless(file, steer, engine, changed)
         else:
             sheet, played = _live(file, changed, speed, listen, browser, json), None
     games = sum(len(match.games) for view in sheet.stages for match in view.matches)

@@ -1,0 +1,154 @@
+"""Plays a contest of bots without a network in several ways, and compares tables and times.
+
+    python -m benchmarks.contest_headless --teams 20 --seconds 5
+
+Every team meets every other one in both seats. The contest is played by processes of this machine,
+by a Dask cluster of as many workers, by one process, and by a cluster whose workers are killed on
+the way. Then it is run again: once with nothing changed, and once with another entry for one team.
+"""
+
+import argparse
+import json
+import os
+import random
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Any
+
+from distributed import LocalCluster
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import installed_robots, robot_folder
+from lacoc_server.contest import headless, organiser
+from lacoc_server.contest.cluster import Cluster
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.plans import note_plans
+from lacoc_server.contest.pool import Pool
+from lacoc_server.contest.store import FactStore
+from lacoc_shared.contest.tokens import new_token
+
+_DASK_MOST = 1.05
+"""Most that Dask may cost, as a multiple of the pool's time."""
+_AGAIN_MOST_S = 2.0
+_STAGE = """
+[contest]
+name = "Headless"
+recordings = "{records}"
+
+[court.main]
+arena = "othello"
+[court.main.seat.left]
+token = "{left}"
+[court.main.seat.right]
+token = "{right}"
+[court.main.referee]
+token = "{referee}"
+
+[stage.all]
+format = "round-robin"
+games = 2
+settings = {{ match = {{ duration_s = {seconds} }} }}
+"""
+
+Engine = AbstractContextManager[headless.Engine]
+
+
+def main() -> None:
+    """Play, print, and exit with 1 if an aim is missed."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.contest_headless", description=__doc__
+    )
+    parser.add_argument("--teams", type=int, default=20)
+    parser.add_argument("--seconds", type=float, default=5.0)
+    parser.add_argument("--kills", type=int, default=20)
+    options = parser.parse_args()
+    cores = os.cpu_count() or 1
+    with tempfile.TemporaryDirectory() as name, _cluster(cores) as address:
+        folder = Path(name)
+        games = options.teams * (options.teams - 1)
+        tables: dict[str, object] = {}
+        found: dict[str, Any] = {"games": games}
+        for way, engine in (
+            ("pool", Pool(cores)),
+            ("dask", Cluster(address)),
+            ("one", Pool(1)),
+        ):
+            file = _contest(folder / way, options.teams, options.seconds, folder / f"{way}-records")
+            played, found[f"{way}_s"], tables[way] = _play(file, engine)
+            assert played == games
+        with LocalCluster(cores, threads_per_worker=1, dashboard_address=None) as cluster:
+            file = _contest(folder / "kill", options.teams, options.seconds, folder / "k-records")
+            stop = threading.Event()
+            killer = threading.Thread(target=_kill, args=(cluster, options.kills, stop))
+            killer.start()
+            found["played_with_kills"], _, tables["kill"] = _play(
+                file, Cluster(cluster.scheduler_address)
+            )
+            stop.set()
+            killer.join()
+        again = folder / "pool" / "contest.toml"
+        found["played_again"], found["again_s"], _ = _play(again, Pool(cores))
+        other = _contest(
+            folder / "other", options.teams, options.seconds, folder / "pool-records", changed=True
+        )
+        found["played_changed"], _, _ = _play(other, Pool(cores))
+    found["same"] = len({repr(one) for one in tables.values()}) == 1
+    found["dask"] = round(found["dask_s"] / found["pool_s"], 3)
+    print(json.dumps(found))
+    right = found["same"] and found["played_again"] == 0 and found["again_s"] < _AGAIN_MOST_S
+    right = right and found["played_changed"] == 2 * (options.teams - 1)
+    sys.exit(not (right and found["dask"] < _DASK_MOST and found["played_with_kills"] == games))
+
+
+def _contest(
+    folder: Path, teams: int, seconds: float, records: Path, changed: bool = False
+) -> Path:
+    """Make a contest of bots; with `changed`, the first team has another bot."""
+    folder.mkdir()
+    file = folder / "contest.toml"
+    tokens = {name: new_token() for name in ("left", "right", "referee")}
+    file.write_text(_STAGE.format(records=records, seconds=seconds, **tokens))
+    bots, robots = [*arenas.load("othello").bots], installed_robots()
+    for number in range(teams):
+        bot = bots[(number + (changed and number == 0)) % len(bots)]
+        robot = robots[number // len(bots) % len(robots)]
+        organiser.enter(file, f"Team {number + 1:02d}", robot_folder(robot), bot, "")
+    return file
+
+
+def _play(file: Path, engine: Engine) -> tuple[int, float, object]:
+    """Play a contest; return how many games were played, the time [s], and the tables."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store, engine as opened:
+        note_plans(store, where.plans)
+        begun_s = time.monotonic()
+        played = headless.play(where, store, opened, "planner", lambda _: None)
+        took_s = round(time.monotonic() - begun_s, 2)
+    return played, took_s, [view.tables for view in organiser.sheet(file).stages]
+
+
+@contextmanager
+def _cluster(workers: int) -> Iterator[str]:
+    with LocalCluster(workers, threads_per_worker=1, dashboard_address=None) as cluster:
+        yield cluster.scheduler_address
+
+
+def _kill(cluster: LocalCluster, kills: int, stop: threading.Event) -> None:
+    """Kill workers of a cluster at random moments; their nannies start others."""
+    rng = random.Random(0)
+    for _ in range(kills):
+        if stop.wait(rng.uniform(0.5, 3.0)):
+            return
+        nannies = [one for one in cluster.workers.values() if one.process and one.process.pid]
+        if nannies:
+            nanny = rng.choice(nannies)
+            os.kill(nanny.process.pid, 9)
+
+
+if __name__ == "__main__":
+    main()
