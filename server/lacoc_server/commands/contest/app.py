@@ -2,7 +2,7 @@
 
 import typer
 
-from lacoc_server.commands.contest import checking, playing, setting_up
+from lacoc_server.commands.contest import checking, deciding, playing, setting_up
 
 app = typer.Typer(
     help="Run a contest: its file, courts and tokens; entries, matches, standings and their proof.",
@@ -17,6 +17,7 @@ for command in (
     playing.withdraw,
     playing.run,
     playing.standings,
+    deciding.decide,
     checking.publish,
     checking.verify,
 ):

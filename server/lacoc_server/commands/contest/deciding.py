@@ -1,0 +1,90 @@
+"""Decide about a match after it was played, once it is clear what that changes."""
+
+import sys
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from lacoc_server.commands.contest.playing import Contest
+from lacoc_server.commands.contest.setting_up import FILE
+from lacoc_shared.command import screen
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, render, say
+
+if TYPE_CHECKING:
+    from lacoc_server.contest.league.contest import Changes
+
+
+def decide(
+    decision: Annotated[
+        Literal["replay", "result", "void", "no-show"],
+        typer.Argument(
+            help="replay: the game is played again. result: it counts with --score. void: the match "
+            "counts for nobody. no-show: --team did not come."
+        ),
+    ],
+    pairing: Annotated[
+        str, typer.Argument(metavar="PAIRING", help="The match, such as groups:a1.2.")
+    ],
+    game: Annotated[int, typer.Option(help="Number of the game in its match.", min=1)] = 1,
+    team: Annotated[str, typer.Option(metavar="TEAM", help="The team that did not come.")] = "",
+    score: Annotated[
+        str, typer.Option(metavar="L:R", help="Points of the left and of the right seat.")
+    ] = "",
+    reason: Annotated[
+        str, typer.Option("--reason", metavar="TEXT", help="Why; everybody can read it.")
+    ] = "",
+    yes: Annotated[bool, typer.Option("--yes", help="Do it without asking.")] = False,
+    contest: Contest = FILE,
+) -> None:
+    """Decide about a match: show what the decision changes, ask, then append it to the facts.
+
+    What was played before stays in the facts. If teams of later matches change, those matches are
+    played again; results that do not count any more are kept.
+    """
+    from lacoc_server.contest import deciding
+
+    wanted = deciding.Wanted(
+        kind=decision,
+        pairing=pairing,
+        game=game,
+        team=team,
+        scores=_scores(score),
+        reason=reason,
+    )
+    fact, changes = deciding.preview(contest, wanted)
+    for line in _lines(changes):
+        screen.show(line)
+    if not yes and not (sys.stdin.isatty() and typer.confirm(render(say("decide.sure")))):
+        screen.note(say("decide.not-done"))
+        return
+    deciding.append(contest, fact)
+    screen.show(say("decide.done"))
+
+
+def _scores(score: str) -> tuple[int, int] | None:
+    if not score:
+        return None
+    left, colon, right = score.partition(":")
+    if not (colon and left.strip().isdecimal() and right.strip().isdecimal()):
+        raise UserError(say("decide.bad-score", score=score))
+    return int(left), int(right)
+
+
+def _lines(changes: "Changes") -> list[Phrase]:
+    lines: list[Phrase] = []
+    for before, after in changes.matches:
+        match = after or before
+        assert match is not None
+        lines.append(
+            say(
+                "decide.match",
+                pairing=match.pairing.id,
+                teams=[team or "?" for team in match.teams],
+                state=match.state,
+                winner=match.winner or None,
+            )
+        )
+    for stage, team, old, now in changes.ranks:
+        lines.append(say("decide.rank", stage=stage, team=team, before=old, after=now))
+    return lines or [say("decide.nothing")]
