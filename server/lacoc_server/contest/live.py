@@ -73,8 +73,8 @@ def play_live(
         writer(office.contest)
         opened(stack.enter_context(venue.pages(where, logs, listen, show)), addresses)
         while not office.over:
-            if office.step():
-                writer(office.contest)
+            office.step()
+            writer(office.contest)
             bots.follow(office.contest, {name: link.call for name, link in links.items()})
             time.sleep(_STEP_S)
         return writer.write()

@@ -67,15 +67,14 @@ class Office:
         """Whether nothing is left to play or to draw."""
         return not self.contest.planned and all(view.over for view in self.contest.stages)
 
-    def step(self) -> bool:
-        """Look at the courts once, and do what follows; return whether the contest has changed.
+    def step(self) -> None:
+        """Look at the courts once, and do what follows.
 
         Raises:
             UserError: if the facts can't be read or written, or a frozen file has changed.
         """
         now_ms = time.time_ns() // 1_000_000
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
-        before = self.contest
         if len(self._store.facts()) != self._known:  # another program has appended some
             self.contest = self._compute()
         self._append(*results(self.contest, seen))
@@ -88,7 +87,6 @@ class Office:
             if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
                 self._asked[call.id] = self._assign(call)
         self._take_back(now_ms)
-        return self.contest is not before
 
     def _look(self, name: str, link: CourtLink, now_ms: int) -> Seen:
         link.poll()

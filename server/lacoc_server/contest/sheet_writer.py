@@ -11,38 +11,55 @@ from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-_SHEET_S = 2.0
+_SHEET_S = 1.0
 """Shortest time between two sheets."""
+_LEAST_SHARE = 10
+"""Between two sheets there are at least as many times the time that one took: with 200 teams the
+ratings take a second."""
 
 Progress = Callable[[int, int], None]
 """Called with how many matches are decided, and how many there are so far."""
 
 
 class SheetWriter:
-    """Writes the sheet of a contest for pages now and then."""
+    """Writes the sheet of a contest for pages: soon after each change, but not all the time.
+
+    Args:
+        where: the contest.
+        progress: told about each change.
+    """
 
     def __init__(self, where: ContestFolder, progress: Progress) -> None:
         self._where = where
         self._progress = progress
-        self._written_s = float("-inf")
         self._contest: Contest | None = None
+        self._is_new = False
+        self._next_s = 0.0
 
     def __call__(self, contest: Contest) -> None:
-        """Take note of the contest as it is now."""
-        self._contest = contest
-        matches = [match for view in contest.stages for match in view.matches]
-        self._progress(sum(match.decided for match in matches), len(matches))
-        if time.monotonic() - self._written_s > _SHEET_S:
+        """Look at the contest as it is now; called again and again, also without a change."""
+        if contest is not self._contest:
+            self._contest, self._is_new = contest, True
+            matches = [match for view in contest.stages for match in view.matches]
+            self._progress(sum(match.decided for match in matches), len(matches))
+        if self._is_new and time.monotonic() >= self._next_s:
             self.write()
 
     def write(self) -> ContestSheet:
-        """Write the sheet of the contest as it is now, and return it."""
+        """Write the sheet of the contest as it is now, and return it.
+
+        Raises:
+            UserError: if it can't be written.
+        """
         assert self._contest is not None
+        begun_s = time.monotonic()
         made = sheets.sheet(self._where.contest.name, self._contest)
         try:
             write(self._where.sheet, sheets.encode(made))
         except OSError as error:
             why, path = error.strerror or str(error), str(self._where.sheet)
             raise UserError(say("command.cannot-write", path=path, why=why)) from None
-        self._written_s = time.monotonic()
+        ended_s = time.monotonic()
+        self._is_new = False
+        self._next_s = ended_s + max(_SHEET_S, _LEAST_SHARE * (ended_s - begun_s))
         return made
