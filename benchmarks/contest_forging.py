@@ -391,7 +391,7 @@ def _record(copy: _Copy) -> None:
     other = copy.chance.choice([one for one in sorted(path.parent.iterdir()) if one != path])
     copy.name, record = Forger(Record.read(path), Record.read(other)).forge(copy.chance)
     path.unlink()
-    _written(record, path)
+    written(record, path)
     if copy.chance.random() < 0.7:
         copy.name += ", with its hash"
         changes: dict[str, Any] = {"record_hash": file_hash(path)}
@@ -404,7 +404,7 @@ def _record(copy: _Copy) -> None:
         copy.write(whole=True, again=True)
 
 
-def _written(record: Record, path: Path) -> None:
+def written(record: Record, path: Path) -> None:
     """Write a record as a packed file."""
     writer = RecordWriter(path.parent, record.header)
     for beat, inputs in record.inputs.items():

@@ -53,7 +53,7 @@ def enter(
     return file
 
 
-def play(file: Path, jobs: int = 2) -> int:
+def play(file: Path, jobs: int = 1) -> int:
     """Play a contest without a network; return how many games were played now."""
     return organiser.play_headless(file, "planner", Pool(jobs), lambda done, there: None)[1]
 

@@ -105,16 +105,20 @@ def test_a_full_disk_appends_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("at", "said"),
-    [(0, r"facts\.db, which keeps the facts .* is damaged"), (5000, "facts .* can't be read")],
+    ("part", "said"),
+    [
+        (b"SQLite", r"facts\.db, which keeps the facts .* is damaged"),
+        (b'{"fact":', "facts .* can't be read"),
+    ],
 )
-def test_a_damaged_file_is_told(tmp_path: Path, at: int, said: str) -> None:
+def test_a_damaged_file_is_told(tmp_path: Path, part: bytes, said: str) -> None:
     """A damaged file, or one of something else, is told and not touched."""
     path = tmp_path / "facts.db"
     with FactStore(path) as store:
         store.append(*(new(Entered, team=f"{number:060}") for number in range(300)))
     data = bytearray(path.read_bytes())
-    data[at : at + 600] = b"\x55" * 600
+    at = data.index(part)
+    data[at : at + 6] = b"UUUUUU"
     path.write_bytes(data)
     with pytest.raises(UserError, match=said), FactStore(path) as store:
         store.facts()
