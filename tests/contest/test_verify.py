@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from lacoc_server.contest import organiser
+from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.folder import ContestFolder, file_hash
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
@@ -28,6 +29,7 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.publish import SHEET, tables
 from lacoc_server.contest.store import FactStore
 from lacoc_server.contest.verify.check import check
 from lacoc_server.contest.verify.games import check_game, games_of
@@ -90,7 +92,8 @@ def test_an_honest_contest_with_decisions_follows(copied: Path) -> None:
         last = next(fact for fact in reversed(store.facts()) if isinstance(fact, Played))
         what = {name: getattr(last, name) for name in ("pairing", "game", "teams")}
         store.append(new(Replay, reason="net down", **what))
-        organiser.enter(copied, last.teams[0], None, "straight", "broken robot")
+        bot = "nearest" if contest_played.BOTS[last.teams[0]] == "straight" else "straight"
+        organiser.enter(copied, last.teams[0], None, bot, "broken robot")
     contest_played.play(copied)
     with FactStore(where.facts) as store:
         score = {"scores": (1, 0), "outcome": "left"}
@@ -112,6 +115,9 @@ def test_a_clock_that_was_corrected_changes_nothing(copied: Path) -> None:
     facts = read(folder)
     back = [replace(fact, at_ms=10**12 - 1000 * fact.number) for fact in facts]
     (folder / "facts.json").write_bytes(league_facts.encode(back))
+    sheet = sheets.sheet_of("Cup", back, FORMATS)
+    for name, content in {SHEET: sheets.encode(sheet), **tables(sheet)}.items():
+        (folder / name).write_bytes(content)
     assert findings(folder) == []
 
 
