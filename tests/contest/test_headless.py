@@ -122,7 +122,7 @@ def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> No
 def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
     """All games that can be played are played; the message names the team and its mistake."""
     file = contest_played.enter(tmp_path / "broken")
-    bad = tmp_path / "bad.py"
+    bad = tmp_path / "your_bot.py"
     bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 / 0\n")
     organiser.enter(file, "Eve", None, str(bad), "")
     with pytest.raises(UserError, match=r"Eve.*can't play their game.*division by zero"):
