@@ -1,5 +1,6 @@
 """A small contest that was played and published, for tests and forgeries."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from lacoc_server.contest import organiser
@@ -39,18 +40,20 @@ BOTS = {"Ann": "planner", "Bob": "straight", "Café 日本": "nearest", "=Dé": 
 """The teams in the order in which they enter, and their bots; "": `IDLE`."""
 
 
-def enter(folder: Path, contest: str = CONTEST + SWISS + FINAL) -> Path:
+def enter(
+    folder: Path, contest: str = CONTEST + SWISS + FINAL, bots: Mapping[str, str] = BOTS
+) -> Path:
     """Write a contest file and enter the teams; return the file."""
     folder.mkdir(parents=True, exist_ok=True)
     file, idle = folder / "contest.toml", folder / "bot.py"
     file.write_text(contest, "utf-8")
     idle.write_text(IDLE)
-    for team, bot in BOTS.items():
+    for team, bot in bots.items():
         organiser.enter(file, team, None, bot or str(idle), "")
     return file
 
 
-def play(file: Path, jobs: int = 2) -> int:
+def play(file: Path, jobs: int = 1) -> int:
     """Play a contest without a network; return how many games were played now."""
     return organiser.play_headless(file, "planner", Pool(jobs), lambda done, there: None)[1]
 

@@ -42,18 +42,33 @@ def find(arena: Arena, name: str) -> BotFactory:
     return checked(name, _find(arena, name))
 
 
+def find_installed(arena: Arena, name: str) -> BotFactory:
+    """Find a bot whose name comes from a stranger: no file is opened, and no code in one runs.
+
+    Arguments and the bot are those of `find`.
+
+    Raises:
+        UserError: if there is no such bot.
+    """
+    return checked(name, _installed(arena, name))
+
+
 def _find(arena: Arena, name: str) -> BotFactory:
     if name.startswith(GHOST):
         record, seat = open_ghost(name)
         return lambda sheet, index: ghost(record, seat)
+    if name.endswith(".py") and name not in arena.bots:
+        return _from_file(Path(name).expanduser())
+    return _installed(arena, name)
+
+
+def _installed(arena: Arena, name: str) -> BotFactory:
     if name in arena.bots:
         return arena.bots[name]
     installed = plugins.installed(GROUP)
     if name in installed:
         factory: BotFactory = installed[name].load()
         return factory
-    if name.endswith(".py"):
-        return _from_file(Path(name).expanduser())
     raise UserError(
         say("bot.none", name=name, arena=arena.name, own=[*arena.bots], installed=[*installed])
     )

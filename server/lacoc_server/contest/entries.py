@@ -166,13 +166,14 @@ class EntryFolder:
             why = say("contest.no-hash")
             raise UserError(say("contest.no-entry", folder=str(place), why=why)) from None
         try:
-            bot = msgspec.json.decode((place / _BOT).read_bytes(), type=dict[str, str])["bot"]
+            bot_file = (place / _BOT).read_bytes()
+            bot = msgspec.json.decode(bot_file, type=dict[str, str])["bot"]
             robot = (place / _ROBOT).read_bytes()
             rest = [_read_if_there(place / name) for name in (*GAIT_NAMES, _PROGRAM)]
         except (OSError, KeyError, msgspec.MsgspecError) as error:
             raise UserError(say("contest.no-entry", folder=str(place), why=str(error))) from None
         entry = Entry(robot=robot, postures=rest[0], locomotion=rest[1], bot=bot, program=rest[2])
-        if entry.hash != entry_hash:
+        if entry.hash != entry_hash or bot_file != _files(entry)[_BOT]:
             raise UserError(say("contest.entry-changed", folder=str(place)))
         return entry
 

@@ -163,7 +163,7 @@ def _games(
         name = (match.pairing.id, match.next_game)
         if match.next_seats is None or name in busy:
             continue
-        late = _late_ticks(contest, match) + _tries(match, facts)
+        late = late_ticks(contest, facts, match)
         seated = tuple(
             _seated(seat, team, entry(files[team]), steer)
             for seat, team in enumerate(match.next_seats)
@@ -175,23 +175,31 @@ def _seated(seat: int, team: str, entry: Entry, steer: str) -> Seated:
     return Seated(entry.join(seat, team), entry.bot or steer, entry.program)
 
 
-def _late_ticks(contest: Contest, match: Match) -> int:
-    """Return how much later the bots start, because these teams have met before.
+def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
+    """Return how many ticks later the bots start in the next game of a match.
 
-    The number depends on the draw alone, never on the order in which games are played.
+    Otherwise teams that meet again would play the same game again. The number depends on the draw,
+    and on how often this game was played without a result that counts; never on the order in which
+    other games are played.
+
+    Args:
+        contest: the contest before the game.
+        facts: its facts.
+        match: the match.
     """
     before = 0
     for view in contest.stages:
         most = view.stage.settings.games + view.stage.settings.extra_games
         for other in view.matches:
             if other.pairing.id == match.pairing.id:
-                return LATE_TICKS * (before + (match.next_game - 1) // 2)
+                again = before + (match.next_game - 1) // 2
+                return LATE_TICKS * again + _tries(match, facts)
             if {*other.teams} == {*match.teams}:
                 before += most
-    return LATE_TICKS * before
+    raise ValueError(f"no match {match.pairing.id}")
 
 
-def _tries(match: Match, facts: tuple[AnyFact, ...]) -> int:
+def _tries(match: Match, facts: Sequence[AnyFact]) -> int:
     """Count the results of this game that do not count: void ones, and those to be replayed."""
     return sum(
         isinstance(fact, Played)

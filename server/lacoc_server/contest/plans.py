@@ -15,7 +15,7 @@ from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_server.contest.store import FactStore
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError, text_of
-from lacoc_shared.words import Phrase, say
+from lacoc_shared.words import say
 
 _USUAL_ARENA = "othello"
 _SETTINGS = Settings.__struct_fields__
@@ -47,9 +47,8 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
         wrong = None
         try:
             plan = _plan(name, table, contest.limits)
-            wrong = _fault(plan, [one.stage for one in found])
-            if wrong is None:
-                game(plan)
+            _check(plan, [one.stage for one in found])
+            game(plan)
         except msgspec.ValidationError as error:
             wrong = say("contest.bad-stage", stage=text_of(name), error=str(error))
         except UserError as error:
@@ -114,15 +113,19 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     return msgspec.convert(msgspec.to_builtins(plan), Planned)  # checks the lengths and patterns
 
 
-def _fault(plan: Planned, before: list[str]) -> Phrase | None:
+def _check(plan: Planned, before: list[str]) -> None:
+    """Check what a plan names.
+
+    Raises:
+        UserError: at the first name that is not known.
+    """
     if plan.format not in FORMATS:
-        return say("league.unknown-format", format=plan.format, known=[*FORMATS])
+        raise UserError(say("league.unknown-format", format=plan.format, known=[*FORMATS]))
     if plan.after and plan.after not in before:
-        return say("contest.stage-after", stage=plan.stage, after=plan.after, before=before or None)
+        raise UserError(say("contest.stage-after", after=plan.after, before=before or None))
     for code in plan.settings.tie_breaks:
         if code not in TIE_BREAKS:
-            return say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS])
-    return None
+            raise UserError(say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS]))
 
 
 def _content(plan: Planned) -> Planned:

@@ -24,6 +24,8 @@ from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, render, say
 
+COURT = "simulation"
+"""Name of the court in records of matches without a network."""
 _LONGEST_S = 86_400.0
 """Longest time that a match may take [s]."""
 _LOOK_S = 0.5
@@ -183,7 +185,7 @@ def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Result:
     arena = arenas.load(job.arena, job.overrides)
     setup = Setup(
         match_id=job.match_id,
-        court="simulation",
+        court=COURT,
         match=1,
         arena=arena.name,
         settings=arena.settings,

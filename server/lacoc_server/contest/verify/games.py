@@ -9,10 +9,13 @@ import msgspec
 from lacoc_arenas import arena as arenas
 from lacoc_server.contest.entries import Entry, EntryFolder
 from lacoc_server.contest.folder import file_hash
-from lacoc_server.contest.headless import outcome
+from lacoc_server.contest.headless import late_ticks, outcome
+from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Planned, Played
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.publish import ENTRIES, RECORDS
-from lacoc_server.contest.verify.history import files_of, plan_of
+from lacoc_server.contest.verify.bots import may_have_pressed
+from lacoc_server.contest.verify.history import files_of, known_before
 from lacoc_server.journal.replay import verify as prove
 from lacoc_server.journal.verdict import Verdict
 from lacoc_shared.inputs import JoinSeat
@@ -27,22 +30,29 @@ class Game(msgspec.Struct, frozen=True, kw_only=True):
 
     played: Played
     plan: Planned | None
-    """The plan of its stage; None: the stage was never drawn."""
+    """The plan of its stage; None: it was not the turn of this game."""
+    late_ticks: int = 0
+    """How many ticks later its bots start, if it was played without a network."""
     files: tuple[tuple[str, ...], ...]
     """By seat: hashes of the entries with which the team may have played."""
 
 
 def games_of(facts: Sequence[AnyFact]) -> list[Game]:
     """Return all games that were played, also void ones, in the order of their facts."""
-    return [
-        Game(
-            played=fact,
-            plan=plan_of(facts, fact),
-            files=tuple(files_of(facts, fact, team) for team in fact.teams),
-        )
-        for fact in facts
-        if isinstance(fact, Played)
-    ]
+    return [_game(facts, fact) for fact in facts if isinstance(fact, Played)]
+
+
+def _game(facts: Sequence[AnyFact], played: Played) -> Game:
+    before = known_before(facts, played)
+    contest = compute(before, FORMATS)
+    files = tuple(files_of(facts, played, team) for team in played.teams)
+    for view in contest.stages:
+        for match in view.matches:
+            due = (match.pairing.id, match.next_game, match.next_seats)
+            if due == (played.pairing, played.game, played.teams):
+                late = late_ticks(contest, before, match)
+                return Game(played=played, plan=view.plan, late_ticks=late, files=files)
+    return Game(played=played, plan=None, files=files)
 
 
 def check_game(folder: Path, game: Game, proven: bool) -> list[Phrase]:
@@ -66,12 +76,15 @@ def _faults(folder: Path, game: Game, proven: bool) -> Iterator[Phrase]:
     if not played.record or Path(played.record).name != played.record or "\0" in played.record:
         yield say("verify.no-record", pairing=played.pairing, game=played.game)
         return
+    if game.plan is None:
+        yield say("verify.not-due", pairing=played.pairing, game=played.game)
+        return
     path = folder / RECORDS / played.record
     try:
         if played.record_hash and file_hash(path) != played.record_hash:
             yield say("verify.record-changed", **at)
         record = Record.read(path)
-        wrong = [*_differences(folder, game, record)]
+        wrong = [*_differences(folder, game, game.plan, record)]
         verdict = _verdict(record) if proven and not wrong else None
     except OSError as error:
         yield say("verify.no-file", file=played.record, why=error.strerror or str(error))
@@ -92,25 +105,22 @@ def _verdict(record: Record) -> Verdict:
     return next(step for step in prove(record, processes=1) if isinstance(step, Verdict))
 
 
-def _differences(folder: Path, game: Game, record: Record) -> Iterator[Phrase]:
+def _differences(folder: Path, game: Game, plan: Planned, record: Record) -> Iterator[Phrase]:
     """Yield what in a record is not what the facts say about the game.
 
     Raises:
         UserError: if the arena of the plan is not installed, or its settings are wrong.
     """
-    played, plan = game.played, game.plan
+    played = game.played
     setup, result = record.header.setup, record.result
     if packed_path(Path(), record.header.match_id).name != played.record:
         yield say("verify.of-name")
     # An installed arena alone is loaded: a folder's code must not run because the facts name it.
-    arena = None if plan is None else arenas.load_installed(plan.arena, plan.arena_settings)
-    if arena is None or setup.arena != arena.name:
+    arena = arenas.load_installed(plan.arena, plan.arena_settings)
+    if (setup.arena, _rules(setup.settings)) != (arena.name, _rules(arena.settings)):
         yield say("verify.of-arena")
         return
-    if _rules(setup.settings) != _rules(arena.settings):
-        yield say("verify.of-arena")
-        return
-    if plan is not None and setup.limits != plan.limits:
+    if setup.limits != plan.limits:
         yield say("verify.of-limits")
     if result is None or result.teams != played.teams:
         yield say("verify.of-teams")
@@ -120,16 +130,20 @@ def _differences(folder: Path, game: Game, record: Record) -> Iterator[Phrase]:
         yield say("verify.of-result")
     entries = EntryFolder(folder / ENTRIES)
     for seat, team in enumerate(played.teams):
-        allowed = (_load(entries, one) for one in game.files[seat])
-        wanted = [_content(entry.join(seat, team)) for entry in allowed if entry is not None]
+        allowed = [found for one in game.files[seat] if (found := _load(entries, one)) is not None]
         joins = [
             one
             for inputs in record.inputs.values()
             for one in inputs
             if isinstance(one, JoinSeat) and one.seat == seat
         ]
-        if not joins or any(_content(join) not in wanted for join in joins):
+        fits = [
+            one for one in allowed if {*map(_content, joins)} == {_content(one.join(seat, team))}
+        ]
+        if not fits:
             yield say("verify.of-files", team=team)
+        elif not any(may_have_pressed(record, arena, seat, one, game.late_ticks) for one in fits):
+            yield say("verify.of-bot", team=team)
 
 
 def _rules(settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """The order of facts: what must have come before what, and which draws follow from it; pure."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from lacoc_server.contest.league.contest import Contest, StageView, compute
+from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
@@ -12,7 +12,6 @@ from lacoc_server.contest.league.facts import (
     Entered,
     FilesChanged,
     NoShow,
-    Planned,
     Played,
     Replaced,
     Replay,
@@ -21,8 +20,6 @@ from lacoc_server.contest.league.facts import (
     Withdrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
 from lacoc_server.contest.league.schedule import due
 from lacoc_shared.words import Phrase, say
 
@@ -45,12 +42,8 @@ def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase
     yield from _gaps(facts)
     yield from _entries(facts)
     yield from _draws(facts)
-    yield from _begun_too_early(facts, contest)
-    by_id = {fact.id: fact for fact in facts}
     for unused in contest.unused:
-        fact = by_id[unused.fact]
-        was_right = _was_due(facts, fact) if isinstance(fact, Played) else True
-        if unused.why.code not in _HARMLESS or not was_right:
+        if unused.why.code not in _HARMLESS:
             yield say("verify.unused", fact=unused.fact, why=unused.why)
 
 
@@ -81,16 +74,14 @@ def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Itera
             return
 
 
-def plan_of(facts: Iterable[AnyFact], game: Played) -> Planned | None:
-    """Return the plan by which the stage of a game was drawn; None: it never was."""
-    stage = game.pairing.partition(":")[0]
-    plan = None
-    for fact in facts:
-        if isinstance(fact, Planned) and fact.stage == stage:
-            plan = fact
-        elif isinstance(fact, Drawn) and fact.stage == stage:
-            return plan
-    return None
+def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
+    """Return what was known when a game was called, or, if nobody called it, had been played."""
+    at = facts.index(played)
+    for place in range(at - 1, -1, -1):
+        fact = facts[place]
+        if isinstance(fact, Called) and (fact.pairing, fact.game) == (played.pairing, played.game):
+            return facts[:place]
+    return facts[:at]
 
 
 def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ...]:
@@ -146,55 +137,3 @@ def _content(draw: Closed | Drawn | RoundDrawn) -> tuple[object, ...]:
     if isinstance(draw, RoundDrawn):
         return draw.stage, draw.round, draw.pairs
     return ()
-
-
-def _was_due(facts: Sequence[AnyFact], played: Played) -> bool:
-    """Return whether a game was the next one of its match when it was called or had been played."""
-    at = facts.index(played)
-    for number, fact in enumerate(facts[:at]):
-        if isinstance(fact, Called) and _game(fact) == _game(played):
-            at = number
-    before = compute(facts[:at], FORMATS)
-    matches = {match.pairing.id: match for view in before.stages for match in view.matches}
-    match = matches.get(played.pairing)
-    return match is not None and (match.next_game, match.next_seats) == (played.game, played.teams)
-
-
-def _game(fact: Called | Played | Replaced) -> tuple[str, int, frozenset[str]]:
-    return fact.pairing, fact.game, frozenset(fact.teams)
-
-
-def _begun_too_early(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
-    """Name games that came before their draw, or before a game that had to be played first."""
-    drawn: dict[tuple[str, int], int] = {}
-    first: dict[tuple[str, int, frozenset[str]], int] = {}
-    for fact in facts:
-        if isinstance(fact, Drawn):
-            drawn.setdefault((fact.stage, 0), fact.number)
-        elif isinstance(fact, RoundDrawn):
-            drawn.setdefault((fact.stage, fact.round), fact.number)
-        elif isinstance(fact, Replaced) or (isinstance(fact, Played) and fact.outcome != "void"):
-            first.setdefault(_game(fact), fact.number)
-    for view in contest.stages:
-        matches = {match.pairing.id: match for match in view.matches}
-        for match in view.matches:
-            before = _draw_of(view, match, drawn)
-            for source in match.pairing.sources:
-                if isinstance(source, WinnerOf | LoserOf):
-                    before = max(before, _last(matches[source.pairing], first))
-            for game in match.games:
-                number = first[match.pairing.id, game.number, frozenset(game.teams)]
-                if number < before:
-                    yield say("verify.too-early", pairing=match.pairing.id)
-                    break
-                before = number
-
-
-def _last(match: Match, first: Mapping[tuple[str, int, frozenset[str]], int]) -> int:
-    """Return where the last game of a match stands among the facts; 0: it has none."""
-    games = ((match.pairing.id, game.number, frozenset(game.teams)) for game in match.games)
-    return max((first[name] for name in games), default=0)
-
-
-def _draw_of(view: StageView, match: Match, drawn: Mapping[tuple[str, int], int]) -> int:
-    return drawn.get((view.name, match.pairing.round)) or drawn[view.name, 0]

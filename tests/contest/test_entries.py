@@ -1,0 +1,189 @@
+"""Tests of entries: the files of a team, weighed in and frozen under their hash."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import msgspec
+import pytest
+from benchmarks import contest_played
+from benchmarks.contest_played import CONTEST, FINAL, IDLE, SWISS
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot
+from lacoc_server.contest import organiser
+from lacoc_server.contest.entries import EntryFolder, gather, weigh
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.league.facts import AnyFact, Closed, Disqualified, FilesChanged, Withdrawn
+from lacoc_server.contest.store import FactStore
+from lacoc_shared.mistakes import FileRefused, UserError
+
+ENTRY = gather(None, "planner", "hexapod")
+
+
+@dataclass
+class Cup:
+    """A contest in which nobody has entered yet."""
+
+    file: Path
+
+    def enter(self, team: str, bot: str = "planner", reason: str = "") -> str:
+        """Enter a team; return the code of what was said."""
+        return organiser.enter(self.file, team, None, bot, reason).code
+
+    def out(self, team: str, *, disqualified: bool = False) -> None:
+        """Take a team out."""
+        organiser.take_out(self.file, team, "ill", disqualified=disqualified)
+
+    @property
+    def facts(self) -> tuple[AnyFact, ...]:
+        """All facts."""
+        with FactStore(ContestFolder(self.file).facts) as store:
+            return store.facts()
+
+
+@pytest.fixture
+def cup(tmp_path: Path) -> Cup:
+    file = tmp_path / "contest.toml"
+    file.write_text(CONTEST + SWISS + FINAL, "utf-8")
+    return Cup(file)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"robot": b"x"},
+        {"postures": b"x"},
+        {"postures": None},
+        {"locomotion": b"x"},
+        {"bot": "nearest"},
+        {"program": b""},
+    ],
+)
+def test_each_part_changes_the_hash(change: dict[str, object]) -> None:
+    """The hash of an entry depends on each file and on the bot, and not on the team."""
+    assert msgspec.structs.replace(ENTRY, **change).hash != ENTRY.hash
+    assert gather(None, "planner", "hexapod").hash == ENTRY.hash
+
+
+def test_frozen_files_that_were_changed_are_found(tmp_path: Path) -> None:
+    """Saved twice, an entry is one folder; a changed, missing or added file is found."""
+    folder = EntryFolder(tmp_path)
+    entry = msgspec.structs.replace(ENTRY, bot="idle", program=IDLE.encode())
+    assert folder.save(entry) == folder.save(entry) == entry.hash
+    assert [path.name for path in tmp_path.iterdir()] == [entry.hash]
+    assert folder.load(entry.hash) == entry
+    for path in sorted((tmp_path / entry.hash).iterdir()):
+        before = path.read_bytes()
+        path.write_bytes(before + b" ")
+        with pytest.raises(UserError, match=r"not those that were frozen|can't be read"):
+            folder.load(entry.hash)
+        path.unlink()
+        with pytest.raises(UserError, match=r"not those that were frozen|can't be read"):
+            folder.load(entry.hash)
+        path.write_bytes(before)
+    assert folder.load(entry.hash) == entry
+    with pytest.raises(UserError, match="name is not a hash"):
+        folder.load("../entries")
+
+
+def test_every_mistake_of_every_file_is_told(tmp_path: Path) -> None:
+    """Wrong files are refused at once, with every mistake; nothing is kept of them."""
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "robot.toml").write_text("legs = 3\n")
+    (own / "Loco-data.txt").write_text("x\ny\n")
+    (own / "LocoTra-data.txt").write_text("z\n")
+    with pytest.raises(FileRefused) as refused:
+        weigh(gather(own, "", "hexapod"), [arenas.load("othello")], {})
+    assert len(refused.value.mistakes) > 2
+    assert len({mistake.file for mistake in refused.value.mistakes}) > 1
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [("def bot(:\n", r"bot\.py:1"), ("x = 1\n", r"bot\.py"), ("\0", "null")],
+)
+def test_a_bot_with_a_mistake_is_refused(cup: Cup, source: str, said: str) -> None:
+    """A program with a mistake in its grammar, or without the function, is refused."""
+    program = cup.file.with_name("bot.py")
+    program.write_text(source)
+    with pytest.raises(UserError, match=said):
+        cup.enter("Ann", str(program))
+    with pytest.raises(UserError, match="nobody"):
+        cup.enter("Ann", "nobody")
+    assert not cup.facts
+
+
+def test_two_teams_have_the_same_files(cup: Cup) -> None:
+    """Two teams can enter the same files: the entry is frozen once."""
+    assert cup.enter("Ann") == cup.enter(" Bob ") == "contest.entered"
+    assert [fact.team for fact in cup.facts] == ["Ann", "Bob"]
+    assert len([*(cup.file.parent / "entries").iterdir()]) == 1
+
+
+@pytest.mark.parametrize("team", ["", "   ", "x" * 25, "a\nb", "a\u202eb", "a\0b"])
+def test_a_name_that_cannot_be_shown_is_refused(cup: Cup, team: str) -> None:
+    """A team's name is as long as a court allows, and has no invisible characters."""
+    with pytest.raises(UserError, match="1 to 24"):
+        cup.enter(team)
+
+
+def test_one_name_is_one_team_however_it_is_typed(cup: Cup) -> None:
+    """An accent that is typed as a character of its own makes no second team."""
+    cup.enter("Café")
+    assert cup.enter("Cafe\u0301", "nearest") == "contest.entered-again"
+
+
+def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
+    """When the time is over nobody enters any more, and files change only with a reason."""
+    cup.enter("Ann")
+    assert cup.enter("Ann", "nearest") == "contest.entered-again"
+    assert cup.enter("Ann", "nearest") == "contest.entered-same"
+    text = cup.file.read_text("utf-8")
+    now = datetime.now(UTC)
+    end = f'name = "Cup"\nentries_close = {now + timedelta(hours=1):%Y-%m-%dT%H:%M:%SZ}'
+    cup.file.write_text(text.replace('name = "Cup"', end), "utf-8")
+    assert cup.enter("Bob") == "contest.entered"
+    end = f'name = "Cup"\nentries_close = {now - timedelta(hours=1):%Y-%m-%dT%H:%M:%SZ}'
+    cup.file.write_text(text.replace('name = "Cup"', end), "utf-8")
+    with pytest.raises(UserError, match="Entries were closed before Cy entered"):
+        cup.enter("Cy")
+    with pytest.raises(UserError, match="--reason"):
+        cup.enter("Bob", "nearest")
+    assert cup.enter("Bob", "nearest", reason="broken file") == "contest.entered-again"
+    last = cup.facts[-1]
+    assert isinstance(last, FilesChanged)
+    assert last.reason == "broken file"
+    assert sum(isinstance(fact, Closed) for fact in cup.facts) == 1
+
+
+def test_a_team_leaves_once(cup: Cup) -> None:
+    """A team can withdraw once and be disqualified later; a team that is not there can't leave."""
+    cup.enter("Ann")
+    for _ in range(2):
+        cup.out("Ann")
+    for _ in range(2):
+        cup.out("Ann", disqualified=True)
+    assert [type(fact) for fact in cup.facts[1:]] == [Withdrawn, Disqualified]
+    with pytest.raises(UserError, match=r"Zoe has not entered\. Teams: Ann"):
+        cup.out("Zoe")
+
+
+def test_a_contest_needs_two_teams_and_a_stage(cup: Cup) -> None:
+    """Without two teams, or without a stage, the message says how to go on."""
+    with pytest.raises(UserError, match=r"0 teams have entered.*lacoc contest enter"):
+        contest_played.play(cup.file)
+    cup.file.write_text(CONTEST, "utf-8")
+    with pytest.raises(UserError, match=r"plans no stage.*\[stage.groups\]"):
+        contest_played.play(cup.file)
+
+
+def test_an_own_robot_is_in_the_entry(tmp_path: Path) -> None:
+    """A folder with a robot file enters that robot; without one it is the contest's."""
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "Loco-data.txt").write_bytes(ENTRY.locomotion or b"")
+    assert gather(own, "", "hexapod").robot == find_robot("hexapod")[1]
+    (own / "robot.toml").write_bytes(find_robot("long-legs")[1])
+    assert gather(own, "", "hexapod").robot == find_robot("long-legs")[1]

@@ -1,0 +1,197 @@
+"""Tests of a contest without a network: stopped anywhere, it comes to the same end."""
+
+import os
+import shutil
+import signal
+import time
+from pathlib import Path
+
+import msgspec
+import psutil
+import pytest
+from benchmarks import contest_played
+from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS
+from lacoc_process import Lacoc
+
+from lacoc_server.contest import headless, organiser
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
+from lacoc_server.contest.pool import Pool
+from lacoc_server.contest.publish import tables
+from lacoc_server.contest.sheet import ContestSheet
+from lacoc_server.contest.store import FactStore
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.summary import Summary, summary
+
+pytestmark = pytest.mark.slow
+
+
+def bytes_of(sheet: ContestSheet) -> dict[str, bytes]:
+    """Return the tables of a contest."""
+    return tables(sheet)
+
+
+def games(played: Path) -> int:
+    """Return how many records a contest has."""
+    return len([*(played / "records").iterdir()])
+
+
+def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: Path) -> None:
+    """One process and two give the same tables byte for byte, whatever ends first."""
+    again = contest_played.enter(tmp_path / "again")
+    assert contest_played.play(again, jobs=2) == games(played)
+    first, second = (organiser.sheet(file) for file in (played / "contest.toml", again))
+    assert bytes_of(first) == bytes_of(second)
+    assert [*(played / "records").iterdir()] != []
+    names = [
+        sorted(path.name for path in (one / "records").iterdir()) for one in (played, again.parent)
+    ]
+    assert names[0] == names[1]
+    ranks = [row.rank for table in second.stages[0].tables for row in table.rows]
+    assert ranks == [1, 2, 3, 4, 5]
+
+
+def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied: Path) -> None:
+    """Nothing changed: no game is played, in the same contest or in a new one with its records."""
+    assert contest_played.play(copied) == 0
+    again = contest_played.enter(tmp_path / "new")
+    shutil.copytree(played / "records", again.parent / "records")
+    assert contest_played.play(again) == 0
+    assert bytes_of(organiser.sheet(again)) == bytes_of(organiser.sheet(copied))
+    shutil.rmtree(again.parent / "records")
+    shutil.copytree(played / "records", again.parent / "records")
+    (next((again.parent / "records").iterdir())).write_bytes(b"damaged")
+    again.with_suffix(".db").unlink()
+    contest_played.enter(again.parent)
+    assert contest_played.play(again) == 1
+
+
+def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:
+    """In a new contest with the same records, only the games of a changed entry are played."""
+    contest = CONTEST + SWISS.replace('"swiss"', '"round-robin"').replace("rounds = 2\n", "")
+    bots = dict([*BOTS.items()][:4])
+    one = contest_played.enter(tmp_path / "one", contest, bots)
+    assert contest_played.play(one) == 6
+    two = contest_played.enter(tmp_path / "two", contest, {**bots, "Ann": "straight"})
+    shutil.copytree(one.parent / "records", two.parent / "records")
+    assert contest_played.play(two) == 3
+
+
+@pytest.mark.parametrize(
+    "how", [pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGKILL]
+)
+def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: int) -> None:
+    """After a kill in the middle the rest is played, nothing twice, and the tables are the same."""
+    file = contest_played.enter(tmp_path / "stopped")
+    records = file.parent / "records"
+    words = ["contest", "run", "contest.toml", "--headless", "--jobs", "1", "--json"]
+    run = Lacoc(*words, cwd=file.parent)
+    end_s = time.monotonic() + 60
+    while not (records.exists() and [*records.glob("*.mcap")]) and time.monotonic() < end_s:
+        time.sleep(0.01)
+    os.kill(run.pid, how)
+    run.wait(60)
+    there = {path.name: path.stat().st_mtime_ns for path in records.glob("*.mcap")}
+    assert 0 < len(there) < games(played)
+    assert contest_played.play(file) == games(played) - len(there)
+    assert [name for name, at in there.items() if (records / name).stat().st_mtime_ns != at] == []
+    assert bytes_of(organiser.sheet(file)) == bytes_of(organiser.sheet(played / "contest.toml"))
+
+
+def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> None:
+    """When processes die, their games are played again, and the tables are the same."""
+    file = contest_played.enter(tmp_path / "killed")
+    where = ContestFolder(file)
+    kills = 3
+
+    def changed(_: object) -> None:
+        nonlocal kills
+        children = psutil.Process().children(recursive=True)
+        busy = [one for one in children if sum(one.cpu_times()[:2]) > 0.3]
+        if kills and busy:
+            kills -= 1
+            busy[0].kill()
+
+    with FactStore(where.facts) as store, Pool(2) as pool:
+        organiser.prepare(where, store)
+        headless.play(where, store, pool, "planner", changed)
+    assert kills < 3
+    assert bytes_of(organiser.sheet(file)) == bytes_of(organiser.sheet(played / "contest.toml"))
+
+
+def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
+    """All games that can be played are played; the message names the team and its mistake."""
+    file = contest_played.enter(tmp_path / "broken")
+    bad = tmp_path / "your_bot.py"
+    bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 / 0\n")
+    organiser.enter(file, "Eve", None, str(bad), "")
+    with pytest.raises(UserError, match=r"Eve.*can't play their game.*division by zero"):
+        contest_played.play(file)
+    decided = [match.decided for match in organiser.sheet(file).stages[0].matches]
+    assert decided.count(False) == 1
+    organiser.take_out(file, "Eve", "broken bot", disqualified=True)
+    contest_played.play(file)
+    view = organiser.sheet(file).stages[0]
+    assert all(match.decided for match in view.matches)
+    assert [row.team for row in view.tables[0].rows][-1] == "Eve"
+
+
+def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> None:
+    """Who left before the draw is not drawn; who leaves later loses what is not played."""
+    file = contest_played.enter(tmp_path / "left", CONTEST + SWISS)
+    organiser.take_out(file, "Eve", "ill", disqualified=False)
+    where = ContestFolder(file)
+
+    def changed(contest: object) -> None:
+        with FactStore(where.facts) as store:
+            if sum(isinstance(fact, Played) for fact in store.facts()) == 2:
+                organiser.take_out(file, "Bob", "gone home", disqualified=False)
+
+    with FactStore(where.facts) as store, Pool(1) as pool:
+        organiser.prepare(where, store)
+        headless.play(where, store, pool, "planner", changed)
+    view = organiser.sheet(file).stages[0]
+    assert "Eve" not in view.stage.entries
+    of_bob = [match for match in view.matches if "Bob" in match.teams]
+    assert [match.how for match in of_bob] == ["played", "walkover"] or len(of_bob) == 1
+
+
+def test_a_game_to_be_replayed_is_another_game(copied: Path) -> None:
+    """A game that a decision lets play again is played again; its old record does not stand in."""
+    where = ContestFolder(copied)
+    with FactStore(where.facts) as store:
+        last = next(fact for fact in reversed(store.facts()) if isinstance(fact, Played))
+        names = ("pairing", "game", "teams")
+        what = {name: getattr(last, name) for name in names}
+        store.append(new(Replay, reason="the net was down", **what))
+    assert contest_played.play(copied) == 1
+    with FactStore(where.facts) as store:
+        again = store.facts()[-1]
+    assert isinstance(again, Played)
+    assert {name: getattr(again, name) for name in names} == what
+    assert again.record != last.record
+
+
+def test_void_games_are_played_again_and_at_last_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A game in which physics stopped is played again; after three of them it is a draw."""
+    one = FINAL.replace('after = "swiss"\nteams = 2\ngames = 3\n', "extra_games = 0\n")
+    file = contest_played.enter(tmp_path / "void", CONTEST + one)
+    for team in [*BOTS][2:]:
+        organiser.take_out(file, team, "ill", disqualified=False)
+
+    def void(path: Path) -> Summary | None:
+        found = summary(path)
+        return found and msgspec.structs.replace(found, winner="void")
+
+    monkeypatch.setattr(headless, "summary", void)
+    assert contest_played.play(file) == 4
+    with FactStore(ContestFolder(file).facts) as store:
+        played = [fact for fact in store.facts() if isinstance(fact, Played)]
+        decision = store.facts()[-1]
+    assert [fact.outcome for fact in played] == ["void"] * 3
+    assert len({fact.record for fact in played}) == 3
+    assert isinstance(decision, Replaced)
+    assert decision.outcome == "draw"
+    assert organiser.sheet(file).stages[0].matches[0].how == "seed"

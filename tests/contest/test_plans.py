@@ -1,0 +1,64 @@
+"""Tests of the stages in a contest file: each mistake has one clear sentence."""
+
+from pathlib import Path
+
+import pytest
+from benchmarks.contest_played import CONTEST
+
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.league.facts import Closed, Drawn, Entered, Planned, new
+from lacoc_server.contest.plans import note_plans
+from lacoc_server.contest.store import FactStore
+from lacoc_shared.mistakes import UserError
+
+GROUPS = '[stage.groups]\nformat = "round-robin"\n'
+
+
+def folder(tmp_path: Path, stages: str) -> ContestFolder:
+    file = tmp_path / "contest.toml"
+    file.write_text(CONTEST + stages, "utf-8")
+    return ContestFolder(file)
+
+
+@pytest.mark.parametrize(
+    ("stages", "said"),
+    [
+        ('[stage.a]\nformat = "league"\n', r'There is no format "league"\. Choose double-knockout'),
+        ("[stage.a]\n", r"missing required field `format`"),
+        ('[stage."A b"]\nformat = "swiss"\n', r"stage"),
+        (GROUPS + "games = 0\n", r"groups.*>= 1.*games"),
+        (GROUPS + 'games = "two"\n', r"groups.*Expected `int`, got `str`.*games"),
+        (GROUPS + "teams = -1\n", r"groups.*>= 0.*teams"),
+        (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, teams'),
+        (GROUPS + 'tie_breaks = ["luck"]\n', r'no tie-break "luck"\. Choose from points'),
+        (GROUPS + 'after = "groups"\n', r'comes after "groups", but no stage of this name'),
+        (GROUPS + 'arena = "chess"\n', r'no arena "chess"'),
+        (GROUPS + 'arena = "practice"\n', r'"practice" is not a game for two'),
+        (GROUPS + "settings.match.duration = 3\n", r"duration"),
+        (GROUPS + 'settings = "long"\n', r"groups.*Expected `object`, got `str`"),
+        ("[stage]\nformat = 3\n", r"stage"),
+    ],
+)
+def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -> None:
+    """A mistake in a stage is told with the file and the stage, in one line."""
+    with pytest.raises(UserError, match=said) as wrong:
+        folder(tmp_path, stages)
+    assert "contest.toml" in str(wrong.value)
+    assert "\n" not in str(wrong.value)
+
+
+def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:
+    """A changed plan is a new fact until its stage is drawn; later the change is refused."""
+    where = folder(tmp_path, GROUPS)
+    with FactStore(where.facts) as store:
+        for stages in (GROUPS, GROUPS, f"{GROUPS}games = 3\n"):
+            note_plans(store, folder(tmp_path, stages).plans)
+        assert [type(fact) for fact in store.facts()] == [Planned, Planned]
+        store.append(new(Entered, team="Ann"), new(Entered, team="Bob"), new(Closed))
+        store.append(new(Drawn, stage="groups", entries=("Ann", "Bob")))
+        last = f'{GROUPS}games = 3\n[stage.last]\nformat = "swiss"\n'
+        note_plans(store, folder(tmp_path, last).plans)
+        assert [fact.stage for fact in store.facts() if isinstance(fact, Planned)][2:] == ["last"]
+        with pytest.raises(UserError, match=r'Stage "groups" has been drawn'):
+            note_plans(store, folder(tmp_path, last.replace("games = 3", "games = 5")).plans)
+        assert len(store.facts()) == 7

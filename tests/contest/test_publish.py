@@ -1,0 +1,169 @@
+"""Tests of the published folder, and of the commands with which an organiser gets to it."""
+
+import csv
+import io
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from benchmarks import contest_played
+from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, TOKENS
+
+from lacoc_server.contest import organiser
+from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.league.facts import Closed, new
+from lacoc_server.contest.publish import GAMES, STANDINGS
+from lacoc_server.contest.store import FactStore
+from lacoc_server.contest.tokens import TeamTokens
+from lacoc_shared.mistakes import UserError
+
+Run = Callable[..., tuple[int, str, str]]
+NAMES = ["日本", "a/../../b", "..", ".", "a\"b'c", "=1+2", "＝1", "🦀 😀", "C:\\x", "a,b;c", "<b>"]
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """Return all files in a folder by their path."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+@pytest.mark.slow
+def test_it_has_no_token(copied: Path) -> None:
+    """No file of the folder has a token in it, or in its name."""
+    where = ContestFolder(copied)
+    secrets = [*TOKENS.values(), *(TeamTokens(where.tokens).of(team) for team in BOTS)]
+    published = files(contest_played.publish(copied))
+    for name, data in published.items():
+        assert [one for one in secrets if one.encode() in data or one in name] == []
+    assert any(secrets[0].encode() in data for data in files(copied.parent).values())
+
+
+@pytest.mark.slow
+def test_it_can_be_written_again(copied: Path) -> None:
+    """Written again, the folder is the same; a file that was damaged in it is mended."""
+    folder = copied.parent / "published"
+    before = files(folder)
+    for name in before:
+        if not name.startswith("entries"):
+            (folder / name).write_bytes(b"x" * len(before[name]))
+    contest_played.publish(copied)
+    assert files(folder) == before
+    record = next((copied.parent / "records").iterdir())
+    record.write_bytes(record.read_bytes() + b"x")
+    with pytest.raises(UserError, match="has been changed since its game"):
+        contest_played.publish(copied)
+    record.unlink()
+    with pytest.raises(UserError, match="is missing"):
+        contest_played.publish(copied)
+    assert files(folder) == before
+
+
+def test_files_of_teams_come_with_the_end_of_entries(tmp_path: Path) -> None:
+    """While entries are open, nobody sees another team's files; then they are in the folder."""
+    file = contest_played.enter(tmp_path)
+    folder = contest_played.publish(file)
+    assert [name for name in files(folder) if name.startswith(("entries", "records"))] == []
+    with FactStore(ContestFolder(file).facts) as store:
+        store.append(new(Closed))
+    contest_played.publish(file)
+    entries = {name.split("/")[1] for name in files(folder) if name.startswith("entries")}
+    assert len(entries) == len({*BOTS.values()})
+
+
+def test_names_are_data(tmp_path: Path) -> None:
+    """No name leaves the folder, becomes a formula, or breaks a table."""
+    file = contest_played.enter(
+        tmp_path / "in" / "side", CONTEST + SWISS, dict.fromkeys(NAMES, "planner")
+    )
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        organiser.prepare(where, store)
+        store.append(new(Closed))
+    organiser.publish_to(file, tmp_path / "in" / "out")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in"]
+    assert sorted(path.name for path in (tmp_path / "in").iterdir()) == ["out", "side"]
+    assert [team.name for team in organiser.sheet(file).teams] == NAMES
+
+
+@pytest.mark.slow
+def test_tables_are_for_spreadsheets(played: Path) -> None:
+    """The tables are CSV with a mark for Excel; a name that looks like a formula is a text."""
+    rows = {}
+    for name in (STANDINGS, GAMES):
+        text = (played / "published" / name).read_bytes()
+        assert text.startswith(b"\xef\xbb\xbf")
+        rows[name] = [*csv.DictReader(io.StringIO(text.decode("utf-8-sig")))]
+    teams = {row["team"] for row in rows[STANDINGS]}
+    assert teams == {*BOTS} - {"=Dé"} | {"'=Dé"}
+    assert {row["stage"] for row in rows[GAMES]} == {"swiss", "final"}
+    assert all((played / "published" / "records" / row["record"]).exists() for row in rows[GAMES])
+
+
+@pytest.mark.slow
+def test_the_commands_from_an_empty_folder_to_standings(
+    tmp_path: Path, lacoc: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The documented commands set up, play, publish and verify a contest, in this order."""
+    monkeypatch.chdir(tmp_path)
+    assert lacoc("contest", "init")[0] == 0
+    with Path("contest.toml").open("a", encoding="utf-8") as file:
+        file.write(FINAL.replace('after = "swiss"\n', ""))
+    assert lacoc("contest", "check")[0] == 0
+    for team in ("Bees", "Ants"):
+        code, said, _ = lacoc("contest", "enter", team, "--bot", "planner")
+        assert (code, said[:16]) == (0, f"{team} has entered")
+    assert lacoc("contest", "standings", "--json")[0] == 0
+    code, said, _ = lacoc("contest", "run", "--headless", "--jobs", "2", "--json")
+    end = json.loads(said)
+    assert (code, end["kind"], end["played"]) == (0, "end", end["games"])
+    assert json.loads(lacoc("contest", "run", "--headless", "--json")[1])["played"] == 0
+    sheet = json.loads(lacoc("contest", "standings", "--json")[1])
+    assert [team["name"] for team in sheet["teams"]] == ["Bees", "Ants"]
+    assert "Bees" in lacoc("contest", "standings")[1]
+    assert lacoc("contest", "publish", "out")[0] == 0
+    code, said, _ = lacoc("contest", "verify", "out", "--jobs", "1", "--json")
+    told = json.loads(said)
+    assert (code, told["follows"], told["proven"], told["games"]) == (
+        0,
+        True,
+        end["games"],
+        end["games"],
+    )
+
+
+@pytest.mark.slow
+def test_exit_codes_and_languages(
+    copied: Path, lacoc: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Verify ends with 0, 1 or 2; what it says is English or Japanese."""
+    folder = copied.parent / "published"
+    verify = ("contest", "verify", folder, "--jobs", "1", "--sample", "1", "--seed", "1")
+    code, said, note = lacoc(*verify)
+    assert (code, "The standings follow from the facts" in said) == (0, True)
+    assert "The records of 1 of" in note
+    with monkeypatch.context() as japanese:
+        japanese.setenv("LACOC_LANGUAGE", "ja")
+        assert "順位は事実と記録から正しく導かれています" in lacoc(*verify)[1]
+        code, said, _ = lacoc("contest", "withdraw", "Ann", "--contest", copied, "--reason", "病気")
+        assert (code, "大会を去りました" in said) == (0, True)
+    contest_played.publish(copied)
+    code, said, note = lacoc(*verify)
+    assert code == 0
+    assert "withdrawn – Ann: 病気" in note
+    (folder / STANDINGS).write_bytes(b"")
+    code, said, _ = lacoc(*verify)
+    assert (code, "standings.csv is not what follows" in said) == (1, True)
+    told = json.loads(lacoc(*verify, "--json")[1])
+    assert [one["code"] for one in told["findings"]] == ["verify.other-sheet"]
+    (folder / "facts.json").write_text("{")
+    assert lacoc(*verify)[0] == 2
+    shutil.rmtree(folder)
+    assert lacoc(*verify)[0] == 2
+    assert lacoc("contest", "enter", "Zoe", "--contest", copied)[0] == 2
+    assert lacoc("contest", "withdraw", "Zoe", "--contest", copied)[0] == 2
+    assert lacoc("contest", "run", copied.parent / "none.toml", "--headless")[0] == 2
