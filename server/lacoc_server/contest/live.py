@@ -67,14 +67,18 @@ def play_live(
         }
         tokens = TeamTokens(where.tokens)
         rest_ms = round(1000 * where.contest.least_rest_s)
-        office = Office(store, where.entries, tokens.of, links, rest_ms)
-        bots = stack.enter_context(venue.Bots(where, tokens, addresses))
+        told = {
+            name: venue.told_address(where.contest.courts[name], address)
+            for name, address in addresses.items()
+        }
+        office = Office(store, where.entries, tokens.of, links, told, rest_ms)
+        bots = stack.enter_context(venue.Bots(where, tokens, next(iter(addresses.values()))))
         writer = SheetWriter(where, progress)
         writer(office.contest)
         opened(stack.enter_context(venue.pages(where, logs, listen, show)), addresses)
         while not office.over:
             if office.step():
                 writer(office.contest)
-            bots.follow(office.contest, {name: link.call for name, link in links.items()})
+            bots.follow(office.contest)
             time.sleep(_STEP_S)
         return writer.write()
