@@ -21,6 +21,8 @@ from lacoc_shared.words import say
 
 _STEP_S = 0.05
 """Time between two looks at the courts."""
+_FAREWELL_S = 3.0
+"""The courts stay for so long after the end, so that all teams hear that the contest is over."""
 
 
 def play_live(
@@ -80,5 +82,9 @@ def play_live(
             if office.step():
                 writer(office.contest)
             bots.follow(office.contest)
+            time.sleep(_STEP_S)
+        end_s = time.monotonic() + _FAREWELL_S
+        while time.monotonic() < end_s:
+            office.step()
             time.sleep(_STEP_S)
         return writer.write()

@@ -154,11 +154,11 @@ def _waits(
 
 
 def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
-    """Say how a team came out that plays no more."""
+    """Say how a team came out that plays no more; places are final in stages that are over."""
     place: Phrase | None = None
     rank = 0
     for view in contest.stages:
-        for table in view.tables:
+        for table in view.tables if view.over else ():
             for row in table.rows:
                 if row.team == team:
                     rank = row.rank

@@ -130,7 +130,7 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
     about_s: int | None = None
     """Time until then, estimated [s]; None: not known."""
     rank: int = 0
-    """Rank in the newest stage in which the team has one; 0: none."""
+    """Rank in the newest stage that is over and has the team; 0: none."""
 
 
 class Tell(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
