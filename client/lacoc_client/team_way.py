@@ -39,6 +39,28 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
     return ask(session, keys, keys.where, Where(token=token), Whereabouts)
 
 
+def office_court(session: Session, court: str, *, any_court: bool) -> str:
+    """Find the court to ask, and check that it has an office; return its name.
+
+    Args:
+        session: a connection to the court.
+        court: the court's name.
+        any_court: whether nobody named it, so that another one at this address will do.
+
+    Raises:
+        NoCourt: if there is no court.
+        UserError: if the court has no office.
+    """
+    if any_court:
+        there = [key.split("/")[1] for key in session.present(EVERY_COURT)]
+        court = court if court in there else next(iter(there), court)
+    keys = Keys(court)
+    sheet = understand(fetch(session, keys, keys.sheet), Sheet)
+    if sheet.fixture is None:
+        raise UserError(say("contest.which-seat", seats=[seat.id for seat in sheet.seats]))
+    return court
+
+
 class TeamWay:
     """Leads a team from court to court; used as a context manager.
 
@@ -70,7 +92,9 @@ class TeamWay:
         """The call that the team has played."""
         self._session = patience.until(lambda: open_client([access.connect]))
         try:
-            self._court = patience.until(lambda: self._office_court(any_court))
+            self._court = patience.until(
+                lambda: office_court(self._session, access.court, any_court=any_court)
+            )
             self._newest = patience.until(self._ask)
         except BaseException:
             self._session.close()
@@ -127,18 +151,6 @@ class TeamWay:
         return Access(court=there.court, connect=there.address).of_seat(
             there.seat, self._access.token
         )
-
-    def _office_court(self, any_court: bool) -> str:
-        """Find the court to ask, and check that it has an office."""
-        name = self._access.court
-        if any_court:
-            there = [key.split("/")[1] for key in self._session.present(EVERY_COURT)]
-            name = name if name in there else next(iter(there), name)
-        keys = Keys(name)
-        sheet = understand(fetch(self._session, keys, keys.sheet), Sheet)
-        if sheet.fixture is None:
-            raise UserError(say("contest.which-seat", seats=[seat.id for seat in sheet.seats]))
-        return name
 
     def _ask(self) -> Whereabouts:
         return where(self._session, self._court, self._access.token)

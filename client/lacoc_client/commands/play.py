@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
 import typer
 from rich.console import Group
 from rich.text import Text
@@ -16,7 +17,7 @@ from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.own_files import OwnFiles
 from lacoc_client.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_client.stopping import stop_signals
-from lacoc_client.team_way import TeamWay, is_gone, is_over
+from lacoc_client.team_way import TeamWay, is_gone, is_over, office_court
 from lacoc_client.terminal.keys import Keys, open_keys
 from lacoc_client.terminal.play import TerminalPlay, keys_table
 from lacoc_client.terminal.words import played
@@ -24,6 +25,7 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages.office import Whereabouts
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.words import render, say
 
@@ -100,8 +102,12 @@ def play_command(
         files = own_files(robot, gait or []).files
         play(access, name or render(say("page.team", seat=access.seat)), files, ready=ready)
         return
-    access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
-    prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
+    at_office = None if any_seat is None else _at_office(any_seat, court is None)
+    if at_office is not None:
+        access, prefill = at_office, Prefill(token=at_office.token)
+    else:
+        access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
+        prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
     home = player_home(access, prefill, "player", None)
     pages.show_page(home, f"/play#key={home.key}", browser, json)
 
@@ -144,6 +150,16 @@ def play(
         controller = _seated(session, access, team, files, ready=ready, greeting=greeting)
         with stop_signals() as stopping, open_keys() as keys:
             TerminalPlay(controller, keys, Path()).run(stopping)
+
+
+def _at_office(access: Access, any_court: bool) -> Access | None:
+    """Find a court with an office for the page of a team; None: there is none now."""
+    try:
+        with open_client([access.connect]) as session:
+            court = office_court(session, access.court, any_court=any_court)
+    except UserError:
+        return None
+    return msgspec.structs.replace(access, court=court)
 
 
 def follow(access: Access, any_court: bool, *, ready: bool) -> None:
