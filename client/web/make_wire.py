@@ -72,6 +72,7 @@ STRUCTS = (
     messages.SentFile,
     office.AssignedSeat,
     office.Assigned,
+    office.Whereabouts,
     schema.Setup,
     schema.Header,
     schema.Result,

@@ -9,7 +9,7 @@ from lacoc_shared.words import say
 EVERY_COURT = "lacoc/*/live/court"
 """Key expression for the announcements of all courts that can be reached (Zenoh's liveliness)."""
 COMMAND_MAX_BYTES = 1024
-"""Largest command, ready or leave that is read."""
+"""Largest command, ready, leave or question where a team plays that is read."""
 ENTER = "enter"
 """Used in place of a decision's name: the referee only shows the token."""
 DECISION_MAX_BYTES = 4096
@@ -101,6 +101,11 @@ class Keys:
         """Return the key expression of a decision, which gets a reply; `*` is for all decisions."""
         return f"{self.root}/referee/{name}"
 
+    @property
+    def where(self) -> str:
+        """Key expression on which a team asks where it plays, at a court with an office."""
+        return f"{self.root}/where"
+
     def office(self, what: str) -> str:
-        """Return the key expression of a request of the office; `what`: assign, withdraw or `*`."""
+        """Return the key expression of an office's request; `what`: assign, withdraw, tell, `*`."""
         return f"{self.root}/office/{what}"

@@ -25,6 +25,7 @@ from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.site import PATHS
 from lacoc_client.gateway.viewer import Frames, Viewer
+from lacoc_shared.contest import entrances
 from lacoc_shared.contest.file import throwaway
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
@@ -321,10 +322,10 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
     """A contest's page key always follows from its tokens; any other page key is random."""
     contest, other = throwaway("othello"), throwaway("othello")
-    assert home.lasting_key(contest) == home.lasting_key(contest)
-    assert home.lasting_key(contest) != home.lasting_key(other)
+    assert entrances.page_key(contest) == entrances.page_key(contest)
+    assert entrances.page_key(contest) != entrances.page_key(other)
     assert len({home.new_key() for _ in range(100)}) == 100
-    assert min(len(home.new_key()), len(home.lasting_key(contest))) >= 22
+    assert min(len(home.new_key()), len(entrances.page_key(contest))) >= 22
 
 
 def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,23 +11,26 @@ from assigned import (
     WHISTLE,
     Office,
     entry,
+    hash_of,
     new_call,
     office_of,
+    token,
     write_office_contest,
 )
 
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
+from lacoc_client.team_way import where
 from lacoc_server.contest.court_link import CourtLink, NoAnswer
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start
-from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
+from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, Keys
 from lacoc_shared.messages import Done, Refusal, SentFile
-from lacoc_shared.messages.office import WAITING
+from lacoc_shared.messages.office import WAITING, Whereabouts
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.session import NoReply
+from lacoc_shared.network.session import NoReply, open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
@@ -343,3 +346,25 @@ def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
         office.assign("Cats", "Dogs")
     assert recorded is not None
     assert record(tmp_path, result.match_id).result == recorded
+
+
+def test_a_team_asks_where_it_plays(waiting: Office) -> None:
+    """A court answers a team with what the office told; nobody else can answer in its name.
+
+    A client that declares that it answers such questions gets none, so it collects no token.
+    """
+    keys = Keys("main")
+    there = Whereabouts(team="Ants", state="waits", said=say("team.awaits-draw"))
+    assert waiting.link.tell({hash_of("Ants"): there}).wait() == Done()
+    thief = CourtLink(waiting.session, "main", "a guess").tell({hash_of("Ants"): there}).wait()
+    assert isinstance(thief, Refusal)
+    with open_client(waiting.session.endpoints) as forger:
+        desks = [forger.desk(key, 8) for key in (keys.where, keys.office("*"), "lacoc/*/where")]
+        forger.ask(keys.sheet)  # answered after all of the above
+        with open_client(waiting.session.endpoints) as team:
+            for _ in range(20):
+                assert where(team, "main", token("Ants")) == there
+            with pytest.raises(UserError) as error:
+                where(team, "main", token("Bees"))
+        assert error.value.phrase == say("refused.no-team-token")
+        assert [desk.take() for desk in desks] == [None, None, None]

@@ -10,15 +10,19 @@ import typer
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
-from lacoc_client.asking import Patience
+from lacoc_arenas.arena import Arena
+from lacoc_client.asking import NoCourt, NotNow, Patience
 from lacoc_client.bot_player import BotPlayer
 from lacoc_client.commands import entrance
 from lacoc_client.controller import Controller, Hold
 from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
+from lacoc_client.team_way import TeamWay, is_gone, is_over
 from lacoc_shared.command import options, screen
+from lacoc_shared.contest.invitation import Access
+from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError, text_of
-from lacoc_shared.network.session import open_client
+from lacoc_shared.network.session import NotConnected, open_client
 from lacoc_shared.words import Phrase, say
 
 app = typer.Typer()
@@ -72,10 +76,16 @@ def bot_command(
 ) -> None:
     """Let a bot hold a seat: it joins, says ready and plays, match after match.
 
+    With the token of a team and without --seat it goes from court to court, wherever the office of
+    the contest calls the team, until the contest is over for it.
+
     The bot ends with Ctrl-C, or when the court has been gone for two minutes (or for the time of
     --wait, if that is longer). Your own bot is a Python file with a function bot(sheet, seat). This
     function returns another function, which takes a frame and returns a key.
     """
+    if (any_seat := entrance.team(invitation, contest, court, connect, seat, token)) is not None:
+        _follow(name, any_seat, court is None, arena, wait)
+        return
     access = entrance.seat(invitation, contest, court, connect, seat, token)
     notes: list[Phrase] = []
     files, own_team = _brings(name, robot, gait or [], notes)
@@ -97,9 +107,7 @@ def bot_command(
                 **files._asdict(),
             )
         )
-        sheet = controller.view.sheet
-        ground = arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
-        player = BotPlayer(controller, ground, name)
+        player = BotPlayer(controller, _ground(controller, arena), name)
         hints = patience.until(controller.join)
         screen.show(say("bot.holds", bot=name, seat=access.seat, court=access.court))
         for hint in hints:
@@ -109,6 +117,66 @@ def bot_command(
         finally:
             if controller.hold is Hold.HELD:
                 _leave(controller)
+
+
+def _follow(
+    name: str, access: Access, any_court: bool, arena: str | None, wait: float | None
+) -> None:
+    """Play all matches of a team, at whichever court the office calls it to."""
+    with stop_signals() as stopping:
+        patience = Patience(wait, stopping)
+        with TeamWay(
+            access, any_court=any_court, patience=patience, tell=screen.show, stopping=stopping
+        ) as way:
+            while (there := way.next()) is not None:
+                try:
+                    over = _play_match(name, way, there, arena, stopping)
+                except (NotConnected, NoCourt, NotNow) as error:
+                    screen.note(error.phrase)
+                    over = False
+                if stopping():
+                    return
+                if over:
+                    way.played(there.call)
+                else:
+                    way.again()
+
+
+def _play_match(
+    name: str,
+    way: TeamWay,
+    there: Whereabouts,
+    arena: str | None,
+    stopping: Callable[[], bool],
+) -> bool:
+    """Play one match of a team; return whether it is over."""
+    access = way.access(there)
+    with open_client([access.connect]) as session:
+        controller = Controller(session, access.court, access.seat, access.token, there.team)
+        if is_over(controller.view, there.call):
+            return True
+        player = BotPlayer(controller, _ground(controller, arena), name)
+        controller.join()
+        while not stopping() and not is_over(controller.view, there.call):
+            frame = controller.wait_frame(0.1)
+            if frame is not None:
+                player.see(frame)
+            for refused in controller.take_refused():
+                screen.show(say("bot.refused", key=refused.name, why=refused.why))
+            for event in controller.view.take_events():
+                if event.kind in ("phase", "result"):
+                    screen.show(event.said)
+            if controller.hold is Hold.REPLACED:
+                raise UserError(say("play.lost", why=controller.why_not_held))
+            if controller.hold is Hold.REFUSED or is_gone(controller.view):
+                return False
+        return not stopping()
+
+
+def _ground(controller: Controller, arena: str | None) -> Arena:
+    """Return the arena that has the bot; by default the one that the court plays."""
+    sheet = controller.view.sheet
+    return arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
 
 
 def _brings(

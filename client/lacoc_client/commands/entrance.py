@@ -28,6 +28,33 @@ def seat(
     return entrances.seat_access(_load(contest), court, connect, seat, token)
 
 
+def team(
+    invitation: Path | None,
+    contest: Path | None,
+    court: str | None,
+    connect: str | None,
+    seat: str | None,
+    token: str | None,
+) -> Access | None:
+    """Find the way to a court for a team that has a token but names no seat.
+
+    Such a token is a team's, for a contest with an office, which says where the team plays. None:
+    a seat is named or known, or there is no token.
+
+    Raises:
+        UserError: if the contest file is wrong.
+    """
+    if invitation is not None or seat is not None or token is None:
+        return None
+    plan = _load(contest)
+    if plan is not None:
+        name, entry = plan.court(court or next(iter(plan.courts)))
+        if len(entry.seat) == 1:
+            return None
+        court = name
+    return entrances.spectator_access(plan, court, connect).of_seat("", token)
+
+
 def perhaps_seat(
     invitation: Path | None,
     contest: Path | None,

@@ -1,26 +1,32 @@
 """`lacoc play`: play as a contestant, on a page or at the terminal."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
 import typer
 from rich.console import Group
 from rich.text import Text
 
+from lacoc_client.asking import NoCourt, NotNow, Patience
 from lacoc_client.commands import entrance, pages
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.own_files import OwnFiles
 from lacoc_client.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_client.stopping import stop_signals
-from lacoc_client.terminal.keys import open_keys
+from lacoc_client.team_way import TeamWay, is_gone, is_over, office_court
+from lacoc_client.terminal.keys import Keys, open_keys
 from lacoc_client.terminal.play import TerminalPlay, keys_table
 from lacoc_client.terminal.words import played
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.gait.tables import Level
-from lacoc_shared.network.session import open_client
+from lacoc_shared.messages.office import Whereabouts
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
@@ -71,6 +77,9 @@ def play_command(
 ) -> None:
     """Hold a seat and steer your robot with the keyboard.
 
+    In a contest with an office your team has one token: give it without --seat. You are told when
+    and where you play next, and go from court to court until the contest is over for your team.
+
     A page opens in your browser; only this machine can open it. The page already has what you give
     here, and you can enter the rest there.
 
@@ -84,13 +93,21 @@ def play_command(
     robot wait until the match is played. The last key of the pipe stays pressed until the match is
     over.
     """
+    any_seat = entrance.team(invitation, contest, court, connect, seat, token)
+    if terminal and any_seat is not None:
+        follow(any_seat, court is None, ready=ready)
+        return
     if terminal:
         access = entrance.seat(invitation, contest, court, connect, seat, token)
         files = own_files(robot, gait or []).files
         play(access, name or render(say("page.team", seat=access.seat)), files, ready=ready)
         return
-    access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
-    prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
+    at_office = None if any_seat is None else _at_office(any_seat, court is None)
+    if at_office is not None:
+        access, prefill = at_office, Prefill(token=at_office.token)
+    else:
+        access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
+        prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
     home = player_home(access, prefill, "player", None)
     pages.show_page(home, f"/play#key={home.key}", browser, json)
 
@@ -130,17 +147,88 @@ def play(
         UserError: if the court refuses, does not answer, or the seat is lost.
     """
     with open_client([access.connect], credentials=access.credentials) as session:
-        controller = Controller(
-            session, access.court, access.seat, access.token, team, **files._asdict()
-        )
-        for note in controller.join():
-            screen.note(note)
-        _await_own_entry(controller, team)
-        if ready:
-            controller.ready()
-        _greet(controller, team, greeting)
+        controller = _seated(session, access, team, files, ready=ready, greeting=greeting)
         with stop_signals() as stopping, open_keys() as keys:
             TerminalPlay(controller, keys, Path()).run(stopping)
+
+
+def _at_office(access: Access, any_court: bool) -> Access | None:
+    """Find a court with an office for the page of a team; None: there is none now."""
+    try:
+        with open_client([access.connect]) as session:
+            court = office_court(session, access.court, any_court=any_court)
+    except UserError:
+        return None
+    return msgspec.structs.replace(access, court=court)
+
+
+def follow(access: Access, any_court: bool, *, ready: bool) -> None:
+    """Play all matches of a team at the terminal, at whichever court the office calls it to.
+
+    Args:
+        access: the way to any court of the contest, with the team's token.
+        any_court: whether nobody named the court.
+        ready: say ready at once, in each match.
+
+    Raises:
+        UserError: if no team has the token, or the seat is lost for good.
+    """
+    with stop_signals() as stopping, open_keys() as keys:
+        way = TeamWay(
+            access,
+            any_court=any_court,
+            patience=Patience(None),
+            tell=screen.show,
+            stopping=stopping,
+        )
+        with way:
+            while not stopping() and (there := way.next()) is not None:
+                try:
+                    if not _play_match(way, there, keys, stopping, ready=ready):
+                        return
+                except (NotConnected, NoCourt, NotNow) as error:
+                    screen.note(error.phrase)
+                    way.again()
+
+
+def _play_match(
+    way: TeamWay, there: Whereabouts, keys: Keys, stopping: Callable[[], bool], *, ready: bool
+) -> bool:
+    """Play one match of a team at the terminal; return whether the team goes on."""
+    access = way.access(there)
+    with open_client([access.connect]) as session:
+        controller = _seated(session, access, there.team, SeatFiles(), ready=ready)
+        view = controller.view
+
+        def is_left() -> bool:
+            return is_over(view, there.call) or is_gone(view)
+
+        goes_on = TerminalPlay(controller, keys, Path(), is_left).run(stopping)
+        if goes_on and is_over(view, there.call):
+            way.played(there.call)
+        return goes_on
+
+
+def _seated(
+    session: Session,
+    access: Access,
+    team: str,
+    files: SeatFiles,
+    *,
+    ready: bool,
+    greeting: Text | None = None,
+) -> Controller:
+    """Join, say what the keys do, and return the controller; arguments as in `play`."""
+    controller = Controller(
+        session, access.court, access.seat, access.token, team, **files._asdict()
+    )
+    for note in controller.join():
+        screen.note(note)
+    _await_own_entry(controller, team)
+    if ready:
+        controller.ready()
+    _greet(controller, team, greeting)
+    return controller
 
 
 def _await_own_entry(controller: Controller, team: str) -> None:

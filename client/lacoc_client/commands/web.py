@@ -10,11 +10,12 @@ from lacoc_client.commands import entrance
 from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
+from lacoc_client.gateway.home import VIEWERS_MOST, Home, new_key
 from lacoc_client.gateway.site import site
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.entrances import page_key
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
@@ -132,7 +133,7 @@ def _key(plan: Contest | None, key: str | None) -> str:
         if len(key) < _KEY_LEAST:
             raise UserError(say("web.short-key", least=_KEY_LEAST))
         return key
-    return new_key() if plan is None else lasting_key(plan)
+    return new_key() if plan is None else page_key(plan)
 
 
 def _tell(home: Home, address: str) -> None:

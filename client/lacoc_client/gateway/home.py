@@ -1,6 +1,5 @@
 """The settings of a gateway: its kind, its courts, and what its pages have filled in."""
 
-import hashlib
 import secrets
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,7 +7,6 @@ from typing import Literal
 
 from lacoc_client.own_files import OwnFiles
 from lacoc_shared.command.metrics import Exporter
-from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 
 Kind = Literal["venue", "player", "practice"]
@@ -56,16 +54,6 @@ class Home:
     """Serves the gateway's metrics."""
     key: str = field(default_factory=new_key)
     """The page key: with it a page may act; without it a page only watches."""
-
-
-def lasting_key(contest: Contest) -> str:
-    """Return a contest's page key, which is the same at each start of its gateway.
-
-    So open pages keep working after a restart. The page key is as secret as the contest file.
-    """
-    secret = " ".join(court.referee.token for court in contest.courts.values())
-    digest = hashlib.blake2b(secret.encode(), digest_size=16, person=b"lacoc web key").digest()
-    return digest.hex()
 
 
 def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:

@@ -18,6 +18,7 @@ from lacoc_client.gateway.referees import Referees, as_referee
 from lacoc_client.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
+from lacoc_client.team_way import where
 from lacoc_shared import __version__
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages import PROTOCOL
@@ -77,6 +78,10 @@ class Page:
                 feed, _ = self._acting()
                 _spend(self._tokens)
                 self._seat.join(asked, feed.access)
+            case wire.WhereAsk():
+                feed, _ = self._acting()
+                _spend(self._tokens)
+                answers.later(asked.id, self._where(asked, feed))
             case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk():
                 self._acting()
                 self._seat.steer(asked)
@@ -146,6 +151,20 @@ class Page:
         if not self._viewer.can_act:
             raise UserError(say("gateway.only-watch"))
         return self._feed, self._referees
+
+    async def _where(self, asked: wire.WhereAsk, feed: CourtFeed) -> Any:
+        prefill = self._home.prefill
+        token = asked.token or (prefill.token if prefill is not None else "")
+        session = feed.session
+        if not token:
+            raise UserError(say("gateway.no-token"))
+        if session is None or not feed.connected:
+            raise UserError(say("gateway.court-not-there", court=feed.court))
+        found = await self._courts.strangers.run(lambda: where(session, feed.court, token))
+        if self._home.kind == "player" and found.address:
+            # Only the court of the command line was known; the office names the others.
+            self._home.courts[found.court] = Access(court=found.court, connect=found.address)
+        return found
 
     async def _enter(self, asked: wire.EnterAsk, feed: CourtFeed, referees: Referees) -> Any:
         by = asked.by.strip()

@@ -109,6 +109,13 @@ class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
     """
 
 
+class WhereAsk(Ask, frozen=True, kw_only=True, tag="where"):
+    """Ask where a team plays."""
+
+    token: _Token | None = None
+    """The team's token; None: the one that was given on the command line."""
+
+
 class ReadyAsk(Ask, frozen=True, kw_only=True, tag="ready"):
     """Tell the court that the team is ready, or no longer ready."""
 
@@ -145,7 +152,17 @@ class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
 
 
 Asked = (
-    Watch | Rate | Ping | JoinAsk | ReadyAsk | LeaveAsk | KeyAsk | EnterAsk | TakeOver | DecideAsk
+    Watch
+    | Rate
+    | Ping
+    | JoinAsk
+    | WhereAsk
+    | ReadyAsk
+    | LeaveAsk
+    | KeyAsk
+    | EnterAsk
+    | TakeOver
+    | DecideAsk
 )
 """Every request of a page."""
 

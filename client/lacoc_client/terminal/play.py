@@ -43,13 +43,22 @@ class TerminalPlay:
         controller: holds the seat.
         keys: the source of keys.
         folder: folder of Pos-data.txt.
+        is_over: for a team that goes on to another match: returns whether this one is over. None:
+            the contestant stays in the seat, match after match.
     """
 
-    def __init__(self, controller: Controller, keys: Keys, folder: Path) -> None:
+    def __init__(
+        self,
+        controller: Controller,
+        keys: Keys,
+        folder: Path,
+        is_over: Callable[[], bool] | None = None,
+    ) -> None:
         self._controller = controller
         self._view = controller.view
         self._keys = keys
         self._folder = folder
+        self._is_over = is_over
         self._level = Level(self._view.sheet.levels[0])
         self._data: PosData | None = None
         self._data_match = 0
@@ -60,10 +69,15 @@ class TerminalPlay:
         self._beat = 0
         self._view_asked = False
         self._leaving = False
+        self._goes_on = False
+        """Whether this match is over, and the team goes on to another one."""
         self._saving = False
 
-    def run(self, stopping: Callable[[], bool]) -> None:
-        """Play until a key, a signal or the end of a script ends it.
+    def run(self, stopping: Callable[[], bool]) -> bool:
+        """Play until a key, a signal or the end of a script ends it, or the match is over.
+
+        Returns:
+            Whether the team goes on to another match.
 
         Raises:
             UserError: if the seat is lost for good, or Pos-data.txt can't be written.
@@ -73,7 +87,7 @@ class TerminalPlay:
         live = Live(console=console, auto_refresh=False, transient=True)
         drawn_s = 0.0
         with live if in_place else nullcontext():
-            while not (stopping() or self._leaving):
+            while not (stopping() or self._leaving or self._goes_on):
                 lines = self._step()
                 for line in lines:
                     console.print(line)
@@ -81,7 +95,10 @@ class TerminalPlay:
                 if in_place and (lines or now_s - drawn_s >= _DRAW_S):
                     drawn_s = now_s
                     live.update(self._draw(now_s), refresh=True)
+        if self._goes_on and not self._leaving:
+            return True
         self._leave()
+        return False
 
     def _step(self) -> list[Text]:
         """Take in keys, frames and events; return the lines to print above the live picture."""
@@ -181,9 +198,12 @@ class TerminalPlay:
             UserError: if the seat is lost, or a script waits for a court that is gone.
         """
         controller, frame = self._controller, self._view.frame
+        if self._is_over is not None and self._is_over():
+            self._goes_on = True
+            return
         if controller.hold in (Hold.REPLACED, Hold.REFUSED):
             raise UserError(say("play.lost", why=controller.why_not_held))
-        if not self._keys.ended or frame is None:
+        if not self._keys.ended or frame is None or self._is_over is not None:
             return
         if self._view.silent_s(time.monotonic()) > _GONE_S:
             raise UserError(say("play.silent", seconds=_GONE_S))

@@ -5,7 +5,7 @@ lost message, a restart of the court or of the office costs half a second and no
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -15,7 +15,7 @@ from lacoc_shared import codec
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Done, Event, Frame, Health, Refusal, Sheet
-from lacoc_shared.messages.office import Assign, AssignedSeat, Withdraw
+from lacoc_shared.messages.office import Assign, AssignedSeat, Tell, Whereabouts, Withdraw
 from lacoc_shared.network.session import Mailbox, NoReply, Question, Refused, Session
 from lacoc_shared.seat import BEAT_S, Phase
 from lacoc_shared.words import Phrase
@@ -138,6 +138,14 @@ class CourtLink:
     def withdraw(self, call: str) -> Asked:
         """Take an assigned match back; refused if it has begun or is official."""
         return self._ask("withdraw", Withdraw(token=self._token, call=call))
+
+    def tell(self, teams: Mapping[str, Whereabouts]) -> Asked:
+        """Tell the court where all teams are.
+
+        Args:
+            teams: by the salted hash of the team's token.
+        """
+        return self._ask("tell", Tell(token=self._token, teams=dict(teams)))
 
     def poll(self) -> None:
         """Take in what arrived."""

@@ -21,6 +21,8 @@ from lacoc_shared.words import say
 
 _STEP_S = 0.05
 """Time between two looks at the courts."""
+_FAREWELL_S = 3.0
+"""The courts stay for so long after the end, so that all teams hear that the contest is over."""
 
 
 def play_live(
@@ -67,14 +69,22 @@ def play_live(
         }
         tokens = TeamTokens(where.tokens)
         rest_ms = round(1000 * where.contest.least_rest_s)
-        office = Office(store, where.entries, tokens.of, links, rest_ms)
-        bots = stack.enter_context(venue.Bots(where, tokens, addresses))
+        told = {
+            name: venue.told_address(where.contest.courts[name], address)
+            for name, address in addresses.items()
+        }
+        office = Office(store, where.entries, tokens.of, links, told, rest_ms)
+        bots = stack.enter_context(venue.Bots(where, tokens, next(iter(addresses.values()))))
         writer = SheetWriter(where, progress)
         writer(office.contest)
         opened(stack.enter_context(venue.pages(where, logs, listen, show)), addresses)
         while not office.over:
             office.step()
             writer(office.contest)
-            bots.follow(office.contest, {name: link.call for name, link in links.items()})
+            bots.follow(office.contest)
+            time.sleep(_STEP_S)
+        end_s = time.monotonic() + _FAREWELL_S
+        while time.monotonic() < end_s:
+            office.step()
             time.sleep(_STEP_S)
         return writer.write()

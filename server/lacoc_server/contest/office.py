@@ -18,6 +18,7 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due
 from lacoc_server.contest.store import FactStore
+from lacoc_server.contest.teller import Teller
 from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.office import AssignedSeat
@@ -37,6 +38,7 @@ class Office:
         entries: the frozen files of the teams.
         token_of: returns a team's token.
         links: the courts by name, in the order in which they are filled.
+        addresses: the courts' addresses for contestants, by name.
         least_rest_ms: shortest time between two matches of a team.
     """
 
@@ -46,12 +48,14 @@ class Office:
         entries: EntryFolder,
         token_of: Callable[[str], str],
         links: Mapping[str, CourtLink],
+        addresses: Mapping[str, str],
         least_rest_ms: int = 0,
     ) -> None:
         self._store = store
         self._entry = cache(entries.load)
         self._hash_of = cache(lambda team: hash_token(token_of(team)))
         self._links = links
+        self._teller = Teller(links, addresses, token_of, least_rest_ms)
         self._least_rest_ms = least_rest_ms
         self._heard_ms = dict.fromkeys(links, 0)
         self._asked: dict[str, Asked] = {}
@@ -75,7 +79,7 @@ class Office:
         """
         now_ms = time.time_ns() // 1_000_000
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
-        if len(self._store.facts()) != self._known:  # another program has appended some
+        if len(self._store.facts()) != len(self._facts):  # another program has appended some
             self.contest = self._compute()
         self._append(*results(self.contest, seen))
         while (draw := due(self.contest, FORMATS)) is not None:
@@ -87,6 +91,7 @@ class Office:
             if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
                 self._asked[call.id] = self._assign(call)
         self._take_back(now_ms)
+        self._teller.tell(self.contest, self._facts, seen, now_ms)
 
     def _look(self, name: str, link: CourtLink, now_ms: int) -> Seen:
         link.poll()
@@ -105,9 +110,8 @@ class Office:
             self.contest = self._compute()
 
     def _compute(self) -> Contest:
-        facts = self._store.facts()
-        self._known = len(facts)
-        return compute(facts, FORMATS)
+        self._facts = self._store.facts()
+        return compute(self._facts, FORMATS)
 
     def _answers(self) -> list[AnyFact]:
         """Take the courts' answers; a game that is refused for good goes back."""

@@ -25,6 +25,7 @@ from lacoc_server.contest.plans import note_plans
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_server.contest.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.store import FactStore
+from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -103,6 +104,31 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
     with FactStore(ContestFolder(file).facts) as store:
         store.decide(decision)
     return say("contest.left", team=team)
+
+
+def tokens(file: Path, team: str | None) -> dict[str, str]:
+    """Return the tokens of teams by name; those that are missing are made.
+
+    Args:
+        file: the contest file.
+        team: name of a team; None: all teams in the contest that are not bots.
+
+    Raises:
+        UserError: if the contest has no office, or no such team, or a token can't be written.
+    """
+    where = ContestFolder(file)
+    if where.contest.office is None:
+        raise UserError(say("contest.no-office", file=str(file)))
+    with FactStore(where.facts) as store:
+        teams = compute(store.facts(), FORMATS).teams
+    names = [one.name for one in teams]
+    if team is not None and team not in names:
+        raise UserError(say("contest.not-in", team=team, teams=names or None))
+    people = [one.name for one in teams if not (one.gone or one.bot)]
+    if team is None and not people:
+        raise UserError(say("contest.no-people"))
+    kept = TeamTokens(where.tokens)
+    return {name: kept.of(name) for name in ([team] if team is not None else people)}
 
 
 def play_headless(

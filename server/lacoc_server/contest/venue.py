@@ -3,24 +3,25 @@
 import math
 import subprocess
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from lacoc_server.contest.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.command.child import apart, command_line, kept_child
+from lacoc_shared.contest.file import Court
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import own_address
 from lacoc_shared.words import say
 
-_SEATS = ("left", "right")
 _END_S = 5.0
 _ADDRESS_S = 20.0
 _LOOK_S = 0.5
 _AGAIN_S = 5.0
-"""Shortest time between two starts of a bot in the same seat."""
+"""Shortest time between two starts of a bot."""
 
 
 @contextmanager
@@ -81,6 +82,21 @@ def pages(where: ContestFolder, folder: Path, listen: str | None, show: bool) ->
         yield opened["url"]
 
 
+def told_address(court: Court, opened: str) -> str:
+    """Return the address of a court for contestants, who may be on other machines.
+
+    Args:
+        court: its entry in the contest file.
+        opened: the address at which it was opened, with the real port.
+    """
+    if court.connect:
+        return court.connect
+    port = opened.rpartition(":")[2]
+    if court.host:
+        return f"{court.listen[0].rpartition(':')[0]}:{port}"
+    return f"{opened.partition('/')[0]}/{own_address()}:{port}"
+
+
 def _at_same_place(words: list[str]) -> Callable[[dict[str, Any]], list[str]]:
     """Return a function that gives the words of a later start of a court, at the same address."""
     return lambda opened: [*words, "--listen", opened["locators"][0]]
@@ -91,35 +107,25 @@ def _same(words: list[str]) -> Callable[[object], list[str]]:
     return lambda _: words
 
 
-class _Seat(NamedTuple):
-    """A seat of a game that a bot plays."""
-
-    call: str
-    court: str
-    seat: str
-    team: str
-
-
 class Bots:
-    """Plays for the teams that are bots: a process for each seat of a running game.
+    """Plays for the teams that are bots: a process for each team, which goes from court to court.
 
     Used as a context manager; all processes end with it.
 
     Args:
         where: the contest.
         tokens: the tokens of the teams.
-        addresses: the courts' addresses by name.
+        address: the address of a court, which tells the bots where they play.
     """
 
-    def __init__(
-        self, where: ContestFolder, tokens: TeamTokens, addresses: Mapping[str, str]
-    ) -> None:
+    def __init__(self, where: ContestFolder, tokens: TeamTokens, address: str) -> None:
         self._where = where
         self._tokens = tokens
-        self._addresses = addresses
-        self._playing: dict[_Seat, subprocess.Popen[bytes]] = {}
+        self._address = address
+        self._playing: dict[tuple[str, str], subprocess.Popen[bytes]] = {}
+        """By team and its files."""
         self._ending: list[subprocess.Popen[bytes]] = []
-        self._begun_s: dict[_Seat, float] = {}
+        self._begun_s: dict[str, float] = {}
 
     def __enter__(self) -> Self:
         return self
@@ -128,45 +134,34 @@ class Bots:
         for process in (*self._playing.values(), *self._ending):
             _end(process)
 
-    def follow(self, contest: Contest, there: Mapping[str, str | None]) -> None:
-        """Start the bots of the games that courts have, and end those of games that are over.
+    def follow(self, contest: Contest) -> None:
+        """Start the bots of teams that are called for the first time.
 
-        Args:
-            contest: the contest.
-            there: by court, the call that it has; None: not known now.
+        A bot that ended too early is started again. One whose team has other files now ends.
         """
         bots = {team.name: team for team in contest.teams if team.bot}
-        wanted = {
-            _Seat(call.id, call.court, seat, team): bots[team]
-            for call in contest.running
-            for seat, team in zip(_SEATS, call.teams, strict=True)
-            if team in bots and there.get(call.court) == call.id
-        }
-        running = {call.id for call in contest.running}
-        for seat in [one for one in self._playing if one.call not in running]:
-            process = self._playing.pop(seat)
+        files = {(team.name, team.files) for team in bots.values()}
+        for one in [one for one in self._playing if one not in files]:
+            process = self._playing.pop(one)
             process.terminate()
             self._ending.append(process)
         self._ending = [process for process in self._ending if process.poll() is None]
         now_s = time.monotonic()
-        for seat, team in wanted.items():
-            running_now = self._playing.get(seat)
-            gone = running_now is None or running_now.poll() is not None
-            if gone and now_s - self._begun_s.get(seat, -math.inf) > _AGAIN_S:
-                self._begun_s[seat] = now_s
-                self._playing[seat] = self._start(seat, team.bot, team.files)
+        for name in (name for call in contest.running for name in call.teams if name in bots):
+            team = bots[name]
+            running = self._playing.get((name, team.files))
+            gone = running is None or running.poll() is not None
+            if gone and now_s - self._begun_s.get(name, -math.inf) > _AGAIN_S:
+                self._begun_s[name] = now_s
+                self._playing[name, team.files] = self._start(name, team.bot, team.files)
 
-    def _start(self, seat: _Seat, bot: str, files: str) -> "subprocess.Popen[bytes]":
+    def _start(self, team: str, bot: str, files: str) -> "subprocess.Popen[bytes]":
         program = self._where.entries.path / files / "bot.py"
-        words = ["bot", str(program) if program.exists() else bot, "--name", seat.team]
-        words += ["--court", seat.court, "--connect", self._addresses[seat.court]]
+        words = ["bot", str(program) if program.exists() else bot, "--connect", self._address]
         options = apart()
-        options["env"] |= {"LACOC_TOKEN": self._tokens.of(seat.team)}
+        options["env"] |= {"LACOC_TOKEN": self._tokens.of(team)}
         return subprocess.Popen(
-            command_line([*words, "--seat", seat.seat]),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            **options,
+            command_line(words), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options
         )
 
 

@@ -5,7 +5,7 @@ the same order. The inbox decides what can be believed. A request is answered on
 taken it in and the record is written. An outbox sends the rest.
 """
 
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple, Self
@@ -28,7 +28,7 @@ from lacoc_shared.messages import (
     SeatHealth,
     Sheet,
 )
-from lacoc_shared.messages.office import Assigned
+from lacoc_shared.messages.office import Assigned, Whereabouts
 from lacoc_shared.network.access_rules import Protection
 from lacoc_shared.network.session import Desk, Request, Ring, open_court
 from lacoc_shared.words import Phrase
@@ -40,7 +40,9 @@ _REQUESTS_PER_BEAT = 4  # refused ones; at most one request of a desk enters a b
 _FETCHES_PER_BEAT = 8
 
 
-_Judge = Callable[[Request], Input | Done | Refusal | Later]
+_Told = Done | Whereabouts
+"""Answers that do not concern the match."""
+_Judge = Callable[[Request], Input | _Told | Refusal | Later]
 
 
 class Arrival(NamedTuple):
@@ -98,6 +100,7 @@ class CourtNetwork:
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
         if office_desk is not None:
             self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
+            self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(office_desk)))
         self._waiting: dict[Desk, tuple[Request, Later]] = {}
         """The request at each desk that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
@@ -224,8 +227,10 @@ class CourtNetwork:
     @property
     def dropped(self) -> dict[str, int]:
         """Number of refusals that belong to no seat, by `Why`."""
-        office = self._office_desk.refused if self._office_desk is not None else Counter[str]()
-        return dict(self._decision_desk.refused + office)
+        refused = self._decision_desk.refused
+        if self._office_desk is not None:
+            refused = refused + self._office_desk.refused + self._office_desk.teams.refused
+        return dict(refused)
 
     def _serve_fetches(self) -> None:
         if self._sheet_bytes:  # a client that asks earlier waits
@@ -238,7 +243,7 @@ class CourtNetwork:
         for _ in range(_REQUESTS_PER_BEAT):
             if desk in self._waiting:
                 request, later = self._waiting.pop(desk)
-                judged: Input | Done | Refusal | Later = later() or later
+                judged: Input | _Told | Refusal | Later = later() or later
             elif (taken := desk.take()) is not None:
                 request, judged = taken, judge(taken)
             else:
@@ -248,7 +253,7 @@ class CourtNetwork:
                 return
             if isinstance(judged, Refusal):
                 request.refuse(encode(judged))
-            elif isinstance(judged, Done):  # it does not concern the match
+            elif isinstance(judged, _Told):
                 request.reply(encode(judged))
             else:
                 yield Arrival(judged, partial(self._answer, request, judged))
@@ -282,6 +287,10 @@ def _office_judge(desk: OfficeDesk[Any]) -> _Judge:
         return desk.judge(request.key.rpartition("/")[2], request.payload)
 
     return judge
+
+
+def _team_judge(desk: OfficeDesk[Any]) -> _Judge:
+    return lambda request: desk.teams.where(request.payload)
 
 
 def _empty(ring: Ring) -> list[bytes]:

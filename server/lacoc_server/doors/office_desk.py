@@ -14,11 +14,12 @@ import msgspec
 
 from lacoc_server.doors.inbox import FILE_NAME_MAX, NAME_MAX
 from lacoc_server.doors.sessions import Why
+from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared import codec, seal
 from lacoc_shared.codec import encode
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Done, Refusal
-from lacoc_shared.messages.office import Assign, AssignedSeat, Withdraw
+from lacoc_shared.messages.office import Assign, AssignedSeat, Tell, Withdraw
 from lacoc_shared.mistakes import printable
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
@@ -67,6 +68,8 @@ class OfficeDesk(Generic[T]):
         self._prepare = prepare
         self.wanted: Wanted[T] | None = None
         """What the court shall open next, as soon as its match allows it; None: nothing."""
+        self.teams = TeamDesk()
+        """Answers teams with what the office tells."""
         self.refused: Counter[str] = Counter()
         """Number of refusals by `Why`."""
         self._call = ""
@@ -91,8 +94,8 @@ class OfficeDesk(Generic[T]):
         """Judge a request.
 
         Args:
-            what: "assign" or "withdraw", from the key expression of the request.
-            payload: should be an `Assign` or a `Withdraw`.
+            what: "assign", "withdraw" or "tell", from the key expression of the request.
+            payload: should be an `Assign`, a `Withdraw` or a `Tell`.
         """
         try:
             token = codec.decode(payload, _Token, ASSIGN_MAX_BYTES).token
@@ -103,6 +106,9 @@ class OfficeDesk(Generic[T]):
                     return self._assign(codec.decode(payload, Assign, ASSIGN_MAX_BYTES))
                 case "withdraw":
                     return self._withdraw(codec.decode(payload, Withdraw, ASSIGN_MAX_BYTES).call)
+                case "tell":
+                    self.teams.tell(codec.decode(payload, Tell, ASSIGN_MAX_BYTES).teams)
+                    return Done()
         except codec.BadMessage as error:
             return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
         return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=what[:40]))

@@ -46,6 +46,15 @@ Connect = Annotated[
         help="Address of the court, such as tcp/192.168.1.20:7447; by default this machine.",
     ),
 ]
+CourtHost = Annotated[
+    str | None,
+    typer.Option(
+        "--host",
+        metavar="HOST",
+        help="Name or address of the court's machine, if the file does not name it; by default "
+        "this machine's address.",
+    ),
+]
 SeatName = Annotated[
     str | None,
     typer.Option(

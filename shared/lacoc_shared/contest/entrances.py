@@ -3,6 +3,8 @@
 An option that is None was not given; it is looked up in the contest file.
 """
 
+import hashlib
+
 from lacoc_shared.contest.file import LOOPBACK, MAIN, OTHERS, Contest, Court
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
@@ -84,6 +86,33 @@ def gateway_access(contest: Contest | None, court: str | None, connect: str | No
     access = spectator_access(contest, court, connect)
     keys = contest.keys if contest else None
     return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
+
+
+def page_key(contest: Contest) -> str:
+    """Return a contest's page key, which is the same at each start of its gateway.
+
+    So open pages, and links that were handed out, keep working after a restart. The page key is as
+    secret as the contest file.
+    """
+    secret = " ".join(court.referee.token for court in contest.courts.values())
+    digest = hashlib.blake2b(secret.encode(), digest_size=16, person=b"lacoc web key").digest()
+    return digest.hex()
+
+
+def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[str, str]:
+    """Return the two ways of a team into a contest: the link of its page, and its command line.
+
+    Args:
+        contest: the contest.
+        token: the team's token.
+        pages: address of the contest's pages, such as "http://192.168.1.20:8080".
+        any_host: the host to name if a court listens on all addresses of its machine.
+    """
+    court = next(iter(contest.courts.values()))
+    return {
+        "link": f"{pages}/play#key={page_key(contest)}&token={token}",
+        "command": f"lacoc play --connect {court.address(any_host)} --token {token}",
+    }
 
 
 def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:

@@ -2,9 +2,11 @@
 
 An office gives courts their matches. A court of a contest with an office plays only what the office
 assigns: each match has a call, its teams, the tokens that open their seats, and their files.
+The office also tells each court where all teams are. So a team can ask any court of the contest,
+with its one token, and a stranger can't answer in the office's name.
 """
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -100,3 +102,49 @@ class Withdraw(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     token: str
     call: Call
+
+
+class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
+    """Where a team plays, or what it waits for."""
+
+    team: str
+    state: Literal["court", "waits", "out", "over"]
+    """court: its match is open at a court. waits: it will be called. out: it plays no more, but the
+    contest goes on. over: the contest has ended."""
+    said: Phrase
+    """All of it for people, a phrase of `team.*`."""
+    court: str = ""
+    """The court; while the team waits, the court where it will probably play; "": not known."""
+    address: str = ""
+    """Address to connect to; "" unless the match is open."""
+    seat: str = ""
+    """The arena's name of the seat; "" unless the match is open."""
+    call: str = ""
+    """Id of the call; "" unless the match is open."""
+    opponent: str = ""
+    """The other team; "": not known yet."""
+    fixture: Phrase | None = None
+    """What is played, a phrase of `fixture.*`; None: not known yet."""
+    games_before: int | None = None
+    """Games that probably begin before the team's next one, on all courts; None: not known."""
+    about_s: int | None = None
+    """Time until then, estimated [s]; None: not known."""
+    rank: int = 0
+    """Rank in the newest stage that is over and has the team; 0: none."""
+
+
+class Tell(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A request of the office: this is where all teams are. It replaces what was told before."""
+
+    token: str
+    """The office's token."""
+    teams: dict[TokenHash, Whereabouts]
+    """By the salted hash of the team's token. All have one salt, so that a court hashes a token
+    once, however many teams there are."""
+
+
+class Where(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A team's question to a court: where do I play?"""
+
+    token: str
+    """The team's token."""

@@ -50,7 +50,7 @@ def access_control(protection: Protection | None) -> dict[str, Any]:
             tokens and seals show whose they are.
     """
     if protection is None:
-        requests = ["lacoc/*/seat/*/*", "lacoc/*/referee/*", "lacoc/*/office/*"]
+        requests = ["lacoc/*/seat/*/*", "lacoc/*/referee/*", "lacoc/*/office/*", "lacoc/*/where"]
         anyone = _acting(["lacoc/*/seat/*/key"], requests)
         groups: dict[str, tuple[dict[str, Any], Rules]] = {"anyone": ({}, _watching() | anyone)}
     else:

@@ -73,6 +73,7 @@ def court_config(
             _limit("decisions", "lacoc/*/referee/*", DECISION_MAX_BYTES),
             _limit("joins", "lacoc/*/seat/*/join", JOIN_MAX_BYTES),
             _limit("office", "lacoc/*/office/*", ASSIGN_MAX_BYTES),
+            _limit("where", "lacoc/*/where", COMMAND_MAX_BYTES),
         ],
         "transport": _transport(largest + _HEADERS_BYTES, _court_tls(protection))
         | _court_users(users)

@@ -3,6 +3,7 @@
 import { tab } from "./storage";
 
 const KEY = "lacoc-key";
+const TOKEN = "lacoc-team-token";
 const query = new URLSearchParams(location.search);
 
 /** A setting of the address: `?q=low`. */
@@ -22,18 +23,41 @@ export function amount(name: string, otherwise: number, least: number, most: num
   return Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : otherwise;
 }
 
-/**
- * The gateway's key, which lets a page act. It stands in the fragment, which is never sent; a
- * reload within the tab finds it in the tab's own storage, so that it need not stay in sight.
- */
+/** The gateway's key, which lets a page act. */
 export function runKey(): string | null {
-  const found = new URLSearchParams(location.hash.slice(1)).get("key");
-  if (found) {
-    tab.write(KEY, found);
-    history.replaceState(null, "", location.pathname + location.search);
-    return found;
-  }
-  return tab.read(KEY);
+  return secret("key", KEY);
+}
+
+/** The token of a team, for the whole contest. */
+export function teamToken(): string | null {
+  return secret("token", TOKEN);
+}
+
+/** Keep a team's token for this tab; null forgets it. */
+export function keepTeamToken(token: string | null): void {
+  tab.write(TOKEN, token);
+}
+
+/**
+ * A secret of the fragment, which is never sent. A reload within the tab finds it in the tab's own
+ * storage, so that it need not stay in sight.
+ */
+function secret(name: string, keptAs: string): string | null {
+  const parts = new URLSearchParams(location.hash.slice(1));
+  const found = parts.get(name);
+  if (!found) return tab.read(keptAs);
+  tab.write(keptAs, found);
+  parts.delete(name);
+  const rest = parts.toString();
+  history.replaceState(null, "", location.pathname + location.search + (rest && `#${rest}`));
+  return found;
+}
+
+/** Another court is another address: a reload then comes back to it. */
+export function goToCourt(court: string): void {
+  const query = new URLSearchParams(location.search);
+  query.set("court", court);
+  location.search = query.toString();
 }
 
 /** Where a WebSocket of the gateway is. */

@@ -33,7 +33,7 @@ export type ClaimEvent =
   | { is: "change"; renews: boolean }
   /** The person gives the seat up. */
   | { is: "leave" }
-  /** The person goes back to the card. */
+  /** The person goes back to the card, or a team's match is over. */
   | { is: "forget" }
   /** The files are others than those that were sent: what was wrong in those is old. */
   | { is: "mended" }
@@ -133,6 +133,7 @@ export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
   },
   holding: {
     ...WITH_WISH,
+    forget: ["none", "drop"],
     open: ["holding", "ask"],
     unheard: ["holding", "rest"],
     deferred: ["holding", "rest"],

@@ -60,6 +60,8 @@ export class Player {
   readonly tripMs = signal<number | null>(null);
   /** The newest keys that were sent, the newest last. */
   readonly pressed = signal<readonly { level: number; key: number }[]>([]);
+  /** What comes after this match, as the office says; null: the court goes on with the team. */
+  readonly next = signal<Phrase | null>(null);
   /** How many keys were sent. */
   readonly sentCount = signal(0);
   /** The wish, unless it is known to be for another court: a tab's address may change. */
@@ -129,6 +131,13 @@ export class Player {
     // A match keeps the files that it began with. Nobody minds when one of practice ends: the
     // next opens at once.
     this.tell({ is: "change", renews: this.alone && this.isHeld() });
+  }
+
+  /** The match is over for this team: it has no seat until it joins again. */
+  rest(): void {
+    this.forget();
+    // The gateway ends the hold when it is greeted.
+    void this.court.connection.greetAgain();
   }
 
   /** Go back to the card, from having left or lost the seat. */

@@ -293,6 +293,21 @@ export interface Assigned {
   seats: AssignedSeat[];
 }
 
+export interface Whereabouts {
+  team: string;
+  state: "court" | "waits" | "out" | "over";
+  said: Phrase;
+  court: string;
+  address: string;
+  seat: string;
+  call: string;
+  opponent: string;
+  fixture: Phrase | null;
+  games_before: number | null;
+  about_s: number | null;
+  rank: number;
+}
+
 export interface Setup {
   match_id: string;
   court: string;

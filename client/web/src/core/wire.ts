@@ -187,6 +187,7 @@ export type Request =
   | "rate"
   | "ping"
   | "join"
+  | "where"
   | "ready"
   | "leave"
   | "key"

@@ -56,6 +56,24 @@ export const play = {
   "left.practice": ["Your practice has ended.", "練習を終了しました。"],
   "left.practiceAgain": ["Practise again", "もう一度練習する"],
 
+  // A team in a contest with an office
+  "team.title": ["Play in the contest", "大会に参加"],
+  "team.text": [
+    "Your team has one token for the whole contest. This page then finds your court by itself.",
+    "チームのトークンは大会を通して 1 つです。入力すると、このページが自動でコートを見つけます。",
+  ],
+  "team.token": ["Token of your team", "チームのトークン"],
+  "team.go": ["Go on", "進む"],
+  "team.asking": ["Asking where you play …", "試合のコートを確認しています…"],
+  "team.next": ["Your next match", "次の試合"],
+  "team.before": ["Games before yours: {count}", "この試合の前のゲーム：{count}"],
+  "team.byItself": [
+    "Keep this page open: it goes to your court by itself.",
+    "このページを開いたままにしてください。時間になると自動でコートに移ります。",
+  ],
+  "team.thanks": ["Thank you for playing", "お疲れさまでした"],
+  "team.other": ["Another team", "別のチーム"],
+
   // Files
   "files.title": ["Your files", "ファイル"],
   "files.drop": [

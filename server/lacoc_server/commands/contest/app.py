@@ -2,7 +2,7 @@
 
 import typer
 
-from lacoc_server.commands.contest import checking, deciding, playing, setting_up
+from lacoc_server.commands.contest import checking, deciding, inviting, playing, setting_up
 
 app = typer.Typer(
     help="Run a contest: its file, courts and tokens; entries, matches, standings and their proof.",
@@ -14,6 +14,7 @@ for command in (
     setting_up.keys,
     setting_up.show,
     playing.enter,
+    inviting.invite,
     playing.withdraw,
     playing.run,
     playing.standings,

@@ -232,14 +232,7 @@ def keys(
 def show(
     file: FileToRead = FILE,
     court: options.CourtName = None,
-    host: Annotated[
-        str | None,
-        typer.Option(
-            metavar="HOST",
-            help="Name or address of the court's machine, if the file does not name it; by default "
-            "this machine's address.",
-        ),
-    ] = None,
+    host: options.CourtHost = None,
     json: options.Json = False,
 ) -> None:
     """Print the command line for each contestant, the referee and spectators."""

@@ -1,15 +1,18 @@
 /** The card before a seat is held: who, where, with what. */
 
 import { useComputed, useSignal } from "@preact/signals";
+import { goToCourt } from "../../core/address";
 import { isAboutToken } from "../../core/claim";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
+import type { Team } from "../../core/team";
 import { NAME_MAX, SeatFlag, type Sheet } from "../../core/wire";
 import { said, sentence, t } from "../../i18n";
 import { played, seatName, team } from "../../i18n/words";
 import { Mistakes } from "../../ui/mistakes";
 import { FilePicker } from "./files";
+import { TeamCard } from "./team";
 
 const nameKept = remembered("team", "");
 const seatKept = remembered("seat", "");
@@ -20,8 +23,13 @@ interface Props {
   alone: boolean;
 }
 
+interface EntranceProps extends Props {
+  /** null: practice has none. */
+  team: Team | null;
+}
+
 /** What stands in the place of the field's controls while no seat is held. */
-export function Entrance({ court, player, alone }: Props) {
+export function Entrance({ court, player, alone, team }: EntranceProps) {
   switch (player.standing.value) {
     case "watching":
       return <WatchOnly alone={alone} />;
@@ -30,6 +38,7 @@ export function Entrance({ court, player, alone }: Props) {
     case "left":
       return <Gone court={court} player={player} alone={alone} />;
     case "outside":
+      if (team?.hasOffice.value) return <TeamCard court={court} team={team} />;
       return court.welcome.value ? <JoinCard court={court} player={player} alone={alone} /> : null;
     default:
       return null;
@@ -120,7 +129,10 @@ function JoinCard({ court, player, alone }: Props) {
       {courts.length > 1 && (
         <label class="field">
           <span>{t("join.court")}</span>
-          <select value={welcome.court ?? ""} onChange={(event) => go(event.currentTarget.value)}>
+          <select
+            value={welcome.court ?? ""}
+            onChange={(event) => goToCourt(event.currentTarget.value)}
+          >
             {courts.map((one) => (
               <option key={one}>{one}</option>
             ))}
@@ -237,11 +249,4 @@ function SeatTaken({ court, sheet, index }: { court: Court; sheet: Sheet; index:
   return (
     <small>{isTaken ? t("join.takenBy", { team: team(sheet, index) }) : t("join.free")}</small>
   );
-}
-
-/** Another court is another address: a reload then comes back to it. */
-function go(court: string): void {
-  const query = new URLSearchParams(location.search);
-  query.set("court", court);
-  location.search = query.toString();
 }

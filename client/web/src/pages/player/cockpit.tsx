@@ -9,6 +9,7 @@ import type { Pressed } from "../../core/keys";
 import { phaseOf } from "../../core/match";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
+import { Team } from "../../core/team";
 import {
   Level,
   MOST_HZ,
@@ -42,7 +43,7 @@ const POS_DATA = "Pos-data.txt";
 type Open = "" | "leave" | "files" | "settings";
 
 export function Cockpit({ alone }: { alone: boolean }) {
-  const { court, player } = useMemo(() => begin(alone), [alone]);
+  const { court, player, team } = useMemo(() => begin(alone), [alone]);
   const view = useSignal<ViewName>("arena");
   const open = useSignal<Open>("");
   const hasFocus = useSignal(true);
@@ -173,7 +174,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
         </>
       ) : (
         <div class="entrance-place">
-          <Entrance court={court} player={player} alone={alone} />
+          <Entrance court={court} player={player} alone={alone} team={team} />
           <button
             class="button quiet small corner"
             type="button"
@@ -197,12 +198,12 @@ export function Cockpit({ alone }: { alone: boolean }) {
   );
 }
 
-function begin(alone: boolean): { court: Court; player: Player } {
+function begin(alone: boolean): { court: Court; player: Player; team: Team | null } {
   const court = new Court(MOST_HZ);
   followColours(court);
   const player = new Player(court, speak, alone);
   window.__lacoc = Object.assign(window.__lacoc ?? {}, { posData });
-  return { court, player };
+  return { court, player, team: alone ? null : new Team(court, player) };
 }
 
 /** For tests: Pos-data.txt of any frames, and what the page says of it. */

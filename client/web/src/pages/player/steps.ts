@@ -53,10 +53,15 @@ export function nextStep(court: Court, player: Player, alone: boolean): Step {
       return { text: t("next.finished"), tone: "wait" };
     case Phase.OFFICIAL:
     case Phase.VOID:
-      return { text: t("next.official"), tone: "wait" };
+      return { text: official(player), tone: "wait" };
     default:
       return { text: t("next.wait"), tone: "wait" };
   }
+}
+
+function official(player: Player): string {
+  const next = player.next.value;
+  return next ? said(next) : t("next.official");
 }
 
 function othersMissing(court: Court, index: number): string {

@@ -1,0 +1,171 @@
+/** A team's way through a contest: with its one token it finds its court, again and again. */
+
+import { computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
+import { goToCourt, keepTeamToken, teamToken } from "./address";
+import type { Refused } from "./connection";
+import type { Court } from "./court";
+import type { Player } from "./player";
+import { Phase, type Whereabouts } from "./wire";
+
+const ASK_MS = 2000;
+const LOOK_MS = 250;
+/** So long a result stays before the page goes on. */
+const RESULT_MS = 8000;
+const AGAIN_MS = 2500;
+const NO_TEAM = "refused.no-team-token";
+
+/** What the page knows when it decides where to go. */
+export interface Situation {
+  /** What the office says. */
+  there: Whereabouts;
+  /** The court that the page is at, and the call that the court has; "": none. */
+  court: string;
+  call: string;
+  /** The seat that is held, or will be held again after a break; "": none. */
+  seat: string;
+  /** The call that the page plays, or has played; "": none. */
+  mine: string;
+  /** The match has been official for long enough that its result was seen. */
+  seen: boolean;
+}
+
+/**
+ * What the page does next.
+ *
+ * - `stay`: nothing changes.
+ * - `hold`: the seat is that of the call: the page plays it.
+ * - `rest`: the match is over for this page: it gives the seat up and waits.
+ * - `join`: take the seat at this court.
+ * - `go`: go to another court.
+ */
+export type Move = "stay" | "hold" | "rest" | "join" | "go";
+
+/** Decide what the page does next. Pure. */
+export function nextMove({ there, court, call, seat, mine, seen }: Situation): Move {
+  const isCalled = there.state === "court";
+  if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
+  const isHere = isCalled && there.court === court;
+  if (isHere && seat === there.seat && call === there.call) return "hold";
+  // The result stays for a while, unless another match has taken its place.
+  if (seat && mine && call === mine && !seen) return "stay";
+  if (!isCalled) return seat ? "rest" : "stay";
+  return isHere ? (call === there.call ? "join" : "stay") : "go";
+}
+
+export class Team {
+  /** The token; null: nobody has given one here. */
+  readonly token = signal<string | null>(teamToken());
+  /** Whether this page follows a team. */
+  readonly isOn: ReadonlySignal<boolean>;
+  /** Whether the court plays for an office, so that teams have tokens and seats have none. */
+  readonly hasOffice: ReadonlySignal<boolean>;
+  /** What the office said last. */
+  readonly there = signal<Whereabouts | null>(null);
+  /** Why the token was refused. */
+  readonly refusal = signal<Refused | null>(null);
+  private mine = "";
+  private officialMs = 0;
+  private triedMs = 0;
+  private isAsking = false;
+
+  constructor(
+    private readonly court: Court,
+    private readonly player: Player,
+  ) {
+    this.hasOffice = computed(() => Boolean(court.sheet.value?.fixture));
+    this.isOn = computed(() => {
+      if (!this.hasOffice.value) return false;
+      const prefill = court.welcome.value?.prefill;
+      return this.token.value !== null || Boolean(prefill?.has_token && !prefill.seat);
+    });
+    effect(() => {
+      const canAsk = court.welcome.value?.can_act && court.live.value;
+      if (this.isOn.value && canAsk) untracked(() => void this.ask());
+    });
+    setInterval(() => void this.ask(), ASK_MS);
+    setInterval(() => this.look(), LOOK_MS);
+  }
+
+  /** Follow the team of this token. */
+  enter(token: string): void {
+    keepTeamToken(token);
+    this.refusal.value = null;
+    this.token.value = token;
+    void this.ask();
+  }
+
+  /** Ask for the token again. */
+  forget(): void {
+    keepTeamToken(null);
+    this.token.value = null;
+    this.there.value = null;
+  }
+
+  private async ask(): Promise<void> {
+    if (!this.isOn.peek() || this.isAsking || !this.court.live.peek()) return;
+    this.isAsking = true;
+    const token = this.token.peek();
+    try {
+      const there = await this.court.ask<Whereabouts>("where", { token });
+      if (token !== this.token.peek()) return;
+      this.there.value = there;
+      this.refusal.value = null;
+    } catch (error) {
+      if ((error as Refused).why.code === NO_TEAM) {
+        this.forget();
+        this.refusal.value = error as Refused;
+      }
+    } finally {
+      this.isAsking = false;
+    }
+    this.look();
+  }
+
+  private look(): void {
+    const there = this.there.peek();
+    const frame = this.court.frame.peek();
+    const phase = frame?.phase ?? 0;
+    const now = performance.now();
+    if (phase < Phase.OFFICIAL) this.officialMs = now;
+    const at = this.court.welcome.peek()?.court;
+    if (!there || !at) return;
+    const { wish } = this.player.claim.peek();
+    const move = nextMove({
+      there,
+      court: at,
+      call: this.court.sheet.peek()?.call ?? "",
+      seat: wish?.court === at ? wish.seat : "",
+      mine: this.mine,
+      seen: now - this.officialMs > RESULT_MS,
+    });
+    this.player.next.value = there.call && there.call === this.mine ? null : there.said;
+    this.make(move, there, now);
+  }
+
+  private make(move: Move, there: Whereabouts, now: number): void {
+    switch (move) {
+      case "hold":
+        if (this.player.standing.peek() === "seated") this.mine = there.call;
+        break;
+      case "rest":
+        this.player.rest();
+        break;
+      case "go": {
+        const { courts, home } = this.court.welcome.peek()!;
+        // The gateway of one court leads to no other; that of one person learns where they are.
+        if (home !== "venue" || courts.includes(there.court)) goToCourt(there.court);
+        break;
+      }
+      case "join":
+        if (now - this.triedMs < AGAIN_MS) break;
+        this.triedMs = now;
+        this.player.join({
+          court: there.court,
+          seat: there.seat,
+          token: this.token.peek(),
+          name: there.team,
+        });
+        break;
+    }
+  }
+}

@@ -1,0 +1,90 @@
+/** The card of a team in a contest with an office: when, where and against whom it plays next. */
+
+import { useSignal } from "@preact/signals";
+import type { Court } from "../../core/court";
+import type { Team } from "../../core/team";
+import { said, sentence, t } from "../../i18n";
+
+interface Props {
+  court: Court;
+  team: Team;
+}
+
+export function TeamCard({ court, team }: Props) {
+  const contest = court.welcome.value?.contest;
+  if (!team.isOn.value) return <TokenCard contest={contest} team={team} />;
+  const there = team.there.value;
+  if (!there) {
+    return (
+      <section class="card entrance" aria-labelledby="entrance-title">
+        <h1 id="entrance-title">{t("team.asking")}</h1>
+        <span class="spinner" aria-hidden="true" />
+      </section>
+    );
+  }
+  const isOver = there.state === "out" || there.state === "over";
+  return (
+    <section class="card entrance" aria-labelledby="entrance-title" data-state={there.state}>
+      <div>
+        {contest && <p class="muted">{contest}</p>}
+        <h1 id="entrance-title">{there.team}</h1>
+      </div>
+      <div role="status" class="coming">
+        <p>{t(isOver ? "team.thanks" : "team.next")}</p>
+        <strong>{said(there.said)}</strong>
+        {there.state === "waits" && there.opponent && there.fixture && <p>{said(there.fixture)}</p>}
+        {Boolean(there.games_before) && (
+          <p class="muted">{t("team.before", { count: Number(there.games_before) })}</p>
+        )}
+      </div>
+      {isOver ? (
+        <a class="button strong" href={`/watch${location.search}`}>
+          {t("watching.watch")}
+        </a>
+      ) : (
+        <p class="muted">{t("team.byItself")}</p>
+      )}
+      <button class="button quiet small" type="button" onClick={() => team.forget()}>
+        {t("team.other")}
+      </button>
+    </section>
+  );
+}
+
+/** Nobody has given a token here yet. */
+function TokenCard({ contest, team }: { contest: string | undefined; team: Team }) {
+  const token = useSignal("");
+  const { refusal } = team;
+  const submit = (event: Event) => {
+    event.preventDefault();
+    if (token.value.trim()) team.enter(token.value.trim());
+    else document.getElementById("team-token")?.focus();
+  };
+  return (
+    <form class="card entrance" aria-labelledby="entrance-title" onSubmit={submit}>
+      <h1 id="entrance-title">{t("team.title")}</h1>
+      {contest && <p class="muted">{contest}</p>}
+      <p>{t("team.text")}</p>
+      <label class="field">
+        <span>{t("team.token")}</span>
+        <input
+          id="team-token"
+          value={token.value}
+          autocomplete="off"
+          spellcheck={false}
+          aria-invalid={refusal.value !== null}
+          aria-describedby="team-token-error"
+          onInput={(event) => {
+            token.value = event.currentTarget.value;
+          }}
+        />
+        <p class="error" id="team-token-error" role="alert">
+          {refusal.value && sentence(refusal.value.why)}
+        </p>
+      </label>
+      <button class="button strong large" type="submit">
+        {t("team.go")}
+      </button>
+    </form>
+  );
+}

@@ -1,0 +1,93 @@
+"""Tells every court of a contest where the teams are, so that a team can ask any of them."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from secrets import token_bytes
+
+from lacoc_server.contest.calling import Seen
+from lacoc_server.contest.court_link import Asked, CourtLink
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import AnyFact, Planned
+from lacoc_server.contest.plans import game
+from lacoc_server.contest.whereabouts import Courts, Pace, game_ms, whereabouts
+from lacoc_shared import seal
+from lacoc_shared.messages.office import Whereabouts
+
+_LOOK_MS = 1000
+"""Time between two estimates, when nothing else has changed."""
+_AGAIN_MS = 3000
+"""A court is told again after this time, because it may have been restarted."""
+_BETWEEN_MS = 60_000
+"""Estimated time from the call of a game to its beginning, until one has ended."""
+_SALT_BYTES = 16
+
+
+class Teller:
+    """Keeps all courts informed; never waits for one.
+
+    Args:
+        links: the courts by name.
+        addresses: their addresses for contestants.
+        token_of: returns a team's token.
+        least_rest_ms: shortest time between two matches of a team.
+    """
+
+    def __init__(
+        self,
+        links: Mapping[str, CourtLink],
+        addresses: Mapping[str, str],
+        token_of: Callable[[str], str],
+        least_rest_ms: int,
+    ) -> None:
+        self._links = links
+        self._addresses = addresses
+        self._least_rest_ms = least_rest_ms
+        salt = token_bytes(_SALT_BYTES)
+        self._hash_of = cache(lambda team: seal.hash_token(token_of(team), salt))
+        self._teams: dict[str, Whereabouts] = {}
+        self._contest: Contest | None = None
+        self._calls: tuple[str, ...] = ()
+        """The contest and the courts' calls, as they were at the newest estimate."""
+        self._looked_ms = 0
+        self._first_ms = 0
+        self._told: dict[str, tuple[int, dict[str, Whereabouts]]] = {}
+        """When each court was told last, and what."""
+        self._asked: dict[str, Asked] = {}
+
+    def tell(
+        self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, Seen], now_ms: int
+    ) -> None:
+        """Tell the courts what has changed.
+
+        Args:
+            contest: the contest.
+            facts: its facts, in their order.
+            seen: the courts, in the order in which they are filled.
+            now_ms: the time, in milliseconds since 1970, UTC.
+
+        Raises:
+            UserError: if a new token can't be written.
+        """
+        calls = tuple(court.call for court in seen.values())
+        is_new = contest is not self._contest or calls != self._calls
+        if is_new or now_ms - self._looked_ms >= _LOOK_MS:
+            self._contest, self._calls, self._looked_ms = contest, calls, now_ms
+            pace = Pace(now_ms, game_ms(facts, self._guess_ms(contest)), self._least_rest_ms)
+            found = whereabouts(contest, Courts(seen, self._addresses), pace)
+            self._teams = {self._hash_of(team): there for team, there in found.items()}
+        for name, link in self._links.items():
+            if (asked := self._asked.get(name)) is not None and asked.take() is None:
+                continue
+            self._asked.pop(name, None)
+            told_ms, told = self._told.get(name, (0, {}))
+            is_due = now_ms - told_ms >= _AGAIN_MS
+            if link.is_there and (is_due or told != self._teams):
+                self._told[name] = now_ms, self._teams
+                self._asked[name] = link.tell(self._teams)
+
+    def _guess_ms(self, contest: Contest) -> int:
+        """Guess how long a game takes before any has ended: from the first stage's arena."""
+        plans: list[Planned] = [view.plan for view in contest.stages] or list(contest.planned)
+        if not self._first_ms and plans:
+            self._first_ms = round(1000 * game(plans[0]).match.duration_s) + _BETWEEN_MS
+        return self._first_ms

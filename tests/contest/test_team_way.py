@@ -1,0 +1,94 @@
+"""Teams find their courts by themselves: a whole contest over two courts, with one token a team."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from lacoc_process import run_lacoc, started
+from ports import free_port
+
+from lacoc_server.contest.organiser import enter
+
+TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
+PEOPLE = TEAMS[:2]
+"""They play with `lacoc play` in a terminal; the others are bots."""
+WAIT_S = 120.0
+
+
+def write_contest(folder: Path) -> Path:
+    """Write a contest of four teams on two courts, everybody against everybody."""
+    courts = "".join(
+        f"""
+[court.{name}]
+arena = "othello"
+listen = ["127.0.0.1:{free_port()}"]
+referee.token = "the whistle of {name}"
+"""
+        for name in ("north", "south")
+    )
+    file = folder / "contest.toml"
+    file.write_text(f"""
+[office]
+token = "the token of the office"
+{courts}
+[stage.league]
+format = "round-robin"
+arena = "othello"
+settings.match.duration_s = 2.0
+settings.match.countdown_s = 0.1
+settings.match.start = "ready"
+""")
+    for team in TEAMS:
+        enter(file, team, None, "" if team in PEOPLE else "straight", "")
+    return file
+
+
+@pytest.mark.slow
+def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
+    """With one token each, people and bots play all their matches, wherever they are called.
+
+    `lacoc play` is given only what `lacoc contest invite` printed. It says what comes next, plays
+    every match of its team on both courts, and ends when the contest is over.
+    """
+    file = write_contest(tmp_path)
+    invited = run_lacoc(
+        "contest", "invite", "--contest", str(file), "--json", "--host", "127.0.0.1"
+    )
+    lines = json.loads(invited.stdout)
+    assert list(lines) == list(PEOPLE)
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    run = started("contest", "run", str(file), "--speed", "10", "--json", **streams)
+    assert run.stdout is not None
+    opened = json.loads(run.stdout.readline())
+    assert list(opened["courts"]) == ["north", "south"]
+    players = []
+    for team in PEOPLE:
+        words = lines[team]["command"].split()[1:]
+        players.append(
+            started(
+                *words,
+                "--terminal",
+                "--ready",
+                stdin=subprocess.DEVNULL,
+                cwd=tmp_path,
+                env=os.environ | {"LACOC_LANG": "en"},
+                **streams,
+            )
+        )
+    try:
+        told = [player.communicate(timeout=WAIT_S)[0] for player in players]
+        end = json.loads(run.communicate(timeout=WAIT_S)[0].splitlines()[-1])
+    finally:
+        for process in (*players, run):
+            process.kill()
+    for team, text, player in zip(PEOPLE, told, players, strict=True):
+        assert player.returncode == 0, text
+        played = [line for line in text.splitlines() if "seat, against" in line]
+        assert len(played) == 3, text
+        for other in set(TEAMS) - {team}:
+            assert sum(f"against {other}" in line for line in played) == 1, text
+        assert text.splitlines()[-1].startswith("The contest is over: place"), text
+    assert any("Court south" in text for text in told)
+    assert (run.returncode, end["games"]) == (0, 6)

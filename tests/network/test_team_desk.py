@@ -1,0 +1,77 @@
+"""The desk of a court for teams that ask where they play."""
+
+import pytest
+
+from lacoc_server.doors.team_desk import TeamDesk
+from lacoc_shared import seal
+from lacoc_shared.codec import encode
+from lacoc_shared.contest.tokens import new_token
+from lacoc_shared.keyspace import COMMAND_MAX_BYTES
+from lacoc_shared.messages import Refusal
+from lacoc_shared.messages.office import Where, Whereabouts
+from lacoc_shared.words import faults, say
+
+SALT = bytes(16)
+TOKENS = {team: new_token() for team in ("Ants", "Bees", "Crabs")}
+
+
+def waits(team: str) -> Whereabouts:
+    return Whereabouts(team=team, state="waits", said=say("team.awaits-draw"))
+
+
+@pytest.fixture
+def desk() -> TeamDesk:
+    """Give a desk that the office has told of three teams."""
+    desk = TeamDesk()
+    desk.tell({seal.hash_token(token, SALT): waits(team) for team, token in TOKENS.items()})
+    return desk
+
+
+def ask(desk: TeamDesk, token: str) -> Whereabouts | Refusal:
+    return desk.where(encode(Where(token=token)))
+
+
+def test_each_team_hears_of_itself(desk: TeamDesk) -> None:
+    """A team's token opens its own part of what the office told, and no other."""
+    for team, token in TOKENS.items():
+        assert ask(desk, token) == waits(team)
+    assert not desk.refused
+
+
+def test_a_guess_opens_nothing(desk: TeamDesk) -> None:
+    """10,000 guesses are refused and counted; a hash is no token."""
+    for _ in range(9_990):
+        assert isinstance(ask(desk, new_token()), Refusal)
+    for token in ("", "Ants", *[seal.hash_token(token, SALT) for token in TOKENS.values()] * 2):
+        found = ask(desk, token)
+        assert isinstance(found, Refusal)
+        assert (found.why, found.again) == (say("refused.no-team-token"), False)
+    for token in TOKENS.values():
+        assert isinstance(ask(desk, token[:-1]), Refusal)
+    assert desk.refused == {"wrong-token": 10_001}
+
+
+@pytest.mark.parametrize(
+    "payload", [b"", b"\xc1", encode({"token": 7}), encode({"token": "x" * COMMAND_MAX_BYTES})]
+)
+def test_what_is_no_question_is_refused(desk: TeamDesk, payload: bytes) -> None:
+    """Bytes that are no question, or too many, are refused and counted."""
+    found = desk.where(payload)
+    assert isinstance(found, Refusal)
+    assert faults(found.why) == []
+    assert desk.refused == {"bad-bytes": 1}
+
+
+def test_before_the_office_has_told_anything() -> None:
+    """Until then nobody knows; the same question may be answered a moment later."""
+    found = ask(TeamDesk(), TOKENS["Ants"])
+    assert isinstance(found, Refusal)
+    assert (found.why, found.again) == (say("refused.office-is-silent"), True)
+
+
+def test_the_newest_word_counts(desk: TeamDesk) -> None:
+    """What the office tells replaces what it told before, with another salt too."""
+    salt = bytes(range(16))
+    desk.tell({seal.hash_token(TOKENS["Ants"], salt): waits("Ants")})
+    assert ask(desk, TOKENS["Ants"]) == waits("Ants")
+    assert isinstance(ask(desk, TOKENS["Bees"]), Refusal)
