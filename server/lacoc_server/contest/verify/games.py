@@ -15,7 +15,7 @@ from lacoc_server.contest.league.facts import AnyFact, Planned, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.publish import ENTRIES, RECORDS
 from lacoc_server.contest.verify.bots import may_have_pressed
-from lacoc_server.contest.verify.history import files_of, known_before
+from lacoc_server.contest.verify.history import call_of, files_of, known_before
 from lacoc_server.journal.replay import verify as prove
 from lacoc_server.journal.verdict import Verdict
 from lacoc_shared.inputs import JoinSeat
@@ -31,6 +31,8 @@ class Game(msgspec.Struct, frozen=True, kw_only=True):
     played: Played
     plan: Planned | None
     """The plan of its stage; None: it was not the turn of this game."""
+    call: str = ""
+    """Id of the call by which a court got the game; "": it was played without a network."""
     late_ticks: int = 0
     """How many ticks later its bots start, if it was played without a network."""
     files: tuple[tuple[str, ...], ...]
@@ -46,13 +48,14 @@ def _game(facts: Sequence[AnyFact], played: Played) -> Game:
     before = known_before(facts, played)
     contest = compute(before, FORMATS)
     files = tuple(files_of(facts, played, team) for team in played.teams)
+    call = call_of(facts, played)
     for view in contest.stages:
         for match in view.matches:
             due = (match.pairing.id, match.next_game, match.next_seats)
             if due == (played.pairing, played.game, played.teams):
                 late = late_ticks(contest, before, match)
-                return Game(played=played, plan=view.plan, late_ticks=late, files=files)
-    return Game(played=played, plan=None, files=files)
+                return Game(played=played, plan=view.plan, call=call, late_ticks=late, files=files)
+    return Game(played=played, plan=None, call=call, files=files)
 
 
 def check_game(folder: Path, game: Game, proven: bool) -> list[Phrase]:
@@ -115,6 +118,8 @@ def _differences(folder: Path, game: Game, plan: Planned, record: Record) -> Ite
     setup, result = record.header.setup, record.result
     if packed_path(Path(), record.header.match_id).name != played.record:
         yield say("verify.of-name")
+    if (setup.assigned.call if setup.assigned else "") != game.call:
+        yield say("verify.of-call")
     # An installed arena alone is loaded: a folder's code must not run because the facts name it.
     arena = arenas.load_installed(plan.arena, plan.arena_settings)
     if (setup.arena, _rules(setup.settings)) != (arena.name, _rules(arena.settings)):

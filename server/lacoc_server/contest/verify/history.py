@@ -137,3 +137,15 @@ def _content(draw: Closed | Drawn | RoundDrawn) -> tuple[object, ...]:
     if isinstance(draw, RoundDrawn):
         return draw.stage, draw.round, draw.pairs
     return ()
+
+
+def call_of(facts: Sequence[AnyFact], played: Played) -> str:
+    """Return the id of the call by which a court got a game; "" if nobody called it."""
+    calls = [
+        fact.id
+        for fact in facts
+        if isinstance(fact, Called)
+        and (fact.pairing, fact.game) == (played.pairing, played.game)
+        and fact.number < played.number
+    ]
+    return calls[-1] if calls else ""
