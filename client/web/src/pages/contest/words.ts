@@ -1,0 +1,113 @@
+/** Stages, rounds and places of a contest in words. */
+
+import {
+  type Called,
+  type ContestSheet,
+  found,
+  isKnockout,
+  isMatch,
+  type Match,
+  numberOf,
+  type Round,
+  type Source,
+  type StageView,
+} from "../../core/contest/sheet";
+import type { Phrase } from "../../core/phrase";
+import { catalogue, type MessageName, said, t } from "../../i18n";
+
+/** How a stage is played: "Swiss, best of 3". */
+export function format(name: string, games = 1): string {
+  const message = `contest.format.${name}`;
+  const words = message in catalogue ? t(message as MessageName) : name;
+  return games > 1 ? `${words}, ${t("contest.bestOf", { games })}` : words;
+}
+
+/** A stage as a title; its name is the organiser's own. */
+export function stageTitle(name: string): string {
+  return name.charAt(0).toUpperCase() + name.slice(1);
+}
+
+/** A table's title; "" where the stage has only one. */
+export function groupTitle(view: StageView, section: string): string {
+  if (view.tables.length < 2 || !section) return "";
+  return t("contest.group", { group: section.toUpperCase() });
+}
+
+/** A round as a title. */
+export function roundTitle(
+  view: StageView,
+  { section, round, matches }: { section: string; round: number; matches: number },
+): string {
+  if (!isKnockout(view)) return t("contest.round", { round });
+  if (section === "p") return t("contest.thirdPlace");
+  if (section === "f") return t(round === 1 ? "contest.final" : "contest.decidingFinal");
+  if (section === "l") return t("contest.losersRound", { round });
+  // A round with byes is as large as its places.
+  const last = Math.max(...roundsOf(view, section));
+  const double = view.matches.some(({ pairing }) => pairing.section === "l");
+  if (!double && section === "w" && round === last) return t("contest.final");
+  if (!double && section === "w" && round === last - 1) return t("contest.semiFinals");
+  if (!double && section === "w" && round === last - 2 && matches > 1) {
+    return t("contest.quarterFinals");
+  }
+  return t("contest.knockoutRound", { round });
+}
+
+function roundsOf(view: StageView, section: string): number[] {
+  return view.matches
+    .filter(({ pairing }) => pairing.section === section)
+    .map(({ pairing }) => pairing.round);
+}
+
+/** A round of the schedule as a title. */
+export function scheduleTitle(view: StageView, round: Round): string {
+  return roundTitle(view, { ...round, matches: round.matches.length });
+}
+
+/** What a match is in words, as its court says it. */
+export function matchTitle(sheet: ContestSheet, pairing: string): string {
+  const phrase = sheet.fixtures[pairing];
+  return phrase ? said(phrase) : pairing;
+}
+
+/** What a game is in words: "Semi-final 1, game 2 of 3". */
+export function gameTitle(sheet: ContestSheet, pairing: string, game: number): string {
+  const match = sheet.fixtures[pairing];
+  const games = found(sheet, pairing)?.view.stage.settings.games ?? 1;
+  if (!match || (games === 1 && game === 1)) return matchTitle(sheet, pairing);
+  return said({ code: "fixture.game", values: { match, game, games: Math.max(game, games) } });
+}
+
+/** Where the team of an empty place comes from. */
+export function originTitle(sheet: ContestSheet, source: Source, to: Match): string {
+  if (source.source === "entry") return source.team;
+  if (source.source === "bye") return t("contest.how.bye");
+  const from = found(sheet, source.pairing)?.match.pairing;
+  if (to.pairing.section === "f" && source.source === "winner") {
+    if (from?.section === "l") return t("contest.winnerOfLosers");
+    if (from?.section === "w") return t("contest.winnerOfWinners");
+  }
+  const match = short(sheet.fixtures[source.pairing]);
+  return t(source.source === "winner" ? "contest.winnerOf" : "contest.loserOf", { match });
+}
+
+/** A match in words without its stage, and without the bracket that it stands in. */
+function short(fixture: Phrase | undefined): string {
+  if (!fixture) return "?";
+  const code = fixture.code === "fixture.losers" ? "fixture.knockout" : fixture.code;
+  return said({ code, values: { ...fixture.values, stage: null } });
+}
+
+/** The number that a match of a bracket has in its round; "" where the round has only one. */
+export function numberTitle(view: StageView, match: Match): string {
+  const { section, round } = match.pairing;
+  const there = view.matches.filter(
+    ({ pairing }) => pairing.section === section && pairing.round === round,
+  );
+  return there.length > 1 && isMatch(match) ? `${numberOf(match)}` : "";
+}
+
+/** The court on which a match is played now; "" if none. */
+export function courtOf(running: readonly Called[], match: Match): string {
+  return running.find(({ pairing }) => pairing === match.pairing.id)?.court ?? "";
+}
