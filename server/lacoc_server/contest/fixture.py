@@ -15,7 +15,7 @@ def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phras
         game: number of the game in its match, from 1.
     """
     said = match_fixture(contest, view, match)
-    games = view.stage.settings.games
+    games = max(game, view.stage.settings.games)  # the last ones may be extra games
     return said if games == 1 else say("fixture.game", match=said, game=game, games=games)
 
 

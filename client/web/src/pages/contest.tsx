@@ -4,7 +4,13 @@ import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { flag } from "../core/address";
 import { Feed } from "../core/contest/feed";
-import { type ContestSheet, isKnockout, type Planned, type StageView } from "../core/contest/sheet";
+import {
+  type ContestSheet,
+  isKnockout,
+  type Planned,
+  type StageView,
+  stateOf,
+} from "../core/contest/sheet";
 import { said, t } from "../i18n";
 import { Big } from "./contest/big";
 import { BracketView } from "./contest/bracket";
@@ -49,7 +55,7 @@ function Whole({ sheet }: { sheet: ContestSheet }) {
     <main class="contest">
       <Head sheet={sheet} />
       <Parts sheet={sheet} />
-      <Now sheet={sheet} />
+      {stateOf(sheet) !== "over" && <Now sheet={sheet} />}
       {sheet.stages.toReversed().map((view) => (
         <Stage key={view.stage.name} sheet={sheet} view={view} />
       ))}

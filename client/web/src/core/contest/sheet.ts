@@ -69,6 +69,11 @@ export function progress(sheet: ContestSheet): { done: number; all: number } {
   return { done: matches.filter(isDecided).length, all: matches.length };
 }
 
+/** Whether a team still has a match to play in a stage, so that its place there is not final. */
+export function isStillIn(view: StageView, team: string): boolean {
+  return view.matches.some((match) => !isDecided(match) && match.teams.includes(team));
+}
+
 /** The rounds of a stage in their order. A bracket has no byes: its best teams begin later. */
 export function rounds(view: StageView): Round[] {
   const bracket = isKnockout(view);

@@ -106,6 +106,7 @@ function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
               view={slide.view}
               table={table}
               rows={rows}
+              brief={slide.parts.length > 1}
             />
           ))}
         </div>

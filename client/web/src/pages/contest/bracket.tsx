@@ -15,7 +15,7 @@ import {
 import { replayAddress } from "../../core/record_files";
 import { t } from "../../i18n";
 import { chosenTeam, matchId, teamAddress } from "./parts";
-import { courtOf, matchTitle, numberTitle, originTitle, roundTitle } from "./words";
+import { courtOf, matchTitle, numberTitle, roundTitle, shortOrigin } from "./words";
 
 const BOX = { width: 216, height: 56 };
 const STEP = { x: BOX.width + 44, y: BOX.height + 14 };
@@ -173,7 +173,7 @@ function PlaceLine({ sheet, view, match, place }: LineProps) {
     const source = origin(match.pairing.sources[place], byId(view));
     return (
       <text class="from" x="24" y={y}>
-        {fit(originTitle(sheet, source, match), FROM_EM)}
+        {fit(shortOrigin(sheet, source, match), FROM_EM)}
       </text>
     );
   }

@@ -88,8 +88,8 @@ export function Winners({ sheet }: { sheet: ContestSheet }) {
 export function Parts({ sheet }: { sheet: ContestSheet }) {
   return (
     <nav class="parts" aria-label={t("contest.parts")}>
-      <a href="#now">{t("contest.now")}</a>
-      {sheet.stages.map(({ stage }) => (
+      {stateOf(sheet) !== "over" && <a href="#now">{t("contest.now")}</a>}
+      {sheet.stages.toReversed().map(({ stage }) => (
         <a key={stage.name} href={`#stage-${stage.name}`}>
           {stageTitle(stage.name)}
         </a>

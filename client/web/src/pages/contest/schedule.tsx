@@ -78,7 +78,7 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
   const many = countsGames(match, view) && games.length > 0;
   const court = courtOf(sheet.running, match);
   const group = view.tables.length > 1 ? match.pairing.section.toUpperCase() : "";
-  const mine = match.teams.includes(chosenTeam.value) && chosenTeam.value !== "";
+  const mine = id && chosenTeam.value !== "" && match.teams.includes(chosenTeam.value);
   return (
     <li
       id={id ? matchId(match) : undefined}
@@ -127,6 +127,6 @@ interface PlaceProps {
 function Place({ sheet, match, place }: PlaceProps) {
   const team = match.teams[place];
   if (team) return <TeamLink name={team} won={isDecided(match) && match.winner === team} />;
-  const text = team === null ? originTitle(sheet, match.pairing.sources[place], match) : "–";
+  const text = team === null ? originTitle(sheet, match.pairing.sources[place]) : "–";
   return <span class="team muted">{text}</span>;
 }

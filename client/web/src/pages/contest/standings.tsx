@@ -1,6 +1,12 @@
 /** The tables of a stage: its groups, a Swiss stage, or the places in a bracket. */
 
-import { isKnockout, type StageView, type Table, tieColumns } from "../../core/contest/sheet";
+import {
+  isKnockout,
+  isStillIn,
+  type StageView,
+  type Table,
+  tieColumns,
+} from "../../core/contest/sheet";
 import { catalogue, type MessageName, t } from "../../i18n";
 import { chosenTeam, TeamLink } from "./parts";
 import { groupTitle } from "./words";
@@ -25,12 +31,14 @@ interface Props {
   table: Table;
   /** Those of its rows that are shown. */
   rows: Table["rows"];
+  /** Whether there is no room for all columns. */
+  brief?: boolean;
 }
 
-export function Standings({ view, table, rows }: Props) {
+export function Standings({ view, table, rows, brief = false }: Props) {
   const bracket = isKnockout(view);
   const counts = bracket ? (["played", "won", "lost"] as const) : COUNTS;
-  const ties = bracket ? [] : tieColumns(table);
+  const ties = bracket || brief ? [] : tieColumns(table);
   const title = groupTitle(view, table.section);
   return (
     <table class="standings">
@@ -59,7 +67,7 @@ export function Standings({ view, table, rows }: Props) {
           const all = { played: won + drawn + lost, won, drawn, lost };
           return (
             <tr key={team} data-chosen={chosenTeam.value === team || undefined}>
-              <td>{rank}</td>
+              <td>{bracket && isStillIn(view, team) ? "" : rank}</td>
               <th scope="row" class="who">
                 <TeamLink name={team} />
                 {out && <small class="out"> {t("contest.out")}</small>}

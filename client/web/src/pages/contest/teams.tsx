@@ -1,7 +1,13 @@
 /** All teams with their ratings, and one team's way through the contest. */
 
 import { useSignal } from "@preact/signals";
-import { type ContestSheet, type Team, teamView } from "../../core/contest/sheet";
+import {
+  type ContestSheet,
+  isKnockout,
+  isStillIn,
+  type Team,
+  teamView,
+} from "../../core/contest/sheet";
 import { t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { chooseNoTeam, chosenTeam, TeamLink } from "./parts";
@@ -125,7 +131,9 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
                 {stageTitle(view.stage.name)} {groupTitle(view, table.section)}
               </dt>
               <dd>
-                {t("contest.ratedAs", { rank: row.rank, of: table.rows.length })}
+                {isKnockout(view) && isStillIn(view, team.name)
+                  ? t("contest.stillIn")
+                  : t("contest.ratedAs", { rank: row.rank, of: table.rows.length })}
                 {row.out && ` (${t("contest.out")})`}
               </dd>
             </div>

@@ -12,7 +12,6 @@ import {
   type Source,
   type StageView,
 } from "../../core/contest/sheet";
-import type { Phrase } from "../../core/phrase";
 import { catalogue, type MessageName, said, t } from "../../i18n";
 
 /** How a stage is played: "Swiss, best of 3". */
@@ -73,29 +72,29 @@ export function matchTitle(sheet: ContestSheet, pairing: string): string {
 /** What a game is in words: "Semi-final 1, game 2 of 3". */
 export function gameTitle(sheet: ContestSheet, pairing: string, game: number): string {
   const match = sheet.fixtures[pairing];
-  const games = found(sheet, pairing)?.view.stage.settings.games ?? 1;
-  if (!match || (games === 1 && game === 1)) return matchTitle(sheet, pairing);
-  return said({ code: "fixture.game", values: { match, game, games: Math.max(game, games) } });
+  const games = Math.max(game, found(sheet, pairing)?.view.stage.settings.games ?? 1);
+  if (!match || games === 1) return matchTitle(sheet, pairing);
+  return said({ code: "fixture.game", values: { match, game, games } });
 }
 
 /** Where the team of an empty place comes from. */
-export function originTitle(sheet: ContestSheet, source: Source, to: Match): string {
+export function originTitle(sheet: ContestSheet, source: Source): string {
   if (source.source === "entry") return source.team;
   if (source.source === "bye") return t("contest.how.bye");
-  const from = found(sheet, source.pairing)?.match.pairing;
-  if (to.pairing.section === "f" && source.source === "winner") {
-    if (from?.section === "l") return t("contest.winnerOfLosers");
-    if (from?.section === "w") return t("contest.winnerOfWinners");
-  }
-  const match = short(sheet.fixtures[source.pairing]);
+  const fixture = sheet.fixtures[source.pairing];
+  const match = fixture ? said({ ...fixture, values: { ...fixture.values, stage: null } }) : "?";
   return t(source.source === "winner" ? "contest.winnerOf" : "contest.loserOf", { match });
 }
 
-/** A match in words without its stage, and without the bracket that it stands in. */
-function short(fixture: Phrase | undefined): string {
-  if (!fixture) return "?";
-  const code = fixture.code === "fixture.losers" ? "fixture.knockout" : fixture.code;
-  return said({ code, values: { ...fixture.values, stage: null } });
+/** The same in a bracket, where lines say from which round a winner comes. */
+export function shortOrigin(sheet: ContestSheet, source: Source, to: Match): string {
+  const from = source.source === "winner" ? found(sheet, source.pairing)?.match : null;
+  if (!from) return originTitle(sheet, source);
+  const { section } = from.pairing;
+  if (to.pairing.section === "f" && section === "l") return t("contest.winnerOfLosers");
+  if (to.pairing.section === "f" && section === "w") return t("contest.winnerOfWinners");
+  if (sheet.fixtures[from.pairing.id]?.code !== "fixture.losers") return originTitle(sheet, source);
+  return t("contest.winnerOfMatch", { number: numberOf(from) });
 }
 
 /** The number that a match of a bracket has in its round; "" where the round has only one. */
