@@ -38,7 +38,7 @@ export const contest = {
   "contest.format.swiss": ["Swiss", "スイス式"],
   "contest.format.single-knockout": ["Single knockout", "シングルエリミネーション"],
   "contest.format.double-knockout": ["Double knockout", "ダブルエリミネーション"],
-  "contest.bestOf": ["best of {games}", "{games} ゲーム制"],
+  "contest.bestOf": ["{format}, best of {games}", "{format}・最大 {games} ゲーム"],
   "contest.planned": ["Not drawn yet.", "組み合わせはまだ決まっていません。"],
   "contest.plannedAfter": [
     "Drawn when the stage “{stage}” is over.",

@@ -19,6 +19,8 @@ const SLIDE_MS = 12_000;
 const COMING_MOST = 6;
 const RATINGS_MOST = 12;
 const WINNERS_MOST = 8;
+/** Tables with so few rows can be larger. */
+const FEW = 7;
 
 export function Big({ sheet }: { sheet: ContestSheet }) {
   const at = useSignal(0);
@@ -99,7 +101,10 @@ function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
       {slide.is === "bracket" ? (
         <BracketView sheet={sheet} view={slide.view} cut={slide.cut} />
       ) : (
-        <div class="tables" data-count={slide.parts.length}>
+        <div
+          class="tables"
+          data-small={slide.parts.every(({ rows }) => rows.length <= FEW) || undefined}
+        >
           {slide.parts.map(({ table, rows }) => (
             <Standings
               key={table.section + rows[0]!.team}

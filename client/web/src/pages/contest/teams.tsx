@@ -67,6 +67,9 @@ export function Ratings({ sheet, teams }: RatingsProps) {
       <caption class="hidden-text">{t("contest.teams")}</caption>
       <thead>
         <tr>
+          <th scope="col">
+            <span class="hidden-text">{t("contest.rank")}</span>
+          </th>
           <th scope="col" class="who">
             {t("contest.team")}
           </th>
@@ -82,6 +85,7 @@ export function Ratings({ sheet, teams }: RatingsProps) {
           const rating = ratings.get(team.name);
           return (
             <tr key={team.name}>
+              <td>{rating ? sheet.ratings.indexOf(rating) + 1 : ""}</td>
               <th scope="row" class="who">
                 <TeamLink name={team.name} />
                 <Marks team={team} />

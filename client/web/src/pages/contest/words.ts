@@ -18,7 +18,7 @@ import { catalogue, type MessageName, said, t } from "../../i18n";
 export function format(name: string, games = 1): string {
   const message = `contest.format.${name}`;
   const words = message in catalogue ? t(message as MessageName) : name;
-  return games > 1 ? `${words}, ${t("contest.bestOf", { games })}` : words;
+  return games > 1 ? t("contest.bestOf", { format: words, games }) : words;
 }
 
 /** A stage as a title; its name is the organiser's own. */
