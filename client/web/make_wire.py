@@ -2,8 +2,9 @@
 
     python client/web/make_wire.py
 
-src/core/wire.gen.ts has the court's messages as types, from the Python structs, and
-src/i18n/words.gen.ts the table of everything that is said, without what only commands say.
+src/core/wire.gen.ts has the court's messages as types, from the Python structs,
+src/core/contest/sheet.gen.ts the sheet of a contest, and src/i18n/words.gen.ts the table of
+everything that is said, without what only commands say.
 A test says when a file is behind.
 """
 
@@ -26,6 +27,10 @@ from lacoc_client.gateway.page import TRY_LATER
 from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.phases import facts
+from lacoc_server.contest import sheet
+from lacoc_server.contest.league import contest, draws, matches, pairing, rating, standings
+from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league.formats import format as formats
 from lacoc_server.doors.inbox import NAME_MAX
 from lacoc_server.match.referee import MAX_CLOCK_S, MAX_FREEZE_S, MAX_POINTS
 from lacoc_server.trial import explain
@@ -105,6 +110,27 @@ STRUCTS = (
     learner.EditReply,
     learner.CheckReply,
 )
+CONTEST_STRUCTS = (
+    draws.Team,
+    league_facts.Settings,
+    league_facts.Planned,
+    league_facts.Called,
+    formats.Stage,
+    pairing.Entry,
+    pairing.WinnerOf,
+    pairing.LoserOf,
+    pairing.Bye,
+    pairing.Pairing,
+    matches.Game,
+    matches.Match,
+    standings.Standing,
+    standings.Table,
+    contest.StageView,
+    contest.Unused,
+    rating.Rating,
+    sheet.Coming,
+    sheet.ContestSheet,
+)
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
 CONSTANTS: dict[str, float | str] = {
     "PROTOCOL": messages.PROTOCOL,
@@ -145,16 +171,14 @@ LIMITS: dict[str, float] = {
     "DECIMALS": DECIMALS,
 }
 """Of phrases that are put into words."""
-_IMPORTS = {Phrase: "./phrase"}
-"""Types that pages write themselves, with the module that has them."""
+_IMPORTS = {Phrase: "phrase"}
+"""Types that pages write themselves, with the module of core that has them."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
 
 
 def wire_types() -> str:
     """The whole file."""
-    parts = ["// Made by client/web/make_wire.py from the Python structs; not edited by hand."]
-    parts += [f'import type {{ {k.__name__} }} from "{m}";' for k, m in _IMPORTS.items()]
-    parts += [_constants(CONSTANTS)]
+    parts = [*_head("./"), _constants(CONSTANTS)]
     parts += [_enum(kind) for kind in ENUMS]
     names = ", ".join(f'"{name}"' for name in messages.MARKER_STATES)
     parts += [f"export const MARKER_STATES = [{names}] as const;", _kinds(), _why_no()]
@@ -162,6 +186,21 @@ def wire_types() -> str:
     parts += [_field_names(kind) for kind in STRUCTS if kind.__struct_config__.array_like]
     parts += [_decisions(), _need_a_reason()]
     return "\n\n".join(parts) + "\n"
+
+
+def sheet_types() -> str:
+    """Return the types of the sheet of a contest."""
+    parts = [*_head("../"), _constants({"VERSION": sheet.VERSION})]
+    return "\n\n".join([*parts, *map(_interface, CONTEST_STRUCTS)]) + "\n"
+
+
+def _head(core: str) -> list[str]:
+    """Begin a file; `core` is the way to the folder of that name."""
+    imports = [f'import type {{ {k.__name__} }} from "{core}{m}";' for k, m in _IMPORTS.items()]
+    return [
+        "// Made by client/web/make_wire.py from the Python structs; not edited by hand.",
+        *imports,
+    ]
 
 
 def _constants(constants: Mapping[str, float | str]) -> str:
@@ -195,11 +234,14 @@ def _enum(kind: type[Any]) -> str:
 def _interface(kind: type[msgspec.Struct]) -> str:
     hints = typing.get_type_hints(kind)
     omits = kind.__struct_config__.omit_defaults
-    body = "\n".join(
+    config = kind.__struct_config__
+    tag = [f"  {config.tag_field}: {json.dumps(config.tag)};"] if config.tag_field else []
+    fields = [
         f"  {field.encode_name}{'?' if omits and not field.required else ''}: "
         f"{_type(hints[field.name])};"
         for field in msgspec.structs.fields(kind)
-    )
+    ]
+    body = "\n".join([*tag, *fields])
     return f"export interface {kind.__name__} {{\n{body}\n}}"
 
 
@@ -238,7 +280,7 @@ def _need_a_reason() -> str:
 def _type(hint: Any) -> str:
     if hint in _SIMPLE:
         return _SIMPLE[hint]
-    if hint in STRUCTS or hint in _IMPORTS:
+    if hint in STRUCTS or hint in CONTEST_STRUCTS or hint in _IMPORTS:
         return str(hint.__name__)
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin is tuple:
@@ -273,6 +315,7 @@ def words() -> str:
 
 FILES = {
     _SOURCE / "core" / "wire.gen.ts": wire_types,
+    _SOURCE / "core" / "contest" / "sheet.gen.ts": sheet_types,
     _SOURCE / "i18n" / "words.gen.ts": words,
 }
 

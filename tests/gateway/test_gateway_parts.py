@@ -2,28 +2,34 @@
 
 import asyncio
 import contextlib
+import gzip
+import os
 import re
 import socket
 from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar, cast, get_args
 
 import msgpack
 import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
 
 from lacoc_client.asking import NoAnswer, NoCourt, NotNow
 from lacoc_client.controller import Hold
 from lacoc_client.event_log import EventLog
-from lacoc_client.gateway import home, page_seat, server, wire
+from lacoc_client.gateway import home, page_seat, published, server, wire
 from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.browser import open_browser
+from lacoc_client.gateway.files import NOT_BUILT
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page_seat import PageSeat
-from lacoc_client.gateway.site import PATHS
+from lacoc_client.gateway.site import PATHS, sheet_route
 from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest.file import throwaway
@@ -345,3 +351,39 @@ def test_no_header_breaks_the_guard(host: str, origin: str) -> None:
         (b"origin", origin.encode("latin-1", "replace")),
     ]
     assert guard._why_not({"type": "websocket", "headers": headers})
+
+
+def test_a_sheet_is_sent_only_if_it_has_changed(tmp_path: Path) -> None:
+    """Whoever has the newest sheet gets 304; a new one is sent, packed where it can be read."""
+    path = tmp_path / "contest.json"
+    endpoint = cast(Route, sheet_route(path)).endpoint
+
+    def ask(**headers: str) -> Response:
+        scope = {"type": "http", "path": "/contest.json", "headers": []}
+        scope["headers"] = [
+            (name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()
+        ]
+        return asyncio.run(endpoint(Request(scope)))
+
+    assert ask().status_code == 404
+    path.write_text("[1]" * 1000)
+    first = ask()
+    assert first.body == path.read_bytes()
+    same = ask(if_none_match=first.headers["etag"])
+    assert (same.status_code, same.body) == (304, b"")
+    path.write_text("[2]" * 1000)
+    os.utime(path, ns=(1, 1))
+    newer = ask(if_none_match=first.headers["etag"], accept_encoding="gzip, br")
+    assert newer.status_code == 200
+    assert gzip.decompress(bytes(newer.body)) == path.read_bytes()
+    assert newer.headers["etag"] != first.headers["etag"]
+
+
+def test_pages_that_are_not_built_can_not_be_published(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever publishes a contest without built pages is told how to build them."""
+    monkeypatch.setattr(published, "PAGES", tmp_path)
+    with pytest.raises(UserError) as refused:
+        published.write_pages(tmp_path)
+    assert refused.value.phrase == NOT_BUILT

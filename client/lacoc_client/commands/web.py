@@ -74,7 +74,10 @@ def web_command(
         ),
     ] = VIEWERS_MOST,
     browser: Annotated[
-        bool, typer.Option("--open/--no-open", help="Open /watch in the browser.")
+        bool,
+        typer.Option(
+            "--open/--no-open", help="Open /watch in the browser; with an office, /contest."
+        ),
     ] = False,
     metrics: options.Metrics = None,
     json: options.Json = False,
@@ -90,6 +93,7 @@ def web_command(
     home = Home(
         courts=_courts(invitation, plan, court, connect),
         contest=plan.given_name if plan else "",
+        sheet=contests.sheet_path(contest) if contest else None,
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
         names=frozenset(host or ()),
         viewers_most=viewers,
@@ -101,13 +105,14 @@ def web_command(
 
     def ready() -> None:
         built = PageFiles().built
-        shown = browser and built and open_browser(f"{address}/watch")
+        first = "contest" if plan is not None and plan.office is not None else "watch"
+        shown = browser and built and open_browser(f"{address}/{first}")
         if json:
             opened = {"kind": "open", "url": address, "key": home.key, "built": built}
             opened |= {"shown": shown, "metrics": None if exporter is None else exporter.url}
             screen.print_json(opened)
         else:
-            _tell(home, address)
+            _tell(home, address, office=first == "contest")
             if exporter is not None:
                 screen.note(say("command.metrics-at", where=exporter.url))
         if not built:
@@ -136,8 +141,10 @@ def _key(plan: Contest | None, key: str | None) -> str:
     return new_key() if plan is None else page_key(plan)
 
 
-def _tell(home: Home, address: str) -> None:
+def _tell(home: Home, address: str, *, office: bool) -> None:
     screen.show(say("web.pages", courts=[*home.courts]))
+    if office:
+        screen.show(say("web.contest", url=f"{address}/contest"))
     screen.show(say("web.spectators", url=f"{address}/watch"))
     screen.show(say("web.broadcast", url=f"{address}/overlay"))
     screen.show(say("web.recordings", url=f"{address}/replay"))

@@ -1,6 +1,7 @@
-"""The built pages, as a gateway serves them."""
+"""Files that a gateway serves: the built pages, and the sheet of a contest."""
 
 import gzip
+import hashlib
 import mimetypes
 from pathlib import Path
 from typing import NamedTuple
@@ -16,20 +17,22 @@ _TYPES = {".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "applicati
 
 
 class PageFile(NamedTuple):
-    """One file of the pages."""
+    """A file as it is served."""
 
     data: bytes
     packed: bytes | None
     """The data compressed with gzip, if that is shorter."""
     media_type: str
+    hash: str
+    """Changes with the data."""
 
 
 class PageFiles:
-    """The built pages; each file is read and compressed once."""
+    """The files of a folder; each version of a file is read and compressed once."""
 
     def __init__(self, folder: Path = PAGES) -> None:
         self._folder = folder.resolve()
-        self._files: dict[tuple[str, int], PageFile] = {}
+        self._files: dict[str, tuple[int, PageFile]] = {}
 
     @property
     def built(self) -> bool:
@@ -43,9 +46,10 @@ class PageFiles:
             if not path.is_relative_to(self._folder) or not path.is_file():
                 return None
             version = path.stat().st_mtime_ns
-            file = self._files.get((name, version))
-            if file is None:
-                file = self._files[name, version] = _read(path)
+            known, file = self._files.get(name, (0, None))
+            if file is None or known != version:
+                file = _read(path)
+                self._files[name] = version, file
         except (OSError, ValueError):  # a NUL in the name, or a file being rebuilt
             return None
         return file
@@ -58,4 +62,5 @@ def _read(path: Path) -> PageFile:
     packed = None
     if len(data) >= _PACKED_FROM_BYTES and kind.startswith(_PACKED):
         packed = gzip.compress(data, 9, mtime=0)
-    return PageFile(data, packed, kind)
+    name = hashlib.blake2b(data, digest_size=12).hexdigest()
+    return PageFile(data, packed, kind, name)

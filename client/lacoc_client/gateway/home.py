@@ -47,6 +47,8 @@ class Home:
     prefill: Prefill | None = None
     recordings: Path | None = None
     """Folder of the recordings that pages may fetch."""
+    sheet: Path | None = None
+    """The newest sheet of the contest, which its office writes."""
     names: frozenset[str] = frozenset()
     """Names by which browsers may call this machine, besides its own."""
     viewers_most: int = VIEWERS_MOST

@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import AsyncIterator, Iterable
 from contextlib import asynccontextmanager
+from pathlib import Path
 
 import msgspec
 from starlette.applications import Starlette
@@ -21,7 +22,7 @@ from lacoc_client.gateway.page import Page
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_shared.words import say
 
-PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
+PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest")
 """Paths that all serve index.html; the page itself looks at its path."""
 
 _FOR_EVER = "public, max-age=31536000, immutable"  # names of assets contain their hash
@@ -52,7 +53,7 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
     async def page(websocket: WebSocket) -> None:
         await Page(websocket, courts).serve()
 
-    others = [*recording_routes(shelf), WebSocketRoute("/ws", page)]
+    others = [*recording_routes(shelf), sheet_route(home.sheet), WebSocketRoute("/ws", page)]
     routes = page_routes(files, PATHS, others)
     return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
 
@@ -70,6 +71,25 @@ def recording_routes(shelf: Recordings) -> list[BaseRoute]:
         return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
 
     return [Route("/recordings", recordings), Route("/recordings/{name}", one_recording)]
+
+
+def sheet_route(path: Path | None) -> BaseRoute:
+    """Return the route of a contest's newest sheet.
+
+    Args:
+        path: its file, which need not be there yet; None: there is no contest.
+    """
+    files = None if path is None else PageFiles(path.parent)
+
+    async def sheet(request: Request) -> Response:
+        found = None
+        if files is not None and path is not None:
+            found = await asyncio.to_thread(files.find, path.name)
+        if found is None:
+            return answer(request.scope, say("gateway.no-contest"), 404)
+        return _response(request, found, "no-cache")
+
+    return Route("/contest.json", sheet)
 
 
 def page_routes(
@@ -108,7 +128,10 @@ def page_routes(
 
 
 def _response(request: Request, file: PageFile, cache: str) -> Response:
-    headers = {"Cache-Control": cache, "Vary": "Accept-Encoding"}
+    tag = f'W/"{file.hash}"'
+    headers = {"Cache-Control": cache, "Vary": "Accept-Encoding", "ETag": tag}
+    if request.headers.get("if-none-match") == tag:
+        return Response(status_code=304, headers=headers)
     data = file.data
     if file.packed is not None and "gzip" in request.headers.get("accept-encoding", ""):
         data = file.packed

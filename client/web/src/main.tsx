@@ -1,7 +1,8 @@
-/** The path says which page; each loads only what it needs. */
+/** The page's own file or its path says which page it is; each loads only what it needs. */
 
 import { effect } from "@preact/signals";
 import { type ComponentType, render } from "preact";
+import { ownPage } from "./core/address";
 import { palette } from "./core/colours";
 import { reloadWhenServed } from "./core/reload";
 import { language } from "./i18n";
@@ -16,6 +17,7 @@ const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
   "/overlay": () => import("./pages/overlay"),
   "/design": () => import("./pages/design"),
   "/class": () => import("./pages/class"),
+  "/contest": () => import("./pages/contest"),
   "/replay": () => import("./pages/replay"),
 };
 
@@ -26,7 +28,7 @@ effect(() => {
 
 addEventListener("vite:preloadError", () => void reloadWhenServed());
 
-const path = location.pathname.replace(/\/+$/, "") || "/";
+const path = ownPage ? `/${ownPage}` : location.pathname.replace(/\/+$/, "") || "/";
 const { default: Page } = await (PAGES[path] ?? PAGES["/"]!)();
 document.body.dataset.page = path.slice(1) || "home";
 render(<Page />, document.getElementById("page")!);

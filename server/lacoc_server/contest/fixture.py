@@ -1,4 +1,4 @@
-"""What a game is in its contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
+"""What a match or a game is in its contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
 
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.matches import Match
@@ -14,12 +14,13 @@ def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phras
         match: the match.
         game: number of the game in its match, from 1.
     """
-    said = _match(contest, view, match)
-    games = view.stage.settings.games
+    said = match_fixture(contest, view, match)
+    games = max(game, view.stage.settings.games)  # the last ones may be extra games
     return said if games == 1 else say("fixture.game", match=said, game=game, games=games)
 
 
-def _match(contest: Contest, view: StageView, match: Match) -> Phrase:
+def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
+    """Say what a match is; arguments are those of `fixture`."""
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
     knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]

@@ -28,7 +28,7 @@ class ContestFolder:
         folder = file.resolve().parent
         self.facts = folder / f"{file.stem}.db"
         """The database of facts."""
-        self.sheet = folder / f"{file.stem}.json"
+        self.sheet = contests.sheet_path(file)
         """The newest sheet, for pages."""
         self.tokens = folder / f"{file.stem}.tokens.json"
         """The tokens of the teams; secret."""

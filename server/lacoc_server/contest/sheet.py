@@ -7,12 +7,14 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from lacoc_server.contest.fixture import match_fixture
 from lacoc_server.contest.league.contest import Contest, StageView, Unused, compute
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned
 from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.rating import Rated, Rating, ratings
 from lacoc_server.contest.league.schedule import playable
+from lacoc_shared.words import Phrase
 
 VERSION = 1
 """Version of the layout of a sheet."""
@@ -36,6 +38,8 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """In the order in which they entered."""
     stages: tuple[StageView, ...]
     """The stages that were drawn, in the order of their draws."""
+    fixtures: dict[str, Phrase]
+    """What each match is in words, by its pairing: "Semi-final 1"."""
     planned: tuple[Planned, ...]
     """The stages that are not drawn yet."""
     running: tuple[Called, ...]
@@ -72,6 +76,11 @@ def sheet(name: str, contest: Contest) -> ContestSheet:
         name=name,
         teams=contest.teams,
         stages=contest.stages,
+        fixtures={
+            match.pairing.id: match_fixture(contest, view, match)
+            for view in contest.stages
+            for match in view.matches
+        },
         planned=contest.planned,
         running=contest.running,
         coming=tuple(

@@ -164,6 +164,11 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
         return name, self.courts[name]
 
 
+def sheet_path(path: Path) -> Path:
+    """Return where the newest sheet of a contest is: beside its contest file."""
+    return path.resolve().with_suffix(".json")
+
+
 def load(path: Path) -> Contest:
     """Read a contest file; relative paths in it start from its own folder.
 

@@ -1,5 +1,6 @@
 /** Gets records into the page: from the server's folder, or from this machine. */
 
+import { ownPage } from "./address";
 import type { MatchRecord, RecordFile } from "./record";
 import type { Answer } from "./record.worker";
 
@@ -38,9 +39,17 @@ export class BadRecord extends Error {
   }
 }
 
+/** Where the recordings are. */
+const FOLDER = ownPage ? "records" : "/recordings";
+
+/** The address of a recording's replay, beside this page. */
+export function replayAddress(name: string): string {
+  return `${ownPage ? "replay.html" : "replay"}?file=${encodeURIComponent(name)}`;
+}
+
 /** The server's recordings, the newest first. */
 export async function listed(): Promise<Listed[]> {
-  const response = await ask("/recordings");
+  const response = await ask(FOLDER);
   if (!response.ok) throw new BadRecord("unreachable");
   return (await response.json()) as Listed[];
 }
@@ -54,7 +63,7 @@ export async function fetched(
   name: string,
   progress: (part: number) => void,
 ): Promise<RecordFile[]> {
-  const response = await ask(`/recordings/${encodeURIComponent(name)}`);
+  const response = await ask(`${FOLDER}/${encodeURIComponent(name)}`);
   if (!response.ok || !response.body) throw new BadRecord("missing", { name });
   const total = Number(response.headers.get("Content-Length"));
   const parts: Uint8Array[] = [];

@@ -74,6 +74,7 @@ export const common = {
   "mistake.expected": ["expected: {expected}", "正しい値：{expected}"],
   "home.title": ["Walking robots, live", "歩行ロボットの生中継"],
   "home.watch": ["Watch the match", "試合を見る"],
+  "home.contest": ["The contest", "大会"],
   "home.play": ["Play", "対戦する"],
   "home.practice": ["Practice", "練習する"],
   "home.referee": ["Referee", "審判"],

@@ -6,6 +6,7 @@ import type { Phrase } from "../core/phrase";
 import { remembered } from "../core/settings";
 import { classroom } from "./class";
 import { common } from "./common";
+import { contest } from "./contest";
 import { design } from "./design";
 import { play } from "./play";
 import { referee } from "./referee";
@@ -25,6 +26,7 @@ export const catalogue = {
   ...replay,
   ...design,
   ...classroom,
+  ...contest,
 };
 export type MessageName = keyof typeof catalogue;
 

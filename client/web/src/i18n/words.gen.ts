@@ -422,6 +422,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "gateway.port-used": ["The gateway can't listen at {where}: another program uses this port. Check whether another gateway is running, or choose another port (0 takes a free one).", "{where} で待ち受けできません。ほかのプログラムがこのポートを使っています。別のサーバーが動いていないか確かめるか、別のポートを選んでください（0 なら空きポートを使います）。"],
   "gateway.other-site": ["A page of another site may not connect here.", "ほかのサイトのページからは接続できません。"],
   "gateway.not-built": ["The pages are not built. Run 'npm ci && npm run build' in client/web, or install lacoc from its wheel.", "ページが作られていません。client/web で 'npm ci && npm run build' を実行するか、lacoc を wheel から入れてください。"],
+  "gateway.no-contest": ["There is no contest here yet. Its pages begin with 'lacoc contest run'.", "ここにはまだ大会がありません。'lacoc contest run' で始まると表示されます。"],
   "gateway.no-page": ["There is no such page here.", "このページはありません。"],
   "page.not-connected": ["not connected", "接続されていません"],
   "page.connection-lost": ["the connection is lost", "接続が切れました"],

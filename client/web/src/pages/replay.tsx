@@ -2,7 +2,7 @@
 
 import { effect, signal, useComputed } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { setting } from "../core/address";
+import { ownPage, setting } from "../core/address";
 import { followColours } from "../core/colours";
 import type { Note, RecordFile } from "../core/record";
 import { BadRecord, dropped, fetched, readBeside } from "../core/record_files";
@@ -167,6 +167,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
   useShortcuts(useMemo(() => shortcutsOf(player), [player]));
   useEffect(() => () => player.pause(), [player]);
   const narrow = isNarrow.value;
+  const others = t(ownPage ? "home.contest" : "replay.others");
   const beside = panel.value && !narrow;
   const inset = narrow
     ? { top: 92, bottom: 8 }
@@ -186,9 +187,9 @@ function Show({ player, server }: { player: Player; server: string | null }) {
       </div>
       <div class="top">
         <div class="corner left">
-          <a class="button others" href="/replay" title={t("replay.others")}>
+          <a class="button others" href={ownPage ? "./" : "/replay"} title={others}>
             <Icon name="open" />
-            <span>{t("replay.others")}</span>
+            <span>{others}</span>
           </a>
         </div>
         <header class="head">

@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
-import { listed } from "../core/record_files";
+import { listed, replayAddress } from "../core/record_files";
 import { Phase } from "../core/wire";
 import { t } from "../i18n";
 
@@ -37,7 +37,7 @@ export function ReplayLink({ match }: { match: Match }) {
   }, [file, isOver, id]);
   if (!file.value) return null;
   return (
-    <a class="button strong" href={`/replay?file=${encodeURIComponent(file.value)}`}>
+    <a class="button strong" href={replayAddress(file.value)}>
       {t("result.replay")}
     </a>
   );

@@ -1,6 +1,7 @@
 /** A friendly tournament of the class's gaits: start it, follow it, read the standings. */
 
 import { useSignal } from "@preact/signals";
+import { replayAddress } from "../../core/record_files";
 import type { LeftOut, Played, TournamentState } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Icon } from "../../ui/icons";
@@ -204,7 +205,7 @@ function Matches({ teacher, matches }: MatchesProps) {
               <span>{match.void ? t("class.play.void") : `${scores[0]} : ${scores[1]}`}</span>
               {record && !hidden && (
                 <a
-                  href={`/replay?file=${encodeURIComponent(record)}`}
+                  href={replayAddress(record)}
                   target="_blank"
                   rel="noreferrer"
                   aria-label={t("class.play.replay", { left: one, right: other })}

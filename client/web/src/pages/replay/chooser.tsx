@@ -2,6 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { ownPage } from "../../core/address";
 import { type BadRecord, type Listed, listed, type Summary } from "../../core/record_files";
 import { language, type MessageName, t } from "../../i18n";
 import { seatName } from "../../i18n/words";
@@ -18,6 +19,7 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
   const found = useSignal<readonly Listed[] | null>(null);
   const noServer = useSignal(false);
   useEffect(() => {
+    if (ownPage) return;
     listed().then(
       (list) => {
         found.value = list;
@@ -31,7 +33,7 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
     <div class="chooser">
       <header>
         <h1>{t("replay.title")}</h1>
-        <a href="/watch">{t("home.watch")}</a>
+        {ownPage ? <a href="./">{t("home.contest")}</a> : <a href="/watch">{t("home.watch")}</a>}
       </header>
       {trouble && (
         <p class="trouble" role="alert">
@@ -52,7 +54,7 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
         <b>{t("replay.choose")}</b>
         <span class="muted">{t("replay.dropHint")}</span>
       </label>
-      <section aria-label={t("replay.onServer")}>
+      <section aria-label={t("replay.onServer")} hidden={ownPage !== null}>
         <h2>{t("replay.onServer")}</h2>
         {noServer.value && <p class="muted">{t("replay.noList")}</p>}
         {found.value?.length === 0 && <p class="muted">{t("replay.noneYet")}</p>}

@@ -1,0 +1,62 @@
+/** Gets the newest sheet of a contest again and again: from a gateway, or from a published folder. */
+
+import { signal } from "@preact/signals";
+import { type ContestSheet, stateOf, VERSION } from "./sheet";
+
+/** Beside the page, wherever that is. */
+const ADDRESS = "contest.json";
+const AGAIN_MS = 2000;
+/** After the end nothing changes but by a decision. */
+const OVER_MS = 20_000;
+
+/** Why there is no newer sheet: name of a message `contest.trouble.…`. */
+export type Trouble = "missing" | "lost" | "outdated";
+
+export class Feed {
+  readonly sheet = signal<ContestSheet | null>(null);
+  readonly trouble = signal<Trouble | null>(null);
+  #text = "";
+  #timer = 0;
+
+  /** Begin; the function that is returned ends it. */
+  start(): () => void {
+    void this.#look();
+    const back = () => {
+      if (!document.hidden) void this.#look();
+    };
+    document.addEventListener("visibilitychange", back);
+    return () => {
+      document.removeEventListener("visibilitychange", back);
+      clearTimeout(this.#timer);
+      this.#timer = -1;
+    };
+  }
+
+  async #look(): Promise<void> {
+    clearTimeout(this.#timer);
+    if (!document.hidden) this.trouble.value = await this.#get();
+    if (this.#timer < 0) return;
+    clearTimeout(this.#timer); // two looks at once
+    const now = this.sheet.peek();
+    const waitMs = now && stateOf(now) === "over" ? OVER_MS : AGAIN_MS;
+    this.#timer = window.setTimeout(() => void this.#look(), waitMs);
+  }
+
+  async #get(): Promise<Trouble | null> {
+    try {
+      // The browser asks whether its copy is still the newest, and gets it again only if not.
+      const response = await fetch(ADDRESS, { cache: "no-cache" });
+      if (response.status === 404) return "missing";
+      if (!response.ok) return "lost";
+      const text = await response.text();
+      if (text === this.#text) return null;
+      const sheet = JSON.parse(text) as ContestSheet;
+      if (sheet.version !== VERSION) return "outdated";
+      this.#text = text;
+      this.sheet.value = sheet;
+      return null;
+    } catch {
+      return "lost"; // no answer, or half a file
+    }
+  }
+}

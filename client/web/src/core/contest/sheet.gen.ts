@@ -1,0 +1,167 @@
+// Made by client/web/make_wire.py from the Python structs; not edited by hand.
+
+import type { Phrase } from "../phrase";
+
+export const VERSION = 1;
+
+export interface Team {
+  name: string;
+  files: string;
+  bot: string;
+  withdrawn: boolean;
+  disqualified: boolean;
+}
+
+export interface Settings {
+  games?: number;
+  extra_games?: number;
+  rounds?: number;
+  groups?: number;
+  third_place?: boolean;
+  reset?: boolean;
+  tie_breaks?: string[];
+  options?: Record<string, unknown>;
+}
+
+export interface Planned {
+  fact: "planned";
+  id: string;
+  number: number;
+  at_ms?: number;
+  stage: string;
+  format: string;
+  settings?: Settings;
+  after?: string;
+  teams?: number;
+  arena?: string;
+  arena_settings?: Record<string, unknown>;
+  limits?: Record<string, number>;
+}
+
+export interface Called {
+  fact: "called";
+  id: string;
+  number: number;
+  at_ms?: number;
+  pairing: string;
+  game: number;
+  teams: [string, string];
+  court: string;
+}
+
+export interface Stage {
+  name: string;
+  settings: Settings;
+  entries: string[];
+  drawn: string[][][];
+}
+
+export interface Entry {
+  source: "entry";
+  team: string;
+}
+
+export interface WinnerOf {
+  source: "winner";
+  pairing: string;
+}
+
+export interface LoserOf {
+  source: "loser";
+  pairing: string;
+}
+
+export interface Bye {
+  source: "bye";
+}
+
+export interface Pairing {
+  id: string;
+  section: string;
+  round: number;
+  sources: [Entry | WinnerOf | LoserOf | Bye, Entry | WinnerOf | LoserOf | Bye];
+  winner_place?: number | null;
+  loser_place?: number | null;
+  loser_goes_on?: boolean;
+  only_if_second_won?: string;
+}
+
+export interface Game {
+  number: number;
+  teams: [string, string];
+  scores: [number, number];
+  outcome: "left" | "right" | "draw" | "void";
+  record?: string;
+  fact: string;
+}
+
+export interface Match {
+  pairing: Pairing;
+  teams: [string | null, string | null];
+  state: "waits" | "open" | "decided" | "off";
+  games?: Game[];
+  next_game?: number;
+  next_seats?: [string, string] | null;
+  winner?: string | null;
+  loser?: string | null;
+  how?: "" | "played" | "extra" | "difference" | "seed" | "walkover" | "bye" | "void";
+}
+
+export interface Standing {
+  team: string;
+  rank: number;
+  won: number;
+  drawn: number;
+  lost: number;
+  points: number;
+  scored: number;
+  conceded: number;
+  tie_breaks: number[];
+  out: boolean;
+}
+
+export interface Table {
+  section: string;
+  tie_breaks: string[];
+  rows: Standing[];
+}
+
+export interface StageView {
+  plan: Planned;
+  stage: Stage;
+  matches: Match[];
+  tables: Table[];
+  rounds_to_draw: number;
+}
+
+export interface Unused {
+  fact: string;
+  why: Phrase;
+}
+
+export interface Rating {
+  team: string;
+  elo: number;
+  interval_elo: number;
+  games: number;
+}
+
+export interface Coming {
+  pairing: string;
+  game: number;
+  teams: [string, string];
+}
+
+export interface ContestSheet {
+  version: number;
+  name: string;
+  teams: Team[];
+  stages: StageView[];
+  fixtures: Record<string, Phrase>;
+  planned: Planned[];
+  running: Called[];
+  coming: Coming[];
+  ratings: Rating[];
+  side_elo: number;
+  unused: Unused[];
+}

@@ -1,0 +1,122 @@
+/** The contest: what is played now, tables, bracket, results and replays, for everybody. */
+
+import { effect } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { flag } from "../core/address";
+import { Feed } from "../core/contest/feed";
+import {
+  type ContestSheet,
+  isKnockout,
+  type Planned,
+  type StageView,
+  stateOf,
+} from "../core/contest/sheet";
+import { said, t } from "../i18n";
+import { Big } from "./contest/big";
+import { BracketView } from "./contest/bracket";
+import { Head, Parts } from "./contest/head";
+import { Now } from "./contest/now";
+import { Schedule } from "./contest/schedule";
+import { Tables, Ties } from "./contest/standings";
+import { TeamDialog, Teams } from "./contest/teams";
+import { format, stageTitle } from "./contest/words";
+import "./contest/contest.css";
+
+const feed = new Feed();
+const big = flag("big", false);
+effect(() => {
+  document.title = `${feed.sheet.value?.name || t("contest.title")} – LACOC`;
+});
+
+export default function Contest() {
+  useEffect(() => feed.start(), []);
+  const sheet = feed.sheet.value;
+  const trouble = feed.trouble.value;
+  return (
+    <>
+      {trouble && sheet && (
+        <p class="banner" role="alert">
+          {t(`contest.trouble.${trouble}`)}
+        </p>
+      )}
+      {sheet && (big ? <Big sheet={sheet} /> : <Whole sheet={sheet} />)}
+      {!sheet && (
+        <main class="contest none">
+          <h1>{t("contest.title")}</h1>
+          <p role="status">{t(trouble ? `contest.trouble.${trouble}` : "contest.loading")}</p>
+        </main>
+      )}
+    </>
+  );
+}
+
+function Whole({ sheet }: { sheet: ContestSheet }) {
+  return (
+    <main class="contest">
+      <Head sheet={sheet} />
+      <Parts sheet={sheet} />
+      {stateOf(sheet) !== "over" && <Now sheet={sheet} />}
+      {sheet.stages.toReversed().map((view) => (
+        <Stage key={view.stage.name} sheet={sheet} view={view} />
+      ))}
+      {sheet.planned.map((plan) => (
+        <ToCome key={plan.stage} plan={plan} />
+      ))}
+      <Teams sheet={sheet} />
+      <Unused sheet={sheet} />
+      <TeamDialog sheet={sheet} />
+    </main>
+  );
+}
+
+function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
+  const { name, settings } = view.stage;
+  return (
+    <section id={`stage-${name}`} class="stage" aria-labelledby={`title-${name}`}>
+      <h2 id={`title-${name}`}>
+        {stageTitle(name)} <small>{format(view.plan.format, settings.games)}</small>
+      </h2>
+      {isKnockout(view) && (
+        <div class="scrolls wide">
+          <BracketView sheet={sheet} view={view} />
+        </div>
+      )}
+      <Tables view={view} />
+      <Ties view={view} />
+      {view.rounds_to_draw > 0 && (
+        <p class="muted">{t("contest.roundsLeft", { count: view.rounds_to_draw })}</p>
+      )}
+      <Schedule sheet={sheet} view={view} />
+    </section>
+  );
+}
+
+/** A stage that is not drawn yet. */
+function ToCome({ plan: { stage, format: name, settings, after, teams } }: { plan: Planned }) {
+  return (
+    <section class="stage" aria-labelledby={`title-${stage}`}>
+      <h2 id={`title-${stage}`}>
+        {stageTitle(stage)} <small>{format(name, settings?.games)}</small>
+      </h2>
+      <p class="muted">
+        {after ? t("contest.plannedAfter", { stage: stageTitle(after) }) : t("contest.planned")}{" "}
+        {!!teams && t("contest.best", { count: teams })}
+      </p>
+    </section>
+  );
+}
+
+/** What was written down and does not count, and why. */
+function Unused({ sheet }: { sheet: ContestSheet }) {
+  if (!sheet.unused.length) return null;
+  return (
+    <details class="unused">
+      <summary>{t("contest.unused")}</summary>
+      <ul>
+        {sheet.unused.map(({ fact, why }) => (
+          <li key={fact}>{said(why)}</li>
+        ))}
+      </ul>
+    </details>
+  );
+}

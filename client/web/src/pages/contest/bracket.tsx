@@ -1,0 +1,203 @@
+/** A bracket as a drawing: boxes of matches, and lines to where their winners go. */
+
+import { type Box, type Bracket, bracket, type Cut, type Line } from "../../core/contest/bracket";
+import { fit } from "../../core/contest/fit";
+import {
+  byId,
+  type ContestSheet,
+  howEnded,
+  isDecided,
+  type Match,
+  origin,
+  type StageView,
+  score,
+} from "../../core/contest/sheet";
+import { replayAddress } from "../../core/record_files";
+import { t } from "../../i18n";
+import { chosenTeam, matchId, teamAddress } from "./parts";
+import { courtOf, matchTitle, numberTitle, roundTitle, shortOrigin } from "./words";
+
+const BOX = { width: 216, height: 56 };
+const STEP = { x: BOX.width + 44, y: BOX.height + 14 };
+const HEAD = 34;
+const PAD = 4;
+const NAME_EM = 11;
+const FROM_EM = 14.5;
+const POINTS_WIDTH = 34;
+
+interface Props {
+  sheet: ContestSheet;
+  view: StageView;
+  /** What is shown of it. */
+  cut?: Cut;
+}
+
+/** The bracket of a stage. */
+export function BracketView({ sheet, view, cut }: Props) {
+  const made = bracket(view, cut);
+  const width = made.columns * STEP.x - (STEP.x - BOX.width) + 2 * PAD;
+  const height = HEAD + made.rows * STEP.y + PAD;
+  return (
+    <svg
+      class="bracket"
+      width={width}
+      height={height}
+      viewBox={`0 0 ${width} ${height}`}
+      aria-label={t("contest.bracket")}
+    >
+      <Headings view={view} made={made} />
+      {made.lines.map((line) => (
+        <Way key={line.to.match.pairing.id + line.place} line={line} />
+      ))}
+      {made.boxes.map((box) => (
+        <MatchBox key={box.match.pairing.id} sheet={sheet} view={view} box={box} />
+      ))}
+    </svg>
+  );
+}
+
+function Headings({ view, made }: { view: StageView; made: Bracket }) {
+  return made.headings.map((heading) => (
+    <text
+      key={heading.section + heading.round}
+      class="heading"
+      x={PAD + heading.column * STEP.x}
+      y={HEAD + heading.row * STEP.y - 4}
+    >
+      {fit(roundTitle(view, heading), 15)}
+    </text>
+  ));
+}
+
+function Way({ line: { from, to, place } }: { line: Line }) {
+  const x1 = PAD + from.column * STEP.x + BOX.width;
+  const y1 = HEAD + from.row * STEP.y;
+  const x2 = PAD + to.column * STEP.x;
+  const y2 = HEAD + to.row * STEP.y + (place ? 1 : -1) * (BOX.height / 4);
+  const winner = from.match.winner;
+  const chosen = winner && winner === chosenTeam.value;
+  const middle = x2 - (STEP.x - BOX.width) / 2;
+  return (
+    <path class="way" data-chosen={chosen || undefined} d={`M${x1} ${y1}H${middle}V${y2}H${x2}`} />
+  );
+}
+
+interface BoxProps {
+  sheet: ContestSheet;
+  view: StageView;
+  box: Box;
+}
+
+function MatchBox({ sheet, view, box }: BoxProps) {
+  const { match } = box;
+  const x = PAD + box.column * STEP.x;
+  const y = HEAD + box.row * STEP.y - BOX.height / 2;
+  const points = score(match, view);
+  const games = match.games ?? [];
+  const record = games.length === 1 && isDecided(match) ? games[0]!.record : "";
+  const court = courtOf(sheet.running, match);
+  const how = howEnded(match);
+  const title = matchTitle(sheet, match.pairing.id);
+  const note = court
+    ? t("contest.on", { court })
+    : how
+      ? t(`contest.how.${how}`)
+      : match.pairing.only_if_second_won && !games.length
+        ? t("contest.ifNeeded")
+        : "";
+  const scores = points && (
+    <>
+      <rect
+        class="points-back"
+        x={BOX.width - POINTS_WIDTH}
+        width={POINTS_WIDTH}
+        height={BOX.height}
+      />
+      {([0, 1] as const).map((place) => (
+        <text
+          key={place}
+          class="points"
+          data-won={won(match, place) || undefined}
+          x={BOX.width - POINTS_WIDTH / 2}
+          y={lineY(place)}
+        >
+          {points[place]}
+        </text>
+      ))}
+    </>
+  );
+  const [one, other] = match.teams.map((team) => team ?? t("contest.open"));
+  const versus = { left: one!, right: other! };
+  return (
+    <g class="box" data-state={court ? "running" : match.state} transform={`translate(${x} ${y})`}>
+      <title>{note ? `${title}, ${note}` : title}</title>
+      <rect class="frame" width={BOX.width} height={BOX.height} rx="8" />
+      <line class="half" x1="22" x2={BOX.width} y1={BOX.height / 2} y2={BOX.height / 2} />
+      <text class="number" x="11" y={BOX.height / 2 + 4}>
+        {numberTitle(view, match)}
+      </text>
+      {([0, 1] as const).map((place) => (
+        <PlaceLine key={place} sheet={sheet} view={view} match={match} place={place} />
+      ))}
+      {scores && (
+        <a
+          href={record ? replayAddress(record) : `#${matchId(match)}`}
+          aria-label={
+            record ? t("contest.replayOf", { ...versus, number: 1 }) : t("contest.gamesOf", versus)
+          }
+        >
+          {scores}
+        </a>
+      )}
+      {note && (
+        <text class="note" x={BOX.width} y={BOX.height + 11}>
+          {fit(note, 20)}
+        </text>
+      )}
+    </g>
+  );
+}
+
+interface LineProps {
+  sheet: ContestSheet;
+  view: StageView;
+  match: Match;
+  place: 0 | 1;
+}
+
+/** The team of a place, or where it will come from. */
+function PlaceLine({ sheet, view, match, place }: LineProps) {
+  const team = match.teams[place];
+  const y = lineY(place);
+  if (team === null) {
+    const source = origin(match.pairing.sources[place], byId(view));
+    return (
+      <text class="from" x="24" y={y}>
+        {fit(shortOrigin(sheet, source, match), FROM_EM)}
+      </text>
+    );
+  }
+  const decided = isDecided(match);
+  return (
+    <a href={teamAddress(team)} aria-label={team}>
+      <text
+        class="name"
+        data-won={won(match, place) || undefined}
+        data-lost={(decided && !won(match, place)) || undefined}
+        data-chosen={chosenTeam.value === team || undefined}
+        x="24"
+        y={y}
+      >
+        {fit(team, NAME_EM)}
+      </text>
+    </a>
+  );
+}
+
+function won(match: Match, place: 0 | 1): boolean {
+  return isDecided(match) && !!match.winner && match.winner === match.teams[place];
+}
+
+function lineY(place: 0 | 1): number {
+  return BOX.height * (place ? 0.75 : 0.25) + 5;
+}

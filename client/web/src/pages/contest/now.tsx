@@ -1,0 +1,89 @@
+/** What is played now, and what comes next. */
+
+import { ownPage } from "../../core/address";
+import { type ContestSheet, found, score } from "../../core/contest/sheet";
+import { t } from "../../i18n";
+import { TeamLink } from "./parts";
+import { gameTitle } from "./words";
+
+/** Games that can be played next: so many are listed. */
+const COMING_MOST = 8;
+
+interface Props {
+  sheet: ContestSheet;
+  most?: number;
+}
+
+export function Now({ sheet, most = COMING_MOST }: Props) {
+  const coming = sheet.coming.slice(0, most);
+  const more = sheet.coming.length - coming.length;
+  return (
+    <section id="now" class="now" aria-label={t("contest.now")}>
+      <div>
+        <h2>{t("contest.running")}</h2>
+        {!sheet.running.length && <p class="muted">{t("contest.noneRunning")}</p>}
+        <ul class="courts">
+          {sheet.running.map(({ pairing, game, teams, court }) => (
+            <li key={court} class="court card">
+              <div class="where">
+                <b>{t("contest.court", { court })}</b>
+                {!ownPage && (
+                  <a
+                    href={`watch?court=${encodeURIComponent(court)}`}
+                    aria-label={t("contest.watchCourt", { court })}
+                  >
+                    {t("contest.watch")}
+                  </a>
+                )}
+              </div>
+              <Sides teams={teams} stands={stands(sheet, pairing, teams)} />
+              <p class="muted">{gameTitle(sheet, pairing, game)}</p>
+            </li>
+          ))}
+        </ul>
+      </div>
+      <div>
+        <h2>{t("contest.coming")}</h2>
+        {!coming.length && <p class="muted">{t("contest.noneComing")}</p>}
+        <ol class="coming">
+          {coming.map(({ pairing, game, teams }) => (
+            <li key={`${pairing}/${game}`}>
+              <Sides teams={teams} />
+              <p class="muted">{gameTitle(sheet, pairing, game)}</p>
+            </li>
+          ))}
+        </ol>
+        {more > 0 && <p class="muted">{t("contest.more", { count: more })}</p>}
+      </div>
+    </section>
+  );
+}
+
+interface SidesProps {
+  teams: readonly [string, string];
+  /** What their match stands at. */
+  stands?: readonly [number, number] | null;
+}
+
+/** Two teams, the left one first. */
+function Sides({ teams: [left, right], stands = null }: SidesProps) {
+  return (
+    <p class="sides">
+      <TeamLink name={left} />
+      <span class="between">{stands ? `${stands[0]} : ${stands[1]}` : "–"}</span>
+      <TeamLink name={right} />
+    </p>
+  );
+}
+
+/** What the match of a running game stands at, the team on the left first; null: it just began. */
+function stands(
+  sheet: ContestSheet,
+  pairing: string,
+  teams: readonly [string, string],
+): readonly [number, number] | null {
+  const played = found(sheet, pairing);
+  const points = played && score(played.match, played.view);
+  if (!points) return null;
+  return played.match.teams[0] === teams[0] ? points : [points[1], points[0]];
+}

@@ -1,0 +1,81 @@
+/** Small parts that all sections of the page share: links to teams, scores, replays. */
+
+import { computed, signal } from "@preact/signals";
+import type { Game, Match } from "../../core/contest/sheet";
+import { replayAddress } from "../../core/record_files";
+import { t } from "../../i18n";
+
+const TEAM = "#team=";
+const hash = signal(location.hash);
+addEventListener("hashchange", () => {
+  hash.value = location.hash;
+});
+
+/** The team whose matches are shown; "" if none. */
+export const chosenTeam = computed(() => {
+  if (!hash.value.startsWith(TEAM)) return "";
+  try {
+    return decodeURIComponent(hash.value.slice(TEAM.length));
+  } catch {
+    return ""; // no address that this page wrote
+  }
+});
+
+export function teamAddress(name: string): string {
+  return TEAM + encodeURIComponent(name);
+}
+
+/** Show no team any more. */
+export function chooseNoTeam(): void {
+  history.replaceState(null, "", location.pathname + location.search);
+  hash.value = "";
+}
+
+interface TeamLinkProps {
+  name: string;
+  won?: boolean;
+}
+
+/** A team's name; it opens the team's matches. */
+export function TeamLink({ name, won = false }: TeamLinkProps) {
+  return (
+    <a class={won ? "team won" : "team"} href={teamAddress(name)}>
+      {name}
+    </a>
+  );
+}
+
+/** Names the element of a match, to which other parts of the page lead. */
+export function matchId(match: Match): string {
+  return `match-${match.pairing.id}`;
+}
+
+interface GameScoreProps {
+  match: Match;
+  game: Game;
+}
+
+/** The points of a game by place of the match; they lead to its replay. */
+export function GameScore({ match, game }: GameScoreProps) {
+  const swapped = game.teams[0] !== match.teams[0];
+  const [one, other] = swapped ? game.scores.toReversed() : game.scores;
+  const [left, right] = game.teams;
+  const points = (
+    <>
+      {one}
+      <span class="colon">:</span>
+      {other}
+    </>
+  );
+  if (!game.record) return <span title={t("contest.seats", { left, right })}>{points}</span>;
+  const label = t("contest.replayOf", { left, right, number: game.number });
+  return (
+    <a
+      href={replayAddress(game.record)}
+      title={t("contest.seats", { left, right })}
+      aria-label={`${one} : ${other}. ${label}`}
+    >
+      {points}
+    </a>
+  );
+}

@@ -1,0 +1,132 @@
+/** The matches of a stage, round by round, with their results. */
+
+import {
+  type ContestSheet,
+  countsGames,
+  howEnded,
+  isDecided,
+  type Match,
+  type Round,
+  rounds,
+  type StageView,
+  score,
+  seating,
+} from "../../core/contest/sheet";
+import { t } from "../../i18n";
+import { chosenTeam, GameScore, matchId, TeamLink } from "./parts";
+import { courtOf, numberTitle, originTitle, scheduleTitle } from "./words";
+
+/** With more matches than this, rounds that are over are closed. */
+const OPEN_MOST = 60;
+
+interface Props {
+  sheet: ContestSheet;
+  view: StageView;
+}
+
+export function Schedule({ sheet, view }: Props) {
+  const all = rounds(view);
+  const few = view.matches.length <= OPEN_MOST;
+  const current = all.find(({ matches }) => !matches.every(isDecided)) ?? all.at(-1);
+  return (
+    <div class="schedule">
+      <h3>{t("contest.schedule")}</h3>
+      {all.map((round) => (
+        <OneRound
+          key={round.section + round.round}
+          sheet={sheet}
+          view={view}
+          round={round}
+          open={few || round === current}
+        />
+      ))}
+    </div>
+  );
+}
+
+function OneRound({ sheet, view, round, open }: Props & { round: Round; open: boolean }) {
+  const done = round.matches.filter(isDecided).length;
+  return (
+    <details open={open} class="round">
+      <summary>
+        <b>{scheduleTitle(view, round)}</b>{" "}
+        <span class="muted">{t("contest.done", { done, all: round.matches.length })}</span>
+      </summary>
+      <ul class="matches">
+        {round.matches.map((match) => (
+          <MatchRow key={match.pairing.id} sheet={sheet} view={view} match={match} id />
+        ))}
+      </ul>
+    </details>
+  );
+}
+
+interface RowProps extends Props {
+  match: Match;
+  /** Whether other parts of the page lead here. */
+  id?: boolean;
+  /** What stands before the match; by default its group, or its number in a bracket. */
+  label?: string | undefined;
+}
+
+/** A match: who sits left, the score, who sits right, and its games. */
+export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
+  const [one, other] = seating(match);
+  const points = score(match, view);
+  const how = howEnded(match);
+  const games = match.games ?? [];
+  const many = countsGames(match, view) && games.length > 0;
+  const court = courtOf(sheet.running, match);
+  const group = view.tables.length > 1 ? match.pairing.section.toUpperCase() : "";
+  const mine = id && chosenTeam.value !== "" && match.teams.includes(chosenTeam.value);
+  return (
+    <li
+      id={id ? matchId(match) : undefined}
+      class="match"
+      data-state={court ? "running" : match.state}
+      data-chosen={mine || undefined}
+    >
+      <span class="label">{label ?? (group || numberTitle(view, match))}</span>
+      <Place sheet={sheet} match={match} place={one} />
+      <span class="score">
+        {points && many && `${points[one]} : ${points[other]}`}
+        {points && !many && <Single match={match} swapped={one === 1} />}
+        {!points && "–"}
+      </span>
+      <Place sheet={sheet} match={match} place={other} />
+      <span class="notes">
+        {court && <b class="live">{t("contest.on", { court })}</b>}
+        {how && <span>{t(`contest.how.${how}`)}</span>}
+        {match.pairing.only_if_second_won && !games.length && <span>{t("contest.ifNeeded")}</span>}
+        {many && (
+          <span class="games">
+            {games.map((game) => (
+              <GameScore key={game.number} match={match} game={game} />
+            ))}
+          </span>
+        )}
+      </span>
+    </li>
+  );
+}
+
+/** The score of a match that is one game. */
+function Single({ match, swapped }: { match: Match; swapped: boolean }) {
+  const game = match.games![0]!;
+  const teams = swapped ? match.teams.toReversed() : match.teams;
+  return <GameScore match={{ ...match, teams: teams as Match["teams"] }} game={game} />;
+}
+
+interface PlaceProps {
+  sheet: ContestSheet;
+  match: Match;
+  place: 0 | 1;
+}
+
+/** The team of a place, or where it will come from. */
+function Place({ sheet, match, place }: PlaceProps) {
+  const team = match.teams[place];
+  if (team) return <TeamLink name={team} won={isDecided(match) && match.winner === team} />;
+  const text = team === null ? originTitle(sheet, match.pairing.sources[place]) : "–";
+  return <span class="team muted">{text}</span>;
+}

@@ -1,0 +1,112 @@
+/** Stages, rounds and places of a contest in words. */
+
+import {
+  type Called,
+  type ContestSheet,
+  found,
+  isKnockout,
+  isMatch,
+  type Match,
+  numberOf,
+  type Round,
+  type Source,
+  type StageView,
+} from "../../core/contest/sheet";
+import { catalogue, type MessageName, said, t } from "../../i18n";
+
+/** How a stage is played: "Swiss, best of 3". */
+export function format(name: string, games = 1): string {
+  const message = `contest.format.${name}`;
+  const words = message in catalogue ? t(message as MessageName) : name;
+  return games > 1 ? t("contest.bestOf", { format: words, games }) : words;
+}
+
+/** A stage as a title; its name is the organiser's own. */
+export function stageTitle(name: string): string {
+  return name.charAt(0).toUpperCase() + name.slice(1);
+}
+
+/** A table's title; "" where the stage has only one. */
+export function groupTitle(view: StageView, section: string): string {
+  if (view.tables.length < 2 || !section) return "";
+  return t("contest.group", { group: section.toUpperCase() });
+}
+
+/** A round as a title. */
+export function roundTitle(
+  view: StageView,
+  { section, round, matches }: { section: string; round: number; matches: number },
+): string {
+  if (!isKnockout(view)) return t("contest.round", { round });
+  if (section === "p") return t("contest.thirdPlace");
+  if (section === "f") return t(round === 1 ? "contest.final" : "contest.decidingFinal");
+  if (section === "l") return t("contest.losersRound", { round });
+  // A round with byes is as large as its places.
+  const last = Math.max(...roundsOf(view, section));
+  const double = view.matches.some(({ pairing }) => pairing.section === "l");
+  if (!double && section === "w" && round === last) return t("contest.final");
+  if (!double && section === "w" && round === last - 1) return t("contest.semiFinals");
+  if (!double && section === "w" && round === last - 2 && matches > 1) {
+    return t("contest.quarterFinals");
+  }
+  return t("contest.knockoutRound", { round });
+}
+
+function roundsOf(view: StageView, section: string): number[] {
+  return view.matches
+    .filter(({ pairing }) => pairing.section === section)
+    .map(({ pairing }) => pairing.round);
+}
+
+/** A round of the schedule as a title. */
+export function scheduleTitle(view: StageView, round: Round): string {
+  return roundTitle(view, { ...round, matches: round.matches.length });
+}
+
+/** What a match is in words, as its court says it. */
+export function matchTitle(sheet: ContestSheet, pairing: string): string {
+  const phrase = sheet.fixtures[pairing];
+  return phrase ? said(phrase) : pairing;
+}
+
+/** What a game is in words: "Semi-final 1, game 2 of 3". */
+export function gameTitle(sheet: ContestSheet, pairing: string, game: number): string {
+  const match = sheet.fixtures[pairing];
+  const games = Math.max(game, found(sheet, pairing)?.view.stage.settings.games ?? 1);
+  if (!match || games === 1) return matchTitle(sheet, pairing);
+  return said({ code: "fixture.game", values: { match, game, games } });
+}
+
+/** Where the team of an empty place comes from. */
+export function originTitle(sheet: ContestSheet, source: Source): string {
+  if (source.source === "entry") return source.team;
+  if (source.source === "bye") return t("contest.how.bye");
+  const fixture = sheet.fixtures[source.pairing];
+  const match = fixture ? said({ ...fixture, values: { ...fixture.values, stage: null } }) : "?";
+  return t(source.source === "winner" ? "contest.winnerOf" : "contest.loserOf", { match });
+}
+
+/** The same in a bracket, where lines say from which round a winner comes. */
+export function shortOrigin(sheet: ContestSheet, source: Source, to: Match): string {
+  const from = source.source === "winner" ? found(sheet, source.pairing)?.match : null;
+  if (!from) return originTitle(sheet, source);
+  const { section } = from.pairing;
+  if (to.pairing.section === "f" && section === "l") return t("contest.winnerOfLosers");
+  if (to.pairing.section === "f" && section === "w") return t("contest.winnerOfWinners");
+  if (sheet.fixtures[from.pairing.id]?.code !== "fixture.losers") return originTitle(sheet, source);
+  return t("contest.winnerOfMatch", { number: numberOf(from) });
+}
+
+/** The number that a match of a bracket has in its round; "" where the round has only one. */
+export function numberTitle(view: StageView, match: Match): string {
+  const { section, round } = match.pairing;
+  const there = view.matches.filter(
+    ({ pairing }) => pairing.section === section && pairing.round === round,
+  );
+  return there.length > 1 && isMatch(match) ? `${numberOf(match)}` : "";
+}
+
+/** The court on which a match is played now; "" if none. */
+export function courtOf(running: readonly Called[], match: Match): string {
+  return running.find(({ pairing }) => pairing === match.pairing.id)?.court ?? "";
+}

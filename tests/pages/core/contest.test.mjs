@@ -1,0 +1,144 @@
+// Tests of what is shown of a contest's sheet (client/web/src/core/contest).
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { test } from "node:test";
+import { bracket } from "../../../client/web/src/core/contest/bracket.ts";
+import { fit } from "../../../client/web/src/core/contest/fit.ts";
+import * as c from "../../../client/web/src/core/contest/sheet.ts";
+import { slides } from "../../../client/web/src/core/contest/slides.ts";
+
+/** Sheets of contests that Python played by chance. */
+const SHEETS = JSON.parse(
+  execFileSync(process.env.PYTHON, [new URL("contest_sheets.py", import.meta.url).pathname], {
+    maxBuffer: 1 << 28,
+  }),
+);
+const { groups, finals, single, double, swiss } = SHEETS;
+const cup = (sheet) => sheet.stages.at(-1);
+
+test("a contest is over when all its stages are, and then it has a winner", () => {
+  assert.equal(c.stateOf(groups), "running");
+  assert.deepEqual(c.champions(groups), []);
+  assert.equal(c.currentStage(groups).stage.name, "groups");
+  assert.equal(c.stateOf(finals), "over");
+  assert.deepEqual(c.champions(finals), [cup(finals).tables[0].rows[0].team]);
+  assert.equal(c.stateOf({ ...finals, stages: [] }), "waiting");
+  assert.equal(c.stateOf({ ...finals, planned: [{ stage: "more" }] }), "running");
+  const { done, all } = c.progress(finals);
+  assert.equal(done, all);
+});
+
+test("rounds have the matches of all groups, and no byes in a bracket", () => {
+  const view = groups.stages[0];
+  const rounds = c.rounds(view);
+  assert.deepEqual(
+    rounds.map(({ round }) => round),
+    [1, 2, 3],
+  );
+  for (const { matches } of rounds) {
+    assert.deepEqual([...new Set(matches.map(({ pairing }) => pairing.section))], ["a", "b"]);
+  }
+  const [first] = c.rounds(cup(single));
+  assert.equal(first.matches.length, 13 - 8); // 13 teams have 3 byes in a bracket of 16
+  assert.ok(
+    c.rounds(swiss.stages[0]).every(({ matches }) => matches.some((one) => !c.isMatch(one))),
+  );
+});
+
+test("a score has points of the only game, or games won, by place", () => {
+  for (const sheet of [groups, finals]) {
+    for (const view of sheet.stages) {
+      for (const match of view.matches.filter(({ how }) => how === "played")) {
+        const [one, other] = c.score(match, view);
+        if (match.winner === match.teams[0]) assert.ok(one > other);
+        if (match.winner === match.teams[1]) assert.ok(one < other);
+        if (!match.winner) assert.equal(one, other);
+        assert.equal(c.countsGames(match, view), view === cup(finals));
+      }
+    }
+  }
+});
+
+test("a match says how it ended where its score does not", () => {
+  const match = { state: "decided", how: "played", winner: "Ants" };
+  assert.equal(c.howEnded(match), null);
+  assert.equal(c.howEnded({ ...match, winner: "" }), "draw");
+  assert.equal(c.howEnded({ ...match, how: "walkover" }), "walkover");
+  assert.equal(c.howEnded({ ...match, how: "walkover", winner: "" }), "absent");
+  assert.equal(c.howEnded({ ...match, how: "void", winner: "" }), "void");
+  assert.equal(c.howEnded({ ...match, state: "open", how: "" }), null);
+});
+
+test("each team's way has all its matches, places and its rating", () => {
+  for (const { name } of finals.teams) {
+    const view = c.teamView(finals, name);
+    const there = finals.stages.flatMap(({ matches }) => matches).filter(c.isMatch);
+    const own = there.filter(({ teams }) => teams.includes(name));
+    assert.deepEqual(
+      view.matches.map(({ match }) => match),
+      own,
+    );
+    assert.equal(view.ranks[0].row.team, name);
+    assert.equal(finals.ratings[view.rated - 1].team, name);
+  }
+  assert.equal(c.teamView(finals, "nobody"), null);
+});
+
+for (const [name, sheet] of Object.entries({ finals, single, double })) {
+  test(`no two boxes of a bracket overlap, and lines lead to the right (${name})`, () => {
+    const { boxes, lines, columns, rows } = bracket(cup(sheet));
+    assert.equal(boxes.length, cup(sheet).matches.filter(c.isMatch).length);
+    for (const [index, one] of boxes.entries()) {
+      assert.ok(one.row >= 0.5 && one.row <= rows - 0.5, `${one.row} of ${rows}`);
+      assert.ok(one.column >= 0 && one.column < columns);
+      for (const other of boxes.slice(index + 1)) {
+        const apart = one.column !== other.column || Math.abs(one.row - other.row) >= 1;
+        assert.ok(apart, `${one.match.pairing.id} ${other.match.pairing.id}`);
+      }
+    }
+    for (const { from, to, place } of lines) {
+      assert.ok(from.column < to.column);
+      const winner = from.match.winner;
+      if (winner) assert.equal(to.match.teams[place], winner);
+    }
+    // Every winner goes on, except in the last match, and where it decides a place.
+    const ends = boxes.filter((box) => !lines.some(({ from }) => from === box));
+    const sections = ends.map(({ match }) => match.pairing.section);
+    assert.ok(sections.every((section) => "wpf".includes(section)) && ends.length <= 2);
+  });
+}
+
+test("an empty place names the match before a bye", () => {
+  const view = cup(double);
+  const all = c.byId(view);
+  for (const match of view.matches.filter(c.isMatch)) {
+    for (const source of match.pairing.sources) {
+      const from = c.origin(source, all);
+      if (from.source === "winner") assert.ok(c.isMatch(all.get(from.pairing)));
+    }
+  }
+});
+
+test("slides show every row of a table once, and brackets in parts that can be read", () => {
+  const shown = slides(swiss);
+  assert.deepEqual(
+    shown
+      .flatMap((slide) => (slide.is === "tables" ? slide.parts : []))
+      .flatMap(({ rows }) => rows),
+    swiss.stages[0].tables[0].rows,
+  );
+  assert.deepEqual([shown[0].is, shown.at(-1).is], ["now", "ratings"]);
+  for (const sheet of [finals, single, double]) {
+    const cuts = slides(sheet).filter(({ is }) => is === "bracket");
+    assert.ok(cuts.length >= 1);
+    for (const { view, cut } of cuts) assert.ok(bracket(view, cut).rows <= 9);
+  }
+  assert.equal(slides(finals)[0].is, "winner");
+});
+
+test("a name that is too long for its box is cut by its width", () => {
+  assert.equal(fit("Ants", 4), "Ants");
+  assert.equal(fit("Unstoppable Walkers", 6), "Unstoppab…");
+  assert.equal(fit("九州工業大学ロボット研究会", 6), "九州工業大…");
+});

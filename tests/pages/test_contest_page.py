@@ -1,0 +1,201 @@
+"""Tests of /contest: at a gateway, and in a published folder on a web server that knows nothing."""
+
+import functools
+import threading
+from collections.abc import Iterator
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from chromium import OpenPage
+from playwright.sync_api import expect
+from show import WAIT_MS, violations
+from venue import Venue
+
+from lacoc_robots.library import robot_folder
+from lacoc_server.contest import organiser
+from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.facts import Called, Entered, Played, decode
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.sheet import ContestSheet, encode, sheet
+
+pytestmark = pytest.mark.slow
+
+LAPTOP = {"width": 1366, "height": 768}
+PHONE = {"width": 390, "height": 844}
+PROJECTOR = {"width": 1920, "height": 1080}
+TEAMS = ("Ants", "六脚の会", "Crabs & <b>Co</b>")
+PATH = "/2026/spring cup"
+TEXT = """
+[contest]
+name = "Tiny Cup"
+recordings = "recordings"
+[office]
+token = "o-o-o-o-o-o-o"
+[court.main]
+arena = "othello"
+[court.main.referee]
+token = "r-r-r-r-r-r-r"
+[stage.league]
+format = "round-robin"
+arena = "othello"
+settings = { match = { duration_s = 1.0, countdown_s = 1.0, start = "ready" } }
+[stage.cup]
+format = "single-knockout"
+after = "league"
+arena = "othello"
+settings = { match = { duration_s = 1.0, countdown_s = 1.0, start = "ready" } }
+"""
+
+
+class Cup(NamedTuple):
+    """A contest that was played and published."""
+
+    sheet: ContestSheet
+    folder: Path
+    url: str
+    """Address of the published folder at a web server."""
+
+
+@pytest.fixture(scope="module")
+def cup(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cup]:
+    """Give a contest of three bots, served from below a path as by any web server."""
+    place = tmp_path_factory.mktemp("contest")
+    file = place / "contest.toml"
+    file.write_text(TEXT, encoding="utf-8")
+    for team in TEAMS:
+        organiser.enter(file, team, robot_folder("hexapod"), "nearest", "")
+    made, _ = organiser.play_headless(file, "nearest", 1, lambda done, there: None)
+    root = place / "www"
+    folder = root / PATH.strip("/")
+    folder.mkdir(parents=True)
+    organiser.publish_to(file, folder)
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(root)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield Cup(made, folder, f"http://127.0.0.1:{server.server_port}{PATH}/")
+    server.shutdown()
+    server.server_close()
+
+
+class _Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, format: str, *args: object) -> None:
+        pass
+
+
+def test_a_published_folder_shows_the_contest_and_its_replays(
+    cup: Cup, open_page: OpenPage
+) -> None:
+    """Below any path the folder opens as the contest; a result leads to its replay."""
+    page = open_page(viewport=LAPTOP)
+    page.goto(cup.url)
+    expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)
+    view = cup.sheet.stages[-1]
+    expect(page.locator(".head .winner .team")).to_have_text(view.tables[0].rows[0].team)
+    rows = page.locator("#stage-league .standings tbody tr")
+    ranked = [row.team for row in cup.sheet.stages[0].tables[0].rows]
+    expect(rows.locator(".team")).to_have_text(ranked)
+    assert page.locator(".court a, a[href^=watch]").count() == 0  # there is no gateway here
+    game = cup.sheet.stages[0].matches[0].games[0]
+    link = page.locator(f'#stage-league .match a[href*="{game.record}"]')
+    expect(link).to_have_text(f"{game.scores[0]}:{game.scores[1]}")
+    link.click()
+    page.wait_for_function("window.__replay !== undefined", timeout=WAIT_MS)
+    teams = page.evaluate("window.__replay.recording.sheet.value.seats.map((seat) => seat.team)")
+    assert tuple(teams) == game.teams
+    page.get_by_role("link", name="The contest").click()
+    expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)
+
+
+def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:
+    """A click on a team shows its matches, places and rating, at an address of its own."""
+    page = open_page(viewport=LAPTOP)
+    page.goto(cup.url)
+    page.locator("#stage-league .standings .team", has_text=TEAMS[2]).click(timeout=WAIT_MS)
+    dialog = page.get_by_role("dialog", name=TEAMS[2])
+    there = [match for view in cup.sheet.stages for match in view.matches]
+    own = [match for match in there if TEAMS[2] in match.teams and "" not in match.teams]
+    expect(dialog.locator(".match")).to_have_count(len(own))
+    rating = next(one for one in cup.sheet.ratings if one.team == TEAMS[2])
+    expect(dialog).to_contain_text(f"± {round(rating.interval_elo)}")
+    assert "#team=" in page.url
+    page.reload()
+    expect(dialog).to_be_visible(timeout=WAIT_MS)
+    page.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    assert "#" not in page.url
+
+
+@pytest.mark.parametrize("locale", ["en-GB", "ja-JP"])
+def test_a_phone_and_axe(cup: Cup, open_page: OpenPage, locale: str) -> None:
+    """Nothing but tables and brackets scrolls sideways on a phone; axe-core finds no mistake."""
+    pytest.importorskip("axe_core_python")
+    page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale=locale)
+    page.goto(cup.url)
+    expect(page.locator(".bracket .name").first).to_be_visible(timeout=WAIT_MS)
+    for element in ("document.documentElement", "document.querySelector('main')"):
+        assert page.evaluate(f"{element}.scrollWidth") <= PHONE["width"]
+    assert violations(page) == []
+    page.locator(".standings .team").first.click()
+    expect(page.get_by_role("dialog")).to_be_visible()
+    assert violations(page) == []
+
+
+def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> None:
+    """All slides fit the projector; they follow each other, and stop when asked to."""
+    page = open_page(viewport=PROJECTOR)
+    page.clock.install()
+    page.goto(f"{cup.url}?big")
+    expect(page.locator(".slide")).to_have_attribute("data-slide", "winner", timeout=WAIT_MS)
+    for slide in ("bracket", "ratings", "winner"):
+        page.clock.run_for(12_500)
+        expect(page.locator(".slide")).to_have_attribute("data-slide", slide)
+        assert page.evaluate(
+            "(e => e.scrollHeight <= e.clientHeight)(document.querySelector('.slide'))"
+        )
+    page.keyboard.press("Space")
+    page.clock.run_for(60_000)
+    expect(page.locator(".slide")).to_have_attribute("data-slide", "winner")
+
+
+def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:
+    """On paper every match of every round is there, and nothing that one could click."""
+    page = open_page(viewport=LAPTOP)
+    page.goto(cup.url)
+    expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)
+    page.evaluate("for (const one of document.querySelectorAll('details')) one.open = false")
+    page.emulate_media(media="print")
+    expect(page.locator(".tools")).not_to_be_visible()
+    for match in page.locator(".schedule .match").all():
+        box = match.bounding_box()
+        assert box is not None
+        assert box["height"] > 0
+
+
+def test_a_gateway_follows_the_contest(
+    cup: Cup, venue: Venue, open_page: OpenPage, console: Any
+) -> None:
+    """A gateway says that no contest is there, and shows each new sheet without a reload."""
+    venue.web()
+    page = open_page(viewport=LAPTOP)
+    console.expect(r"contest\.json")  # a browser logs each 404
+    page.goto(f"{venue.url}/contest")
+    expect(page.get_by_role("status")).to_contain_text("no contest here yet", timeout=WAIT_MS)
+    facts = decode((cup.folder / "facts.json").read_bytes())
+    entered = [fact for fact in facts if isinstance(fact, Entered)]
+    path = venue.contest.with_suffix(".json")
+    path.write_bytes(encode(sheet("Tiny Cup", compute(entered, FORMATS))))
+    expect(page.locator(".badge")).to_have_text("Not drawn yet", timeout=WAIT_MS)
+    played = next(fact for fact in facts if isinstance(fact, Played))
+    known = facts[: facts.index(played)]
+    game = {"pairing": played.pairing, "game": 1, "teams": played.teams}
+    call = Called(id="call", number=played.number, court="hall 1", **game)  # type: ignore[arg-type]
+    path.write_bytes(encode(sheet("Tiny Cup", compute([*known, call], FORMATS))))
+    expect(page.locator(".badge")).to_have_text("Under way", timeout=WAIT_MS)
+    watch = page.get_by_role("link", name="Watch court hall 1")
+    expect(watch).to_have_attribute("href", "watch?court=hall%201")
+    path.write_bytes(b"{")
+    expect(page.get_by_role("alert")).to_contain_text("Trying again", timeout=WAIT_MS)
+    path.write_bytes(encode(cup.sheet))
+    expect(page.locator(".badge")).to_have_text("Over", timeout=WAIT_MS)
+    expect(page.get_by_role("alert")).to_have_count(0)
