@@ -14,6 +14,7 @@ from lacoc_client.terminal.board_picture import BoardPicture, Field, Grid, seat_
 from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_shared.codec import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
+from lacoc_shared.messages.office import WAITING
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.seat import Phase, SeatFlag
 from lacoc_shared.words import say, use
@@ -274,3 +275,15 @@ def test_a_field_is_the_scene_s_floor() -> None:
 def test_every_seat_has_its_letter(ids: list[str], letters: list[str]) -> None:
     """Seats are shown by their first letters, or as 1, 2, ... if two seats begin alike."""
     assert seat_letters(ids) == letters
+
+
+def test_what_an_office_assigned_is_named_beside_the_game() -> None:
+    """Terminals name the fixture with the game, and say that a court waits for the office."""
+    sheet = make_sheet("othello")
+    frame = Frame(1, 0, Phase.LOBBY, 0, 0, (), b"", b"", SCENE, bytes(8))
+    assert words.played(sheet) == sheet.title
+    final = make_sheet("othello", call="c1", fixture=say("fixture.final", stage=None))
+    assert words.played(final) == f"Final · {sheet.title}"
+    waiting = make_sheet("othello", fixture=WAITING.fixture)
+    assert words.played(waiting) == sheet.title
+    assert words.phase_hint(frame, waiting) == "Waiting for the next match"

@@ -105,7 +105,7 @@ def serve_command(
     if left is not None:
         levels |= {*left.match.rules.open_levels}  # the match that goes on keeps its own levels
         screen.note(say("serve.goes-on", match=left.match.setup.match_id))
-        if left.match.setup.settings != loaded.settings:
+        if left.match.assigned is None and left.match.setup.settings != loaded.settings:
             screen.note(say("serve.old-settings"))
         if left.cut:
             screen.note(left.cut)

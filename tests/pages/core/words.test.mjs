@@ -9,6 +9,7 @@ import {
   eventClock,
   hint,
   markerName,
+  played,
   winnerOf,
 } from "../../../client/web/src/i18n/words.ts";
 
@@ -32,6 +33,20 @@ test("events have different times also where the referee gave more time than was
 
 test("without an end, an event has the time that was played", () => {
   assert.equal(eventClock({ clock_ticks: 3120 }, practice), "1:02.4");
+});
+
+test("what an office assigned is named beside the game, and that a court waits for it", () => {
+  const final = { code: "fixture.final", values: { stage: null } };
+  const waiting = { code: "fixture.waiting" };
+  const game = { ...sheet, title: "Robot-Othello", call: "", fixture: null };
+  assert.equal(played(game), "Robot-Othello");
+  assert.equal(played({ ...game, call: "c1", fixture: final }), "Final · Robot-Othello");
+  assert.equal(played({ ...game, fixture: waiting }), "Robot-Othello");
+  const frame = { value: { phase: 1, seats: [{ flags: 0 }, { flags: 0 }] } };
+  const said = (fixture) =>
+    hint({ frame, sheet: { value: { ...game, fixture } }, events: { value: [] } });
+  assert.equal(said(waiting), "Waiting for the next match");
+  assert.equal(said(null), "Waiting for Ants to join");
 });
 
 test("who leads is told without a verb that depends on the name", () => {
