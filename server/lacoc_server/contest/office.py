@@ -19,7 +19,7 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due
 from lacoc_server.contest.store import FactStore
 from lacoc_server.contest.teller import Teller
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_server.contest.tokens import lasting_hash
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.seat import Phase
@@ -53,7 +53,7 @@ class Office:
     ) -> None:
         self._store = store
         self._entry = cache(entries.load)
-        self._hash_of = cache(lambda team: hash_token(token_of(team)))
+        self._hash_of = cache(lambda team: lasting_hash(token_of(team)))
         self._links = links
         self._teller = Teller(links, addresses, token_of, least_rest_ms)
         self._least_rest_ms = least_rest_ms

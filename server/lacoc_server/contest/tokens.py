@@ -1,14 +1,24 @@
 """The tokens of a contest's teams: each team has one for the whole contest."""
 
+import hashlib
 import os
 from pathlib import Path
 
 import msgspec
 
 from lacoc_server.contest.publish import write
+from lacoc_shared import seal
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
+
+
+def lasting_hash(token: str) -> str:
+    """Hash a team's token with a salt of its own, so that it has the same hash after any restart.
+
+    A court lets a team stay that has the same hash in its next match.
+    """
+    return seal.hash_token(token, hashlib.blake2b(token.encode(), digest_size=16).digest())
 
 
 class TeamTokens:
