@@ -47,7 +47,7 @@ def token(team: str) -> str:
 
 
 def entry(seat: str, team: str, robot: str = "hexapod", **changes: Any) -> AssignedSeat:
-    """Return a team in a seat, with the files of a sample robot."""
+    """Return a team in a seat, with the files of a sample robot; `changes` replace its fields."""
     postures, locomotion = sample_gait_files(robot)
     files: dict[str, Any] = {"robot": SentFile(*find_robot(robot))}
     files |= {"postures": postures, "locomotion": locomotion, "token_hashes": (hash_of(team),)}
@@ -86,7 +86,7 @@ class Office:
         return self.link.assign(call or new_call(), FIXTURE, seats, **changes).wait()
 
     def refusal(self, *sides: str | AssignedSeat, **changes: Any) -> Refusal:
-        """Return the refusal of an assignment."""
+        """Assign a match that the court must refuse, and return the refusal."""
         answer = self.asks(*sides, **changes)
         assert isinstance(answer, Refusal)
         return answer
@@ -106,7 +106,11 @@ class Office:
         return Controller(self.session, "main", seat, token(team), "any name", **files)
 
     def plays(self, *teams: str, until: Callable[[], bool] | None = None) -> list[Controller]:
-        """Let bots of two teams play the court's match, until it has a result."""
+        """Let bots of two teams play until the match has a result or `until` is true.
+
+        Returns:
+            The teams' controllers.
+        """
         players = [self.controller(seat, team) for seat, team in zip(SEATS, teams, strict=True)]
         for player in players:
             player.join()
@@ -114,7 +118,7 @@ class Office:
         return players
 
     def go_on(self, players: list[Controller], until: Callable[[], bool]) -> None:
-        """Let bots go on to play with controllers that are joined."""
+        """Let bots play with controllers that have joined, until a condition is true."""
         arena = arenas.load("othello")
         bots = [BotPlayer(player, arena, next(iter(arena.bots))) for player in players]
 

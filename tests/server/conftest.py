@@ -18,7 +18,7 @@ from lacoc_server.world import arithmetic
 
 @pytest.fixture
 def loud() -> Iterator[None]:
-    """Let the log take lines of level INFO during the test, as in a running court."""
+    """Make the log take lines of level INFO during the test, as a running court does."""
     before = structlog.get_config()
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.INFO))
     yield
@@ -27,7 +27,7 @@ def loud() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def has_other_arithmetic() -> None:
-    """Skip the test if this machine has no second arithmetic, which gives other last bits."""
+    """Skip the test if glibc's functions for older processors give the same bits here."""
     there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
     if arithmetic.same(arithmetic.here(), there):
         pytest.skip("the second arithmetic of this machine is the first")

@@ -1,4 +1,4 @@
-"""A running court for tests that lose a contestant's process or connection."""
+"""A running court for tests in which a contestant's process or connection is lost."""
 
 import signal
 import subprocess
@@ -19,7 +19,10 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 
 LATE_BEATS = 10
-"""Tolerance in beats: a late court makes up to five at once, and a frame travels for one or two."""
+"""Most beats by which a silence may be noticed later than a second after the loss.
+
+A court that is late makes up to five beats at once, and a frame travels for one or two beats.
+"""
 
 
 class Hall:
@@ -55,7 +58,7 @@ class Hall:
     def bot(
         self, seat: str, connect: str = "", before: tuple[str, ...] = ()
     ) -> subprocess.Popen[bytes]:
-        """Start a bot in a seat; every half second of the clock it presses another key."""
+        """Start a bot in a seat; it presses keys 2 and 3 in turn, each for 0.5 s of the clock."""
         (self.folder / "walker.py").write_text(
             "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait.tables import Level\n"
             "def bot(sheet, seat):\n"
@@ -75,7 +78,7 @@ class Hall:
         self.until(lambda: self.view.frame is not None and self.view.frame.phase == phase)
 
     def play(self) -> None:
-        """Start the match, or resume it if it is halted, and wait for PLAYING."""
+        """Wait for READY or HALTED; start or resume the match, and wait for PLAYING."""
         self.until(lambda: self.frame.phase in (Phase.READY, Phase.HALTED))
         halted = self.frame.phase == Phase.HALTED
         self.referee.decide(Resume() if halted else Start(), "", "Kubota")
@@ -101,13 +104,15 @@ class Hall:
         return [event for event in self.view.events if event.kind == "silent"]
 
     def loses(self, lose: Callable[[], object]) -> None:
-        """Call `lose`; check that the left seat alone falls silent and stands in time (rules 3).
+        """Call `lose`; check that the left seat falls silent in time, and no other seat (rules 3).
 
-        In time means within a second and `LATE_BEATS`. Frames and the health report must agree.
+        In time means at most a second and `LATE_BEATS` after the loss. The frame that first shows
+        the silence must have key 0, so the robot stands. Within 2 s of the loss, a health message
+        must say that nothing was heard for more than a second.
         """
         before = len(self.silences())
         lose()
-        # The court answers after the loss, so its newest frame then bounds when the loss happened.
+        # The court answers after the loss, so the loss is not later than the newest frame.
         fetch(self.session, self.view.keys, self.view.keys.sheet)
         self.view.poll()
         lost = self.frame.beat

@@ -1,4 +1,4 @@
-"""A virtual cable (veth) to a network namespace of this machine that acts as another machine."""
+"""A virtual cable (veth) to a second network namespace, which acts as another machine."""
 
 import ctypes
 import os
@@ -17,17 +17,17 @@ CLONE_NEWNET = 0x40000000
 
 
 def ip(*words: str) -> None:
-    """Run the `ip` command, which changes the network of this process's namespace."""
+    """Run the `ip` command, which sets up network namespaces and their interfaces."""
     subprocess.run(["ip", *words], check=True, capture_output=True)
 
 
 @contextmanager
 def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
-    """Connect a second network namespace by a cable.
+    """Connect this process's network namespace to a new one by a cable.
 
     Yields:
-        The address of this side; the words to put before a command, to run it on the other side;
-        a function that sets the cable "up" or "down".
+        The address of this side; the words to put before a command so that it runs on the other
+        side; a function that sets the cable "up" or "down".
     """
     name = f"lacoc{os.getpid()}"
     ip("netns", "add", name)
@@ -44,7 +44,11 @@ def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
 
 
 def pull_a_real_cable(folder: Path) -> bool:
-    """Play a match over a cable that goes down, up and down; the court is ended while it is down.
+    """Check that a match survives the loss of the left bot's cable, and that its court can end.
+
+    While the cable is down, the left robot stands and the right bot plays on. Once the cable is up,
+    the left bot's keys take effect again. While the cable is down a second time, SIGTERM ends the
+    court with exit code 0. This process moves to a new network namespace and stays there.
 
     Returns:
         False if this user may not make network namespaces; then nothing was played.

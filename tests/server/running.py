@@ -41,13 +41,13 @@ referee.token = "the token of the referee"
 def served(
     contest: Path, folder: Path, *words: str, before: Sequence[str] = ()
 ) -> Iterator[subprocess.Popen[str]]:
-    """Run `lacoc serve`, and give its process once the court is open.
+    """Run `lacoc serve` until the block ends, and give its process once the court is open.
 
     Args:
         contest: the contest file.
         folder: the folder for the court's records.
         words: more words for the command line of `lacoc serve`.
-        before: a command that the court's command line is appended to.
+        before: words of a command that runs the court's command line, which follows them.
     """
     serve = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder), *words]
     process = started(*serve, before=before, stdout=subprocess.PIPE, text=True)
@@ -61,7 +61,7 @@ def served(
 
 
 def until(clients: Iterable[Controller | Spectator], true: Callable[[], bool]) -> None:
-    """Let clients receive and send until a condition is true."""
+    """Let clients receive and send until a condition is true; fail after `WAIT_S`."""
     clients = list(clients)
     end_s = time.monotonic() + WAIT_S
     while not true():
@@ -82,7 +82,7 @@ def phase(controller: Controller) -> int:
 
 
 class Party:
-    """All contestants of a court, joined and ready, with a referee, in one network session."""
+    """A court's contestants, joined and ready, and its referee, in one network session."""
 
     def __init__(self, session: Session, contest: Path) -> None:
         name, court = load(contest).court()
@@ -113,7 +113,7 @@ class Party:
 
     @property
     def trouble(self) -> str:
-        """Return what the court reports about its record's disk; empty if nothing is wrong."""
+        """Return the court's trouble with its record's disk; empty if there is none."""
         trouble = None if self.view.health is None else self.view.health.record_trouble
         return render(trouble) if trouble else ""
 
@@ -132,7 +132,7 @@ class Party:
             self.reach(then)
 
     def play(self) -> None:
-        """Start the match, and wait until it is being played."""
+        """Wait for READY, start the match, and wait for PLAYING."""
         self.reach(Phase.READY)
         self.decide(Start(), Phase.PLAYING)
 

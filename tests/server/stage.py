@@ -43,7 +43,7 @@ def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
 def join(
     seat: int, team: str | None = None, robot: str = "hexapod", robot_file: bytes | None = None
 ) -> JoinSeat:
-    """Return a team's join with a sample robot and its gait, or with another robot file."""
+    """Return a team's join with the files of a sample robot, or with `robot_file` for its robot."""
     (name, data), gait = _files(robot)
     return JoinSeat(
         seat,
@@ -70,10 +70,10 @@ def decide(decision: d.Decision, reason: Phrase | str = "agreed", by: str = "Kub
 
 @dataclass
 class Script:
-    """What scripted physics does in each tick of PLAYING; the first tick is 1."""
+    """What scripted physics does, by tick: the first is 1, and `begin` starts the count again."""
 
     poses: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
-    """Tick -> seat -> x, y [m]; a robot stays there until a later tick gives it another place."""
+    """Tick -> seat -> x, y [m]; a robot stays there until a later tick or a restart moves it."""
     touches: dict[int, dict[int, tuple[int, ...]]] = field(default_factory=dict)
     """Tick -> seat -> indices of touched markers; in all other ticks nothing is touched."""
     faults: dict[int, Fault] = field(default_factory=dict)
@@ -83,8 +83,8 @@ class Script:
 class ScriptedPhysics:
     """Physics in which robots are where a script puts them.
 
-    It keeps what a match expects of physics: nothing moves between ticks, a fault changes
-    nothing, and the digest is a hash chained over the states.
+    As a match expects of physics, a fault changes nothing, and the digest is a hash chained over
+    the poses of all ticks.
     """
 
     scene = Scene(bodies=(), geoms=())
@@ -134,7 +134,7 @@ class ScriptedPhysics:
 
 
 class Stage:
-    """A match, and all beats that it has had."""
+    """A match under test, and all its beats so far."""
 
     def __init__(
         self,
@@ -222,9 +222,10 @@ class Stage:
         return self
 
     def to_playing(self, *joins: JoinSeat) -> "Stage":
-        """Go to the last beat before PLAYING, so that the next beat is tick 1.
+        """Lead the match to the last beat before PLAYING, so that the next beat has tick 1.
 
-        Practice has no countdown, so its first tick may have passed.
+        A match that starts without a referee stays in READY. If it has a countdown, this begins in
+        the next beat.
         """
         self.to_ready(*joins)
         if self.match.rules.start == "referee":
@@ -236,7 +237,7 @@ class Stage:
         return self
 
     def to(self, phase: Phase) -> "Stage":
-        """Lead the match to a phase by the shortest way."""
+        """Lead a new match to a phase; PLAYING and all later phases come after 3 ticks of play."""
         match phase:
             case Phase.LOBBY:
                 self.beat(join(LEFT), join(RIGHT))
@@ -269,7 +270,10 @@ def key(seat: int, digit: int, seq: int = 1, level: int = B) -> KeySeat:
 
 
 def seen(stage: Stage) -> tuple[bytes, ...]:
-    """Return everything that clients can see of a match, without the number of the beat."""
+    """Return all that clients see of a match, encoded: frame, sheet, result and legality.
+
+    The number of the beat is left out.
+    """
     frame = stage.frame
     result = stage.match.result()
     return (
@@ -285,5 +289,5 @@ def _fields(struct: Any) -> dict[str, Any]:
 
 
 def after(event: Event) -> str:
-    """Return the phase that a phase event begins."""
+    """Return the name of the phase that begins with an event of kind "phase"."""
     return str(event.data["after"])

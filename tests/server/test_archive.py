@@ -26,7 +26,7 @@ HEADER = Header(
 
 
 def said(folder: Path, writer: RecordWriter) -> list[str]:
-    """Close a match's record; return the lines that this adds to the log."""
+    """Let an archive finish a match's record; return the lines that this adds to the log."""
     with capture_logs() as lines:
         archive = Archive(folder, "main", CourtLog("main"))
         archive.take(MATCH, writer)

@@ -1,4 +1,4 @@
-"""An assigned match as a pure function: the office fixes its teams and opens the next one."""
+"""Tests of an assigned match: the office fixes its teams, and only the office opens the next."""
 
 import msgspec
 import pytest
@@ -68,7 +68,10 @@ def test_the_teams_are_known_before_they_join() -> None:
     ],
 )
 def test_a_join_with_other_teams_or_files_is_refused(wrong: JoinSeat) -> None:
-    """The match itself refuses what is not assigned, so a forged record differs from its replay."""
+    """A match itself refuses a join with a team or files that are not assigned.
+
+    So a replay differs from a record in which such a join was forged.
+    """
     stage = stage_of(assigned())
     seat = SEATS[wrong.seat]
     assert stage.send(wrong) == Refusal(say("refused.other-match", seat=seat), again=True)
@@ -86,7 +89,7 @@ def test_a_match_that_waits_allows_no_decision() -> None:
 
 @pytest.mark.parametrize("phase", [Phase.OFFICIAL, Phase.VOID])
 def test_only_the_office_opens_the_next_match(phase: Phase) -> None:
-    """After an assigned match `next` is not legal."""
+    """In OFFICIAL and VOID of an assigned match, the decision `next` is not legal."""
     stage = stage_of(assigned()).to(phase)
     assert stage.match.legality()["next"] == say("why.office-opens-next")
     assert stage.match.is_over
@@ -105,9 +108,9 @@ def test_a_match_without_a_referee_waits_after_its_result() -> None:
 
 
 def test_teams_that_play_on_keep_their_seats_with_the_new_files() -> None:
-    """Only a team with the same token in the same seat stays; it gets the files of the new match.
+    """A team stays if its token opened the same seat; it gets its files of the new match.
 
-    A team without the token that opened the seat does not stay, also if its name is the same.
+    A team of the same name whose seat was opened with another token does not stay.
     """
     sat = [
         msgspec.structs.replace(join(LEFT), token_hash=HASHES["Ants"]),

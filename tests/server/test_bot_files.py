@@ -44,7 +44,7 @@ def brain(returns: str) -> str:
     ],
 )
 def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> None:
-    """A brain returns a key, or None to keep its last key."""
+    """A brain returns a key, whose level may be a plain 0 or 1, or None."""
     assert play(tmp_path, brain(returns)) == expected
 
 
@@ -53,7 +53,7 @@ def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> No
     ["2", "(1, 2)", "Key(1, 42)", "Key(1, -1)", "Key(2, 1)", "Key('B', 2)", "Key(1, 2.0)"],
 )
 def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
-    """If a brain returns neither a key nor None, the error says what was expected."""
+    """If a brain returns anything but a valid key or None, the error says what was expected."""
     with pytest.raises(UserError, match=r"my_bot\.py:5\) returned .*Expected a Key\(level"):
         play(tmp_path, brain(returns))
 
@@ -78,7 +78,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:
-    """The message of a bot's mistake has no line break, and names the line of the bot's file."""
+    """The message about a mistake in a bot is one line, and names the line of the bot's file."""
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py.*{says}") as refused:
         play(tmp_path, text)
     assert "\n" not in str(refused.value)

@@ -42,7 +42,7 @@ def made_up(tables: Sequence[Angles]) -> list[float]:
 
 
 def searched(size: Size, rounds: int = 40) -> Improved:
-    """Return what a search from zero angles finds in these rounds; weak changes are undone."""
+    """Search from zero angles for some rounds, undo changes that hardly help, return the result."""
     left = iter(range(rounds))
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, made_up)
@@ -58,7 +58,7 @@ def changes(found: Improved) -> int:
 
 
 def test_a_size_limits_the_changes() -> None:
-    """A search may change one number, three or all; with more numbers it finds a better table."""
+    """A search may change one number, at most three, or all; the more, the better its table."""
     cell, three, table = (searched(size) for size in Size)
     assert (changes(cell), changes(three)) == (1, 3)
     assert made_up([(0,) * 6])[0] < cell.score < three.score < table.score
@@ -66,7 +66,7 @@ def test_a_size_limits_the_changes() -> None:
 
 
 def test_a_number_is_turned_to_its_best_degree() -> None:
-    """If only one number is worth changing, a search for three changes finds its best degree."""
+    """If only one number affects the score, a search changes only this one, to its best degree."""
 
     def one_number(tables: Sequence[Angles]) -> list[float]:
         return [100.0 - (table[0] - 12) ** 2 for table in tables]
@@ -101,7 +101,10 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
 
 
 def test_what_matters_is_ranked() -> None:
-    """The coach ranks numbers by how a step up or down changes the score, and tells both."""
+    """The coach tries each number 10 degrees higher and lower, and tells both effects.
+
+    It ranks the numbers by the larger of the two effects on the score.
+    """
     found = what_matters((0,) * 6, RANGES, made_up)
     assert [one.size for one in found] == sorted((one.size for one in found), reverse=True)
     assert {one.number for one in found} == set(range(6))
@@ -148,7 +151,7 @@ def test_goals() -> None:
 
 
 def sample_task(key: int) -> Task:
-    """Make the task to improve one key of the workshop's robot."""
+    """Return the task to improve a key of the hexapod's sample gait for goal "forward"."""
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
     sequences = entry.gait.locomotion.sequences
@@ -185,7 +188,7 @@ def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_p
 @pytest.mark.slow
 @pytest.mark.long
 def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """`lacoc coach` writes a gait that walks faster, with at most three numbers changed."""
+    """`lacoc coach --size three` writes a faster gait, with at most three numbers changed."""
     out = tmp_path / "better.txt"
     words = ["coach", str(SAMPLE), "--size", "three", "--seconds", "2", "--out", str(out), "--json"]
     try:

@@ -1,4 +1,4 @@
-"""Tests of `lacoc contest`: it writes a private and valid file, and checks every setting."""
+"""Tests of `lacoc contest`: its file is private and valid, and `check` finds wrong settings."""
 
 import json
 import stat
@@ -53,7 +53,10 @@ def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> N
 
 
 def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
-    """Rules 4: a team may have its own colour and pattern; by default it has those of its seat."""
+    """Rules 4: a seat's colour and pattern in the contest file replace those of the arena.
+
+    The other seat keeps the arena's look. A colour that is no code such as #009e73 is refused.
+    """
     file = tmp_path / "contest.toml"
     run("init", str(file))
     text = file.read_text()
@@ -70,7 +73,10 @@ def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
 
 
 def test_show_as_json(tmp_path: Path) -> None:
-    """`show --json` gives a command line for each person; a contestant's has the seat's token."""
+    """`show --json` gives a command line for each seat, for the referee and for spectators.
+
+    That of a seat has the host given with `--host`, and the seat's token.
+    """
     file = tmp_path / "contest.toml"
     run("init", str(file), "--court", "hall")
     lines = json.loads(run("show", str(file), "--json", "--host", "10.0.0.1"))
@@ -114,7 +120,7 @@ def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
 def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The line "is open at" does not call the match new, because it may be a resumed one."""
+    """The line with a court's address does not call its match new: it may be a resumed one."""
     entry = contests.throwaway("othello").courts["main"]
     at = ("tcp/127.0.0.1:7447",)
     serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)

@@ -35,7 +35,7 @@ def certificate(path: Path) -> dict[str, Any]:
 
 
 def test_one_command_encrypts_a_contest(file: Path) -> None:
-    """`lacoc contest keys` turns the contest that `init` wrote into one with certificates."""
+    """`lacoc contest keys` makes certificates and invitations, and sets the court to TLS."""
     run("keys", str(file), "--host", "192.168.1.20", "--host", "court.example.org")
 
     contest = contests.load(file)
@@ -78,7 +78,10 @@ def test_an_invitation_holds_nothing_of_others(file: Path) -> None:
 
 
 def test_twice_keeps_what_was_handed_out(file: Path) -> None:
-    """A second run adds a host to the court's certificate, and all invitations stay valid."""
+    """A second run adds a host to the court's certificate.
+
+    The contest file and the left contestant's invitation stay the same.
+    """
     run("keys", str(file), "--host", "one.example")
     before = contests.load(file)
     assert before.keys is not None
@@ -94,7 +97,7 @@ def test_twice_keeps_what_was_handed_out(file: Path) -> None:
 
 
 def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
-    """Each contest in a folder gets its own key folder, or an error if no name is free."""
+    """Each contest in a folder gets its own key folder, or an error if both names are taken."""
     run("keys", str(file), "--host", "one.example")
     first = contests.load(file).keys
     assert first is not None
@@ -142,7 +145,7 @@ def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
 def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
     """The entry `keys` is added to files with and without a table [contest]; other lines stay.
 
-    If the file has `contest.name = ...`, the message gives the line to add by hand.
+    If the file has `contest.name = ...` instead, an error gives the line to add by hand.
     """
     for number, head in enumerate(
         (
@@ -185,7 +188,10 @@ def test_a_wrong_file_is_said_and_left(file: Path, old: str, new: str, said: str
 
 
 def test_what_lacks_is_asked_for(file: Path) -> None:
-    """A message says what is missing: the court's host, the authority's key, or the key folder."""
+    """If the court's host, the authority's key or the key folder is missing, an error says so.
+
+    A `--host` that is no address is refused.
+    """
     with pytest.raises(UserError, match="--host"):
         run("keys", str(file))
     with pytest.raises(UserError, match="not an address"):
@@ -201,9 +207,10 @@ def test_what_lacks_is_asked_for(file: Path) -> None:
 
 @pytest.mark.parametrize("what", ["empty", "no text", "key", "authority"])
 def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> None:
-    """A damaged certificate of a court is reported, and the message names two remedies.
+    """If court.pem is no court's certificate, an error names two remedies; court.pem stays.
 
-    One is to delete the certificate and make it again: then all invitations stay valid.
+    One remedy is to delete the file and run `keys` again with each `--host`. Then the invitation of
+    the left contestant stays the same. The other one is `--renew`.
     """
     run("keys", str(file), "--host", "x.example")
     keys = contests.load(file).keys
@@ -227,7 +234,7 @@ def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> Non
 
 
 def test_show_names_the_invitations(file: Path) -> None:
-    """`show` prints the short commands with invitations, without a token in them."""
+    """In a contest with keys, `show` prints commands with invitations instead of tokens."""
     run("keys", str(file), "--host", "x.example")
     shown = run("show", str(file))
     assert "lacoc play --invitation main.left.toml" in shown

@@ -25,7 +25,10 @@ TROUBLE = say("record.no-room", file="m.mcap", why="disk full")
 
 
 def test_an_event_is_a_line_with_all_it_has() -> None:
-    """Each event is one line with all its fields and the match id; "silent" is a warning."""
+    """Each event is one line with all its fields and the match id; "silent" is a warning.
+
+    If the length of the match is given, the line also has the ticks that are left.
+    """
     said = say("event.back", team="Ants")
     flip = Event(number=7, match=1, beat=99, clock_ticks=12, kind="flip", said=said, seat=0)
     with capture_logs() as lines:
@@ -80,7 +83,7 @@ def test_what_went_wrong_is_said_once() -> None:
 
 
 def test_slow_beats_are_told_now_and_then() -> None:
-    """If each second has a slow beat, the first is logged at once, and then 30 in each line."""
+    """If each second has a slow beat, the first is logged at once, then a line for each 30 more."""
     with capture_logs() as lines:
         log = CourtLog("main")
         for second in range(100):
@@ -92,7 +95,7 @@ def test_slow_beats_are_told_now_and_then() -> None:
 
 
 def test_refusals_of_the_next_team_are_logged() -> None:
-    """Counts that begin again for another team are logged from zero."""
+    """If the refusals of a seat are counted from zero for another team, the new count is logged."""
     after = msgspec.structs.replace(LEFT, refused={"flood": 1})
     with capture_logs() as lines:
         log = CourtLog("main")

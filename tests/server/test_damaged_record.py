@@ -52,7 +52,7 @@ OTHELLO = arenas.load("othello")
 
 
 def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
-    """Play a match of 120 beats and leave it as a kill does; return its segment's path."""
+    """Play 120 beats, leave the record without an end as a kill does; return its segment's path."""
     journal = Journal(Match(made, World, arena), folder)
     for number in range(BEATS):
         journal.beat(INPUTS.get(number, ()))
@@ -119,9 +119,9 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 def test_a_flipped_byte_anywhere_is_told_or_harmless(
     left_behind: bytes, folder: Path, flips: int
 ) -> None:
-    """A flipped bit in a record never crashes verify or a court's start; an error is a message.
+    """A flipped bit never makes `verify` or a court's start fail, except with a UserError.
 
-    The record stays as it is, and `verify` finds most flips.
+    The record stays as it is. `verify` finds more than 80 % of the flips.
     """
     whole = Record.read(segment(folder, left_behind))
     chance = random.Random(7)
@@ -141,7 +141,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(
         except UserError:
             told["start"] += 1
         assert path.read_bytes() == data
-    # The other flips have no effect on the match: in versions, publish times, message numbers.
+    # The other flips do not change the match: they hit versions, publish times, message numbers.
     assert told["verify"] > 0.8 * flips
     assert told["start"] > flips / 6
     assert whole.last_beat == BEATS - 1
@@ -164,7 +164,10 @@ def test_an_empty_first_segment_is_no_match(left_behind: bytes, folder: Path) ->
 
 
 def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
-    """No court goes on with a match that lacks a segment; the part before the gap can be read."""
+    """A court refuses to go on with a match that lacks a segment, and names the missing beats.
+
+    `info`, `export` and `verify` read the part before the gap, and name them too.
+    """
     first = segment(folder, left_behind)
     header = msgspec.structs.replace(Record.read(first).header, segment=2, first_beat=200)
     RecordWriter(folder, header).leave()
@@ -198,9 +201,9 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
 def test_a_record_of_another_version_is_refused(
     change: Callable[[bytes, Path], bytes], words: str, left_behind: bytes, tmp_path: Path
 ) -> None:
-    """A court refuses a record of other software or another arena, says why and leaves it as it is.
+    """A court refuses to go on with a record of other software or another arena, and says why.
 
-    `serve --fresh` opens a new match beside it.
+    `serve --fresh` opens a new match beside the record. Nothing changes the record.
     """
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     folder.mkdir()

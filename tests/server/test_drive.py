@@ -130,7 +130,7 @@ def test_time_does_not_wait_for_arrival() -> None:
 
 @pytest.mark.parametrize(("advance", "hold_s"), [("reached", 0.0), ("time", 0.04)])
 def test_without_repeat_the_last_posture_holds(advance: str, hold_s: float) -> None:
-    """With repeat = false a sequence runs once; the same digit starts it again."""
+    """Without `repeat` a sequence runs once and holds its end; the same digit starts it again."""
     it = drive((0.0,), (2.4, 4.8), advance=advance, hold_s=hold_s, repeat=False)
     states = ticks(it, it.press(it.begin(B), B, 1), 300)
     assert [s.posture for s in states][-200:] == [1] * 200
@@ -220,7 +220,7 @@ def test_key_0_of_who_stands_begins_its_sequence(repeat: bool) -> None:
 
 
 def test_which_keys_do_something() -> None:
-    """Rules 3: the keys of level A come from Loco-data, and those of level B from LocoTra-data."""
+    """A key does something only if the table of its level has it."""
     it = drive((0.0,), (45.0,), postures={0: 0.0, 9: 45.0})
     assert [digit for digit in range(-1, 12) if it.has(A, digit)] == [0, 9]
     assert [digit for digit in range(-1, 12) if it.has(B, digit)] == [0, 1]
@@ -262,7 +262,7 @@ def path(it: Drive, script: list[tuple[int, Level, int]]) -> list[DriveState]:
 def test_never_faster_than_ang_min_and_the_same_again(
     it: Drive, script: list[tuple[int, Level, int]]
 ) -> None:
-    """No angle moves faster than the commanded speed; the same keys give the same angles again."""
+    """No angle moves faster than AngMin; the same keys give the same angles again."""
     states = path(it, script)
     step = it._step_rad * (1 + 1e-8)
     for before, now in pairwise(states):
@@ -275,7 +275,7 @@ def test_never_faster_than_ang_min_and_the_same_again(
 def test_angles_end_exactly_at_the_target(
     it: Drive, script: list[tuple[int, Level, int]], digit: int
 ) -> None:
-    """A posture is reached exactly, without a rounding error."""
+    """The commanded angles reach a posture exactly, without a rounding error."""
     state = it.press(path(it, script)[-1], A, digit)
     needed = math.ceil(math.radians(300) / it._step_rad) + 1
     held = ticks(it, state, needed)[-1]

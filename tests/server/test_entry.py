@@ -68,7 +68,7 @@ def test_a_workbook_is_refused() -> None:
 
 
 def test_a_gait_for_another_robot() -> None:
-    """A gait with fewer angles than the robot has joints is a mistake in both files."""
+    """If a gait has fewer angles than the robot has joints, both of its files have a mistake."""
     other = join(0, robot="quadruped")
     assert {m.file for m in mistakes_of(None, other.postures, other.locomotion)} == {
         "Loco-data.txt",
@@ -111,7 +111,7 @@ def test_the_contests_limits() -> None:
 
 
 def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
-    """If a legend contradicts the columns, the columns are used and the contestant gets a note."""
+    """If a file's legend contradicts its columns, the columns count and the entry has a note."""
     assert HEXAPOD.postures is not None
     exchanged = HEXAPOD.postures.data.replace(b"R,F", b"x").replace(b"L,F", b"R,F")
     (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes
@@ -132,7 +132,7 @@ OWN = join(0, team="Ants", robot="quadruped")
 
 
 def test_a_team_that_comes_back_without_files_keeps_its_own() -> None:
-    """The same team's join without files takes the files of the seat, and a note names them."""
+    """A team that joins its seat again without files keeps its files, and a note names them."""
     whole, (note,) = CONTEST(asks(), OWN)
     assert whole == asks(robot=OWN.robot, postures=OWN.postures, locomotion=OWN.locomotion)
     assert note.code == "note.files-kept"
@@ -156,7 +156,10 @@ def test_without_files_a_team_gets_the_sample(asked: Join, held: JoinSeat | None
 
 
 def test_files_that_a_team_brings_are_used() -> None:
-    """A team that comes back with a file gets nothing of its former files."""
+    """A team that comes back with one gait file gets the contest's robot.
+
+    It gets none of its former files, and nothing for the other gait file.
+    """
     whole, notes = CONTEST(asks(locomotion=HEXAPOD.locomotion), OWN)
     assert (whole.robot, whole.postures) == (HEXAPOD.robot, None)
     assert notes == ()

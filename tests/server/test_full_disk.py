@@ -1,4 +1,7 @@
-"""Tests of a court whose disk is full or slow, or reports errors (decisions/0013-full-disk.md)."""
+"""Tests of a court whose disk is full or slow, or reports errors.
+
+docs/decisions/0013-full-disk.md says what the court then does.
+"""
 
 import resource
 import shutil
@@ -38,7 +41,7 @@ class Disk(NamedTuple):
 
 @contextmanager
 def limited(contest: Path, folder: Path) -> Iterator[Disk]:
-    """Run a court whose `Disk` can be filled: then RLIMIT_FSIZE keeps records from growing."""
+    """Run a court; `fill` lets its records grow by only 1000 bytes more (RLIMIT_FSIZE)."""
     records = folder / "recordings"
     with served(contest, records) as court:
 
@@ -56,7 +59,7 @@ def limited(contest: Path, folder: Path) -> Iterator[Disk]:
 
 @contextmanager
 def small(contest: Path, folder: Path) -> Iterator[Disk]:
-    """Run a court that records on a disk of 16 MiB in memory; another file can fill this `Disk`."""
+    """Run a court that records on a disk of 16 MiB in memory; `fill` fills it with another file."""
     mount = folder / "disk"
     mount.mkdir()
     inside = ["unshare", "--user", "--map-root-user", "--mount", "--"]
@@ -88,14 +91,17 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event with these words in its reason came; it may come after its frame."""
+    """Return whether an event with these words in its reason has come; its frame may come first."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
 
 @pytest.mark.parametrize("disk_of", [limited, small])
 def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: Path) -> None:
-    """While the disk is full no beat passes; when there is room again, the match is halted."""
+    """While the disk is full no beat passes; when there is room again, the match is halted.
+
+    Published frames of PLAYING were in the record before, and decisions are refused meanwhile.
+    """
     contest = write_contest(tmp_path / "contest.toml")
     seen: dict[int, bytes] = {}
     with ExitStack() as stack:
@@ -158,11 +164,16 @@ os.fsync = sync
 sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""A program that runs a command; while a flag file exists, `fsync` fails or takes seconds."""
+"""A program that runs `lacoc`; while a flag file exists, `fsync` fails or takes seconds longer."""
 
 
 def sync(flag: Path, what: str) -> list[str]:
-    """Return the words to put before a command line, to run it with the changed `fsync`."""
+    """Return the words to put before a command line of `lacoc`, to run it with the changed `fsync`.
+
+    Args:
+        flag: while this file exists, `fsync` is changed.
+        what: "fails", or how many seconds longer `fsync` takes.
+    """
     return [sys.executable, "-c", SYNC, str(flag), what]
 
 
@@ -185,7 +196,10 @@ def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
-    """While no file can be made for the next match, the last stays; the health report says why."""
+    """While no record can be made for the next match, the finished one stays, and health says why.
+
+    As soon as the record can be made, the next match opens.
+    """
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder), party(contest) as those:
         those.decide(Abort())
@@ -202,7 +216,7 @@ def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
-    """While the last record is written to a slow disk, frames come less than 1 s apart."""
+    """While a slow disk stores the finished match, frames of the next come less than 1 s apart."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()
@@ -222,7 +236,10 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) -> None:
-    """A court that is killed before a finished match is on disk goes on with the next match."""
+    """A court killed before its disk has stored a finished match goes on with the next match.
+
+    Both records are whole in the end.
+    """
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()

@@ -56,7 +56,7 @@ def pose(stage: Stage) -> np.ndarray:
 
 @cache
 def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
-    """Press these keys of level A in turn, one every 0.5 s, and return the measured speeds."""
+    """Press these keys of level A in turn, one every 0.5 s for 24 s, and return the speeds."""
     stage = practice(heading_deg)
     frames = [pose(stage)]
     for number, digit in zip(range(int(RUN_S / 0.5)), cycle(digits)):
@@ -69,7 +69,7 @@ def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
 
 
 def by_sequence(joins: JoinSeat | None = None) -> Walk:
-    """Press key 2 of level B (forward) once, and return the measured speeds."""
+    """Press key 2 of level B (forward) once, and return the speeds over 24 s."""
     stage = practice(90.0, joins)
     frames = [pose(stage)]
     stage.beat(key(0, FORWARD, level=B))
@@ -80,7 +80,7 @@ def by_sequence(joins: JoinSeat | None = None) -> Walk:
 
 
 def test_1234_walks_forward() -> None:
-    """Workshop 4-2: keys 1, 2, 3, 4 walk forward at 42 ± 3 mm/s, upright, nearly straight."""
+    """Keys 1, 2, 3, 4 (workshop 4-2) walk forward at 42 ± 3 mm/s, upright, nearly straight."""
     walk = by_hand((1, 2, 3, 4))
     assert walk.forward_mm_s == pytest.approx(42.0, abs=3.0)
     assert abs(walk.turn_deg_s) < 1.0
@@ -88,14 +88,14 @@ def test_1234_walks_forward() -> None:
 
 
 def test_4321_walks_back() -> None:
-    """Workshop 4-2: keys 4, 3, 2, 1 walk back as fast as 1, 2, 3, 4 walk forward."""
+    """Keys 4, 3, 2, 1 (workshop 4-2) walk back at 42 ± 3 mm/s, nearly straight."""
     walk = by_hand((4, 3, 2, 1))
     assert walk.forward_mm_s == pytest.approx(-42.0, abs=3.0)
     assert abs(walk.turn_deg_s) < 1.0
 
 
 def test_5678_turns_right_and_8765_left() -> None:
-    """Workshop 4-2: keys 5 to 8 turn right at 15 ± 2 degrees/s, and 8 to 5 turn left."""
+    """Keys 5 to 8 (workshop 4-2) turn right at 15 ± 2 degrees/s, and 8 to 5 turn left as fast."""
     right, left = by_hand((5, 6, 7, 8)), by_hand((8, 7, 6, 5))
     assert right.turn_deg_s == pytest.approx(-15.0, abs=2.0)
     assert left.turn_deg_s == pytest.approx(15.0, abs=2.0)
@@ -104,7 +104,7 @@ def test_5678_turns_right_and_8765_left() -> None:
 
 
 def test_0_stands() -> None:
-    """With key 0 the robot stays where it is."""
+    """With key 0 of level A the robot stays where it is."""
     walk = by_hand((0,))
     assert abs(walk.forward_mm_s) < 0.5
     assert abs(walk.turn_deg_s) < 0.1

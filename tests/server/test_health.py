@@ -44,7 +44,7 @@ GOOD = HealthVerdict(
 
 @dataclass
 class Held:
-    """A match in PLAYING with its `MatchHealth`; the test sets the wall clock."""
+    """A match, by default one beat before PLAYING, with its `MatchHealth` and a made-up clock."""
 
     stage: Stage = field(default_factory=lambda: Stage("othello", QUICK).to_playing())
     speed: float = 1.0
@@ -104,7 +104,7 @@ def test_a_match_that_is_held_well() -> None:
 
 
 def test_only_the_time_that_is_played_counts() -> None:
-    """Slow beats count for the verdict only in PLAYING, not before the start or in HALTED."""
+    """The verdict leaves out beats outside PLAYING, and the first after each entry to PLAYING."""
     held = Held(Stage("othello", QUICK))
     held.beat(took_s=3.0, late_s=2.98)
     held.stage.to_playing()
@@ -124,7 +124,10 @@ def test_only_the_time_that_is_played_counts() -> None:
 
 @pytest.mark.parametrize("speed", [1.0, 4.0])
 def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
-    """One beat of 0.1 s in 50 gives a real-time factor of 1/1.08, at each speed of the court."""
+    """If one beat in 50 takes five times its length, the real-time factor is 1/1.08.
+
+    The speed of the court does not change that.
+    """
     held = Held(speed=speed)
     held.beat(took_s=0.02 / speed)
     for beat in range(250):
@@ -139,7 +142,7 @@ def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
 def test_repeats_of_a_lossy_link() -> None:
     """A seat that is heard 6 times a second instead of 10 has lost commands.
 
-    If it is heard more often later, that does not make up for the lost ones.
+    Commands that come more often later do not make up for those that were lost.
     """
     held = Held()
     held.seconds(1)
@@ -152,7 +155,7 @@ def test_repeats_of_a_lossy_link() -> None:
 
 
 def test_repeats_that_come_a_little_early_or_late() -> None:
-    """If one second has 9 repeats and the next has 11, none is counted as lost."""
+    """If seconds with 9 and with 11 repeats alternate, at most one repeat counts as lost."""
     held = Held()
     for repeats in (10, 9, 11, 9, 11, 9, 11, 10):
         held.seconds(1, repeats)
@@ -160,7 +163,7 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
 
 
 def test_repeats_of_a_match_that_is_often_halted() -> None:
-    """Halts make no repeat count as lost, because only whole seconds of play are measured."""
+    """No repeat counts as lost because of a halt: only whole seconds of play are measured."""
     held = Held()
     for _ in range(6):
         for beat in range(60):
@@ -184,7 +187,10 @@ def test_who_left_is_missed_by_nobody() -> None:
 
 
 def test_silences() -> None:
-    """The verdict says how often, and for how long, each seat was silent in PLAYING."""
+    """The verdict says how often and how long each seat was silent in PLAYING.
+
+    After more than 5 s of silence of a seat, a rematch is advised.
+    """
     held = Held()
     for _ in range(2):
         held.beat(SilentSeat(LEFT))
@@ -264,7 +270,7 @@ def test_each_limit_has_its_phrase(held: dict[str, object], why: Phrase) -> None
 
 
 def test_advice_is_an_event_of_the_match() -> None:
-    """Advice enters the match as an input, so that a replay has the same log."""
+    """Advice is an input of the match and becomes an event, so a replay has the same log."""
     stage = Stage("othello", QUICK).to(Phase.FINISHED)
     stage.beat(Advice(("a", "b")))
     stage.beat(Advice(()))
@@ -277,7 +283,10 @@ def test_advice_is_an_event_of_the_match() -> None:
 
 @pytest.mark.slow
 def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
-    """A record has the health verdict beside the result, and a replay gives the same result."""
+    """A record keeps the health verdict beside the result, and still verifies bit for bit.
+
+    `replay info` and the exported result show the verdict.
+    """
     match = Match(setup("othello", QUICK), World)
     health = MatchHealth(match, HealthLimits(), [Door(0, {})] * 2)
     journal = Journal(match, tmp_path, measure=health.measure)

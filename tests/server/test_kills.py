@@ -1,4 +1,4 @@
-"""Test of a court that is killed at random moments in every phase (benchmarks/kills.py)."""
+"""Test of a court that is killed at random moments from LOBBY to FINISHED (benchmarks/kills.py)."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.long
 def test_a_court_may_be_killed_in_any_phase() -> None:
-    """A killed court's match comes back in the right phase, without loss of what was shown."""
+    """A killed court comes back in the right phase, and loses nothing that it had shown."""
     command = [sys.executable, "-m", "benchmarks.kills", "--kills", "24"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=900)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -1,4 +1,4 @@
-"""Tests that a court goes on only with its own match, and only if the match was not ended."""
+"""Tests that a court goes on only with a match that fits it and that no court has ended."""
 
 import os
 import signal
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.slow
 
 OTHELLO = arenas.load("othello", QUICK)
 TEN = "20260501-100000"
-"""Wall time at which the earlier matches were opened."""
+"""Wall time at which the matches of these tests are opened, if not stated otherwise."""
 LATER = "20260501-100500"
 
 
@@ -57,7 +57,7 @@ def held(
 def killed(
     folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
 ) -> str:
-    """Play a match and leave it as a killed court does; return its id."""
+    """Play a match, leave its record without an end as a kill does; return the match's id."""
     journal = held(folder, court, opened, number, arena)
     journal.leave()
     return journal.match.setup.match_id
@@ -76,7 +76,7 @@ def test_a_court_does_not_take_up_the_match_of_another(tmp_path: Path) -> None:
 
 
 def test_the_packed_match_of_another_court_hides_none(tmp_path: Path) -> None:
-    """Newer matches of courts with similar names do not hide a court's own unfinished match."""
+    """A newer match of another court does not hide an unfinished match; one of its own does."""
     match_id = killed(tmp_path, "final")
     for court in ("semi-final", "final-b", "zoo"):
         (tmp_path / f"{LATER}-{court}-002.mcap").touch()
@@ -93,7 +93,7 @@ def test_match_1000_goes_on(tmp_path: Path) -> None:
 
 
 def test_a_renamed_record_is_told(tmp_path: Path) -> None:
-    """A record whose files were renamed is refused, because new segments would get the old name."""
+    """A court refuses to go on with a record whose file was renamed to fit another match."""
     match_id = killed(tmp_path, "semi-final")
     path = files.segment_path(tmp_path, match_id, 0)
     path.rename(files.segment_path(tmp_path, f"{TEN}-final-001", 0))
@@ -104,7 +104,7 @@ def test_a_renamed_record_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("there", "here"), [("othello", "practice"), ("practice", "othello")])
 def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Path) -> None:
-    """A court refuses to go on with a match of another arena, and leaves the record as it is."""
+    """A court refuses to go on with a match of another arena, and does not change its record."""
     match_id = killed(tmp_path, arena=there)
     path = files.segment_path(tmp_path, match_id, 0)
     data = path.read_bytes()
@@ -125,7 +125,7 @@ def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
-    """A match that its court ended is over, even if its segments are not packed yet.
+    """No court goes on with a match that its court ended, even if it is not packed yet.
 
     If the end of its last segment is cut off, the match can be resumed.
     """
@@ -167,7 +167,7 @@ def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
 
 
 def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> None:
-    """A second court does not go on with a match that a running court has resumed."""
+    """No court goes on with a match that another running court has resumed and still holds."""
     killed(tmp_path)
     left = unfinished(tmp_path, "main", OTHELLO)
     assert left is not None
@@ -202,7 +202,7 @@ else:
 sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""A program that runs a command; while a flag file exists, beats or new processes fail."""
+"""A program that runs `lacoc`; while a flag file exists, beats or starts of processes fail."""
 
 
 def failing(flag: Path, what: str) -> list[str]:
@@ -219,7 +219,7 @@ def packed(folder: Path, *numbers: str) -> list[Path]:
 
 
 def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
-    """If an error ends a court, the match is resumed by the next start, in HALTED."""
+    """If an error ends a court, its next start goes on with the match in HALTED."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
     with ExitStack() as stack:
@@ -273,7 +273,10 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
 
 
 def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
-    """SIGTERM ends a match in PLAYING: the next start opens a new one, even if a kill follows."""
+    """SIGTERM makes a court end its match in PLAYING, so its next start opens a new match.
+
+    This also holds if the court is killed as soon as the match has ended.
+    """
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder) as first, party(contest) as those:
         those.play()
@@ -288,5 +291,5 @@ def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
 
 
 def ended(folder: Path) -> bool:
-    """Return whether all matches of a folder are over."""
+    """Return whether all matches of court "main" in a folder are over."""
     return all(is_over(*match) for match in court_matches(folder, "main").items())

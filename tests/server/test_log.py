@@ -233,7 +233,7 @@ def test_the_log_of_a_match() -> None:
 
 
 def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
-    """A fault of physics in READY is logged, and the match goes back to LOBBY (docs/facts.md 3)."""
+    """A fault of physics in READY is logged, and the match goes back to LOBBY."""
     stage = Stage(script=Script(faults={3: Fault(NOBODY, BROKE)})).to_ready()
     stage.until(P.LOBBY)
     told = [event for beat in stage.beats[2:] for event in beat.events]
@@ -244,7 +244,7 @@ def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
 
 
 def test_what_the_court_measured_in_the_log() -> None:
-    """The log says that a rematch is advised, with the reasons, and later that it no longer is."""
+    """The log says why a rematch is advised, and later that it is no longer advised."""
     stage = Stage(overrides=QUICK).to(P.PLAYING)
     assert stage.match.advice == ()
     reasons = (say("health.late-beat", late_ms=80, most_ms=60), "a text of an old record")
@@ -308,7 +308,7 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
 
 
 def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
-    """In practice, a robot needs no LocoTra-data file; without one it has no keys of level B."""
+    """In practice a robot may have no LocoTra-data file; the sheet then has no keys of level B."""
     whole = join(LEFT)
     stage = Stage("practice")
     stage.beat(msgspec.structs.replace(whole, locomotion=None))
@@ -338,12 +338,15 @@ def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
     ],
 )
 def test_answers(at: Phase, item: Input, answer: Done | Refusal) -> None:
-    """Each input is answered with Done, or with a refusal that says why."""
+    """Each input is answered with Done, perhaps with a note, or with a refusal that says why."""
     assert Stage(overrides=QUICK).to(at).send(item) == answer
 
 
 def test_answers_about_empty_seats() -> None:
-    """An empty seat can't be made ready, and nobody can join it while a match is on."""
+    """An empty seat can't be made ready, and nobody can join it while a match is on.
+
+    After the match a team can join it for the next one. A join with a wrong file is refused.
+    """
     stage = Stage(overrides=QUICK)
     nobody = Refusal(say("refused.nobody-joined", seat="right"))
     assert stage.send(ReadySeat(RIGHT, True)) == nobody
@@ -361,7 +364,7 @@ def test_answers_about_empty_seats() -> None:
 
 
 def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
-    """A robot is refused if it breaks a limit of the contest, or lacks keys for an open level."""
+    """A robot is refused if it breaks a limit of the contest or has no keys of any open level."""
     light = msgspec.structs.replace(setup("othello"), limits={"mass_max_kg": 0.4})
     stage = Stage()
     stage.match = Match(light, lambda arena, entries: ScriptedPhysics(arena, entries, Script()))
@@ -373,7 +376,10 @@ def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
 
 
 def test_a_result_says_all() -> None:
-    """The result has teams, scores, winner, reason, clock, and the digest that proves it."""
+    """The result has teams, scores, winner, reason, clock, and the digest that proves it.
+
+    A beat has the result only if it changed the result.
+    """
     stage = Stage(overrides=QUICK, script=Script(poses=dict(FLIP))).to(P.PLAYING)
     assert stage.match.result().computed == ""
     stage.decide(d.Clock(-3600.0))
@@ -425,7 +431,7 @@ def test_a_frame_says_all() -> None:
 
 
 def test_a_sheet_says_what_frames_leave_out() -> None:
-    """The sheet has everything about a match that does not change during play."""
+    """The sheet has what frames leave out, such as teams, robots, keys and settings."""
     stage = Stage("flag-strike", QUICK)
     empty = stage.beat(join(LEFT))
     assert empty.sheet_changed
