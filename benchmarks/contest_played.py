@@ -1,10 +1,13 @@
 """A small contest that was played and published, for tests and forgeries."""
 
 from collections.abc import Mapping
+from concurrent.futures import Future
 from pathlib import Path
+from typing import Self
 
 from lacoc_server.contest import organiser
-from lacoc_server.contest.pool import Pool
+from lacoc_server.contest.pool import Ended, Job, Pool, attempt
+from lacoc_shared.words import Phrase
 
 TOKENS = {seat: f"token-of-{seat}-{seat}" for seat in ("left", "right", "referee")}
 CONTEST = f"""\
@@ -53,9 +56,31 @@ def enter(
     return file
 
 
-def play(file: Path, jobs: int = 1) -> int:
-    """Play a contest without a network; return how many games were played now."""
-    return organiser.play_headless(file, "planner", Pool(jobs), lambda done, there: None)[1]
+class Here:
+    """Plays games in this process, one after another; used as a context manager."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+        """Play a game."""
+        future: Future[Ended | Phrase] = Future()
+        future.set_result(attempt(job))
+        return future
+
+
+def play(file: Path, jobs: int = 0) -> int:
+    """Play a contest without a network; return how many games were played now.
+
+    Args:
+        file: the contest file.
+        jobs: number of processes; 0: this one alone.
+    """
+    engine = Pool(jobs) if jobs else Here()
+    return organiser.play_headless(file, "planner", engine, lambda done, there: None)[1]
 
 
 def publish(file: Path) -> Path:

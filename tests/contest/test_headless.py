@@ -10,7 +10,7 @@ import msgspec
 import psutil
 import pytest
 from benchmarks import contest_played
-from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS
+from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, Here
 from lacoc_process import Lacoc
 
 from lacoc_server.contest import headless, organiser
@@ -147,9 +147,9 @@ def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> N
             if sum(isinstance(fact, Played) for fact in store.facts()) == 2:
                 organiser.take_out(file, "Bob", "gone home", disqualified=False)
 
-    with FactStore(where.facts) as store, Pool(1) as pool:
+    with FactStore(where.facts) as store:
         organiser.prepare(where, store)
-        headless.play(where, store, pool, "planner", changed)
+        headless.play(where, store, Here(), "planner", changed)
     view = organiser.sheet(file).stages[0]
     assert "Eve" not in view.stage.entries
     of_bob = [match for match in view.matches if "Bob" in match.teams]

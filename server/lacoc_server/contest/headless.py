@@ -180,12 +180,7 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
 
     Otherwise teams that meet again would play the same game again. The number depends on the draw,
     and on how often this game was played without a result that counts; never on the order in which
-    other games are played.
-
-    Args:
-        contest: the contest before the game.
-        facts: its facts.
-        match: the match.
+    other games are played. Contest and facts are those before the game.
     """
     before = 0
     for view in contest.stages:
