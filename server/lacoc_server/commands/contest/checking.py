@@ -105,5 +105,11 @@ def _show(found: "Checked") -> None:
     else:
         screen.show(say("verify.follows", games=found.games, facts=found.facts))
     if found.proven < found.games:
-        numbers = {"proven": found.proven, "games": found.games, "forged": found.least_forged}
-        screen.note(say("verify.sampled", **numbers, sure=100 * CONFIDENCE))
+        said = say(
+            "verify.sampled",
+            proven=found.proven,
+            games=found.games,
+            forged=found.least_forged,
+            sure=100 * CONFIDENCE,
+        )
+        screen.note(said)

@@ -71,11 +71,7 @@ def check_game(folder: Path, game: Game, proven: bool) -> list[Phrase]:
 
 def _faults(folder: Path, game: Game, proven: bool) -> Iterator[Phrase]:
     played = game.played
-    at: dict[str, str | int] = {
-        "record": played.record,
-        "pairing": played.pairing,
-        "game": played.game,
-    }
+    file, pairing, number = played.record, played.pairing, played.game
     if not played.record or Path(played.record).name != played.record or "\0" in played.record:
         yield say("verify.no-record", pairing=played.pairing, game=played.game)
         return
@@ -85,18 +81,23 @@ def _faults(folder: Path, game: Game, proven: bool) -> Iterator[Phrase]:
     path = folder / RECORDS / played.record
     try:
         if played.record_hash and file_hash(path) != played.record_hash:
-            yield say("verify.record-changed", **at)
+            yield say("verify.record-changed", record=file, pairing=pairing, game=number)
         record = Record.read(path)
         wrong = [*_differences(folder, game, game.plan, record)]
         verdict = _verdict(record) if proven and not wrong else None
     except OSError as error:
         yield say("verify.no-file", file=played.record, why=error.strerror or str(error))
     except UserError as error:
-        yield say("verify.bad-record", **at, why=error.phrase)
+        yield say("verify.bad-record", record=file, pairing=pairing, game=number, why=error.phrase)
     else:
-        yield from (say("verify.other-game", **at, what=what) for what in wrong)
+        yield from (
+            say("verify.other-game", record=file, pairing=pairing, game=number, what=what)
+            for what in wrong
+        )
         if verdict is not None and (not verdict.same or record.lost):
-            yield say("verify.not-proven", **at, why=verdict.said)
+            yield say(
+                "verify.not-proven", record=file, pairing=pairing, game=number, why=verdict.said
+            )
 
 
 def _verdict(record: Record) -> Verdict:
