@@ -5,7 +5,7 @@ again, it reads the facts, asks the courts what they have, and goes on.
 """
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 
 from lacoc_server.contest.calling import Ended, Seen, calls, results, taken_back, wanted
@@ -81,11 +81,12 @@ class Office:
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
         if len(self._store.facts()) != len(self._facts):  # another program has appended some
             self.contest = self._compute()
-        self._append(*results(self.contest, seen))
-        while (draw := due(self.contest, FORMATS)) is not None:
-            self._append(draw)
-        self._append(*self._answers(), *taken_back(self.contest, seen, now_ms))
-        self._append(*calls(self.contest, seen, now_ms, self._least_rest_ms, self.held))
+        refused = self._answers()
+        self._append(lambda contest: [*refused, *results(contest, seen)])
+        while due(self.contest, FORMATS) is not None:
+            self._append(_draws)
+        self._append(lambda contest: taken_back(contest, seen, now_ms))
+        self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
         for call in wanted(self.contest, seen):
             link = self._links.get(call.court)
             if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
@@ -104,9 +105,10 @@ class Office:
             ended = Ended((left, right), who, f"{result.match_id}.mcap")
         return Seen(self._heard_ms[name], link.call or "", link.phase in _BEGUN, ended)
 
-    def _append(self, *facts: AnyFact) -> None:
-        if facts:
-            self._store.append(*facts)
+    def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
+        """Append the facts that follow from the contest, also if another program appends some."""
+        if [*follows(self.contest)]:
+            self._store.decide(lambda facts: follows(compute(facts, FORMATS)))
             self.contest = self._compute()
 
     def _compute(self) -> Contest:
@@ -173,3 +175,8 @@ class Office:
             return False
         self._asked_ms[call] = now_ms
         return True
+
+
+def _draws(contest: Contest) -> list[AnyFact]:
+    draw = due(contest, FORMATS)
+    return [] if draw is None else [draw]
