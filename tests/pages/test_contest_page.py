@@ -18,6 +18,7 @@ from lacoc_server.contest import organiser
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import Called, Entered, Played, decode
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet, encode, sheet
 
 pytestmark = pytest.mark.slow
@@ -66,7 +67,7 @@ def cup(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     file.write_text(TEXT, encoding="utf-8")
     for team in TEAMS:
         organiser.enter(file, team, robot_folder("hexapod"), "nearest", "")
-    made, _ = organiser.play_headless(file, "nearest", 1, lambda done, there: None)
+    made, _ = organiser.play_headless(file, "nearest", Pool(1), lambda done, there: None)
     root = place / "www"
     folder = root / PATH.strip("/")
     folder.mkdir(parents=True)
