@@ -127,6 +127,15 @@ def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:
     assert "#" not in page.url
 
 
+def test_a_tie_break_is_explained_where_it_stands(cup: Cup, open_page: OpenPage) -> None:
+    """A tap on the heading of a tie-break says in words what it is."""
+    page = open_page(viewport=PHONE, has_touch=True)
+    page.goto(cup.url)
+    page.get_by_role("button", name="Dir.").tap(timeout=WAIT_MS)
+    expect(page.locator("[popover]")).to_be_visible()
+    expect(page.locator("[popover]")).to_contain_text("Direct comparison")
+
+
 @pytest.mark.parametrize("locale", ["en-GB", "ja-JP"])
 def test_a_phone_and_axe(cup: Cup, open_page: OpenPage, locale: str) -> None:
     """Nothing but tables and brackets scrolls sideways on a phone; axe-core finds no mistake."""
