@@ -363,7 +363,7 @@ def test_a_sheet_is_sent_only_if_it_has_changed(tmp_path: Path) -> None:
         scope["headers"] = [
             (name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()
         ]
-        return asyncio.run(endpoint(Request(scope)))
+        return asyncio_run(lambda: endpoint(Request(scope)))
 
     assert ask().status_code == 404
     path.write_text("[1]" * 1000)

@@ -18,6 +18,7 @@ from lacoc_server.contest import organiser
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import Called, Entered, Played, decode
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet, encode, sheet
 
 pytestmark = pytest.mark.slow
@@ -66,7 +67,7 @@ def cup(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     file.write_text(TEXT, encoding="utf-8")
     for team in TEAMS:
         organiser.enter(file, team, robot_folder("hexapod"), "nearest", "")
-    made, _ = organiser.play_headless(file, "nearest", 1, lambda done, there: None)
+    made, _ = organiser.play_headless(file, "nearest", Pool(1), lambda done, there: None)
     root = place / "www"
     folder = root / PATH.strip("/")
     folder.mkdir(parents=True)
@@ -124,6 +125,15 @@ def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
     assert "#" not in page.url
+
+
+def test_a_tie_break_is_explained_where_it_stands(cup: Cup, open_page: OpenPage) -> None:
+    """A tap on the heading of a tie-break says in words what it is."""
+    page = open_page(viewport=PHONE, has_touch=True)
+    page.goto(cup.url)
+    page.get_by_role("button", name="Dir.").tap(timeout=WAIT_MS)
+    expect(page.locator("[popover]")).to_be_visible()
+    expect(page.locator("[popover]")).to_contain_text("Direct comparison")
 
 
 @pytest.mark.parametrize("locale", ["en-GB", "ja-JP"])

@@ -65,9 +65,9 @@ def try_pages(env: Environment) -> None:
             assert gateway.stdout is not None
             url = json.loads(gateway.stdout.readline())["url"]
             page = fetch(f"{url}/watch")
-            scripts = re.findall(r'src="(/assets/[^"]+)"', page)
+            scripts = re.findall(r'src="\./(assets/[^"]+)"', page)
             assert scripts, page
-            assert all(fetch(url + script) for script in scripts)
+            assert all(fetch(f"{url}/{script}") for script in scripts)
         finally:
             gateway.terminate()
 

@@ -4,10 +4,10 @@ import { tab } from "./storage";
 
 const KEY = "lacoc-key";
 const TOKEN = "lacoc-team-token";
+const query = new URLSearchParams(location.search);
+
 /** The page, where its own file says it: in a published folder, which has no gateway. */
 export const ownPage = globalThis.document?.body.dataset.page ?? null;
-
-const query = new URLSearchParams(location.search);
 
 /** A setting of the address: `?q=low`. */
 export function setting(name: string, otherwise = ""): string {

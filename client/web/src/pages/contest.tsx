@@ -16,6 +16,7 @@ import { Big } from "./contest/big";
 import { BracketView } from "./contest/bracket";
 import { Head, Parts } from "./contest/head";
 import { Now } from "./contest/now";
+import { addressed } from "./contest/parts";
 import { Schedule } from "./contest/schedule";
 import { Tables, Ties } from "./contest/standings";
 import { TeamDialog, Teams } from "./contest/teams";
@@ -50,7 +51,15 @@ export default function Contest() {
   );
 }
 
+/** Go to the part that the address names: the browser looked for it before it was there. */
+function showAddressed(): void {
+  const part = document.getElementById(addressed.peek());
+  part?.closest("details")?.setAttribute("open", "");
+  part?.scrollIntoView();
+}
+
 function Whole({ sheet }: { sheet: ContestSheet }) {
+  useEffect(showAddressed, []);
   return (
     <main class="contest">
       <Head sheet={sheet} />

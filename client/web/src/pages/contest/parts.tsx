@@ -5,24 +5,28 @@ import type { Game, Match } from "../../core/contest/sheet";
 import { replayAddress } from "../../core/record_files";
 import { t } from "../../i18n";
 
-const TEAM = "#team=";
+const TEAM = "team=";
 const hash = signal(location.hash);
 addEventListener("hashchange", () => {
   hash.value = location.hash;
 });
 
-/** The team whose matches are shown; "" if none. */
-export const chosenTeam = computed(() => {
-  if (!hash.value.startsWith(TEAM)) return "";
+/** The part of the page that the address names: an element's id, or a team. */
+export const addressed = computed(() => {
   try {
-    return decodeURIComponent(hash.value.slice(TEAM.length));
+    return decodeURIComponent(hash.value.slice(1));
   } catch {
     return ""; // no address that this page wrote
   }
 });
 
+/** The team whose matches are shown; "" if none. */
+export const chosenTeam = computed(() =>
+  addressed.value.startsWith(TEAM) ? addressed.value.slice(TEAM.length) : "",
+);
+
 export function teamAddress(name: string): string {
-  return TEAM + encodeURIComponent(name);
+  return `#${TEAM}${encodeURIComponent(name)}`;
 }
 
 /** Show no team any more. */

@@ -13,7 +13,7 @@ import {
   seating,
 } from "../../core/contest/sheet";
 import { t } from "../../i18n";
-import { chosenTeam, GameScore, matchId, TeamLink } from "./parts";
+import { addressed, chosenTeam, GameScore, matchId, TeamLink } from "./parts";
 import { courtOf, numberTitle, originTitle, scheduleTitle } from "./words";
 
 /** With more matches than this, rounds that are over are closed. */
@@ -78,13 +78,15 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
   const many = countsGames(match, view) && games.length > 0;
   const court = courtOf(sheet.running, match);
   const group = view.tables.length > 1 ? match.pairing.section.toUpperCase() : "";
-  const mine = id && chosenTeam.value !== "" && match.teams.includes(chosenTeam.value);
+  const wanted = chosenTeam.value
+    ? match.teams.includes(chosenTeam.value)
+    : addressed.value === matchId(match);
   return (
     <li
       id={id ? matchId(match) : undefined}
       class="match"
       data-state={court ? "running" : match.state}
-      data-chosen={mine || undefined}
+      data-chosen={(id && wanted) || undefined}
     >
       <span class="label">{label ?? (group || numberTitle(view, match))}</span>
       <Place sheet={sheet} match={match} place={one} />
