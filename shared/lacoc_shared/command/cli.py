@@ -15,7 +15,7 @@ import sys
 from collections import UserDict
 from collections.abc import Mapping, Sequence
 from importlib.metadata import EntryPoint
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import typer
 from rich.markup import escape
@@ -47,18 +47,27 @@ _EXTRAS = {"cmaes": "server", "cryptography": "server", "mujoco": "server"}
 _COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command only
 
 
+class _Unloaded(NamedTuple):
+    """A command that was not read yet.
+
+    The entry itself would not show this: another package may replace the class of entry points.
+    """
+
+    entry: EntryPoint
+
+
 class _Commands(UserDict[str, Any]):
     """Commands by name; an entry point is loaded when its command is first read."""
 
     def __init__(self, own: Mapping[str, Any], entries: Mapping[str, EntryPoint], panels: Panels):
         self._panel = {name: panel for panel, names in panels.items() for name in names}
         order = [*(name for name in self._panel if name in entries), *entries]
-        super().__init__({**own, **{name: entries[name] for name in order}})
+        super().__init__({**own, **{name: _Unloaded(entries[name]) for name in order}})
 
     def __getitem__(self, name: str) -> Any:
         command = super().__getitem__(name)
-        if isinstance(command, EntryPoint):
-            command = self.data[name] = _load(command)
+        if isinstance(command, _Unloaded):
+            command = self.data[name] = _load(command.entry)
             if self._panel:
                 command.rich_help_panel = help_text.in_words(self._panel.get(name, _OTHERS))
         return command
@@ -120,7 +129,7 @@ def _prepare_help(command: Any) -> None:
     subcommands = getattr(command, "commands", {})
     loaded = subcommands.data if isinstance(subcommands, _Commands) else subcommands
     for subcommand in loaded.values():
-        if not isinstance(subcommand, EntryPoint):  # others follow when they are loaded
+        if not isinstance(subcommand, _Unloaded):  # others follow when they are loaded
             _prepare_help(subcommand)
 
 
