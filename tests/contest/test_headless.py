@@ -106,8 +106,8 @@ def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> No
 
     def changed(_: object) -> None:
         nonlocal kills
-        children = psutil.Process().children(recursive=True)
-        busy = [one for one in children if sum(one.cpu_times()[:2]) > 0.3]
+        workers = [psutil.Process(pid) for pid in pool.processes]
+        busy = [one for one in workers if sum(one.cpu_times()[:2]) > 0.3]
         if kills and busy:
             kills -= 1
             busy[0].kill()

@@ -73,9 +73,10 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
     import axe_core_python.sync_playwright  # type: ignore[import-not-found,import-untyped]
 
     # In the middle of a change of colour the contrast is that of neither.
-    page.wait_for_function(
-        "document.getAnimations().every(one => one.effect.getComputedTiming().endTime === Infinity"
-        " || one.playState === 'finished')"
+    page.evaluate(
+        "Promise.allSettled(document.getAnimations()"
+        ".filter((one) => Number.isFinite(one.effect.getComputedTiming().endTime))"
+        ".map((one) => one.finished))"
     )
     found = axe_core_python.sync_playwright.Axe().run(page)["violations"]
     return [

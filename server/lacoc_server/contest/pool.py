@@ -96,6 +96,11 @@ class Pool:
             if future.done() and not future.cancelled() and _is_lost(future):
                 _remove_half_record(job)
 
+    @property
+    def processes(self) -> tuple[int, ...]:
+        """The ids of the processes that run now."""
+        return self._workers.processes
+
     def submit(self, job: Job) -> "Future[Ended | Phrase]":
         """Play a match when a process is free; its result is read with `ended`."""
         future = self._workers.submit(attempt, job)
