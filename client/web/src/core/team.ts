@@ -96,12 +96,12 @@ export class Team {
     if (phase < Phase.OFFICIAL) this.officialMs = now;
     const at = this.court.welcome.peek()?.court;
     if (!there || !at) return;
-    const { wish } = this.player.claim.peek();
+    const { held, wanted } = this.player.seats(at);
     const move = nextMove({
       there,
       court: at,
       call: this.court.sheet.peek()?.call ?? "",
-      seat: wish?.court === at ? wish.seat : "",
+      seat: held || wanted,
       mine: this.mine,
       seen: now - this.officialMs > RESULT_MS,
     });
@@ -126,7 +126,7 @@ export class Team {
       case "join":
         if (now - this.triedMs < AGAIN_MS) break;
         this.triedMs = now;
-        this.player.join({
+        this.player.moveTo({
           court: there.court,
           seat: there.seat,
           token: this.token.peek(),
