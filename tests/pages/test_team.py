@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Console
 from contestant import Contestant, Sit
 from lacoc_process import run_lacoc, started
 from playwright.sync_api import expect
@@ -69,9 +68,7 @@ settings.match.start = "ready"
             run.kill()
 
 
-def test_a_page_follows_its_team(
-    tmp_path: Path, built_pages: Path, sit: Sit, console: Console
-) -> None:
+def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, console: Any) -> None:
     """With the team's link a page shows what comes next, and plays at whichever court it is.
 
     A wrong token opens nothing. Both are typed on the same page; the link has the right one.
