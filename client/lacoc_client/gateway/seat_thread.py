@@ -102,6 +102,8 @@ class SeatThread:
                     **files._asdict(),
                     notify=lambda: self._jobs.put(None),
                 )
+                if self._ended:  # the page has gone: it must not take the seat from another one
+                    return
                 notes = _join(controller, wrong)
                 joined({"notes": (*noted, *notes), "index": controller.index}, None)
                 self._report(controller)

@@ -21,7 +21,7 @@ from lacoc_shared.words import say
 
 _STEP_S = 0.05
 """Time between two looks at the courts."""
-_FAREWELL_S = 3.0
+_FAREWELL_S = 5.0
 """The courts stay for so long after the end, so that all teams hear that the contest is over."""
 
 

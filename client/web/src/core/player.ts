@@ -133,6 +133,19 @@ export class Player {
     this.tell({ is: "change", renews: this.alone && this.isHeld() });
   }
 
+  /** The seat that is held, and the one that is wanted at a court; "": none. */
+  seats(court: string): { held: string; wanted: string } {
+    const { wish } = this.claim.peek();
+    const held = this.isHeld() ? (this.court.seat.peek()?.seat ?? "") : "";
+    return { held, wanted: wish?.court === court ? wish.seat : "" };
+  }
+
+  /** Take another seat than the one that is held, which belongs to another team now. */
+  moveTo(wish: Wish): void {
+    this.court.seat.value = null;
+    this.join(wish);
+  }
+
   /** The match is over for this team: it has no seat until it joins again. */
   rest(): void {
     this.forget();
@@ -237,7 +250,9 @@ export class Player {
     const seat = court.seat.value;
     const isNew = seat !== this.heeded;
     this.heeded = seat;
-    if (isNew && seat && TAKEN.has(seat.hold)) {
+    // A seat that the page has left for another one is nobody's loss.
+    const isOwn = seat?.seat === (untracked(() => this.claim.value.wish)?.seat ?? seat?.seat);
+    if (isNew && seat && isOwn && TAKEN.has(seat.hold)) {
       untracked(() =>
         this.tell({ is: "taken", why: seat.reason || { code: `hold.${seat.hold}` } }),
       );

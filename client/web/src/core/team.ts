@@ -5,6 +5,7 @@ import { goToCourt, keepTeamToken, teamToken } from "./address";
 import type { Refused } from "./connection";
 import type { Court } from "./court";
 import type { Player } from "./player";
+import { type Move, nextMove } from "./way";
 import { Phase, type Whereabouts } from "./wire";
 
 const ASK_MS = 2000;
@@ -13,44 +14,6 @@ const LOOK_MS = 250;
 const RESULT_MS = 8000;
 const AGAIN_MS = 2500;
 const NO_TEAM = "refused.no-team-token";
-
-/** What the page knows when it decides where to go. */
-export interface Situation {
-  /** What the office says. */
-  there: Whereabouts;
-  /** The court that the page is at, and the call that the court has; "": none. */
-  court: string;
-  call: string;
-  /** The seat that is held, or will be held again after a break; "": none. */
-  seat: string;
-  /** The call that the page plays, or has played; "": none. */
-  mine: string;
-  /** The match has been official for long enough that its result was seen. */
-  seen: boolean;
-}
-
-/**
- * What the page does next.
- *
- * - `stay`: nothing changes.
- * - `hold`: the seat is that of the call: the page plays it.
- * - `rest`: the match is over for this page: it gives the seat up and waits.
- * - `join`: take the seat at this court.
- * - `go`: go to another court.
- */
-export type Move = "stay" | "hold" | "rest" | "join" | "go";
-
-/** Decide what the page does next. Pure. */
-export function nextMove({ there, court, call, seat, mine, seen }: Situation): Move {
-  const isCalled = there.state === "court";
-  if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
-  const isHere = isCalled && there.court === court;
-  if (isHere && seat === there.seat && call === there.call) return "hold";
-  // The result stays for a while, unless another match has taken its place.
-  if (seat && mine && call === mine && !seen) return "stay";
-  if (!isCalled) return seat ? "rest" : "stay";
-  return isHere ? (call === there.call ? "join" : "stay") : "go";
-}
 
 export class Team {
   /** The token; null: nobody has given one here. */
@@ -81,6 +44,10 @@ export class Team {
     effect(() => {
       const canAsk = court.welcome.value?.can_act && court.live.value;
       if (this.isOn.value && canAsk) untracked(() => void this.ask());
+    });
+    addEventListener("hashchange", () => {
+      // A team's link, opened in the tab of this page: nothing but the fragment changes.
+      if (location.hash.includes("token=")) location.reload();
     });
     setInterval(() => void this.ask(), ASK_MS);
     setInterval(() => this.look(), LOOK_MS);
@@ -129,12 +96,12 @@ export class Team {
     if (phase < Phase.OFFICIAL) this.officialMs = now;
     const at = this.court.welcome.peek()?.court;
     if (!there || !at) return;
-    const { wish } = this.player.claim.peek();
+    const { held, wanted } = this.player.seats(at);
     const move = nextMove({
       there,
       court: at,
       call: this.court.sheet.peek()?.call ?? "",
-      seat: wish?.court === at ? wish.seat : "",
+      seat: held || wanted,
       mine: this.mine,
       seen: now - this.officialMs > RESULT_MS,
     });
@@ -159,7 +126,7 @@ export class Team {
       case "join":
         if (now - this.triedMs < AGAIN_MS) break;
         this.triedMs = now;
-        this.player.join({
+        this.player.moveTo({
           court: there.court,
           seat: there.seat,
           token: this.token.peek(),

@@ -1,0 +1,41 @@
+/** Where a team's page goes next in a contest with an office. Pure. */
+
+import type { Whereabouts } from "./wire";
+
+/** What the page knows when it decides where to go. */
+export interface Situation {
+  /** What the office says. */
+  there: Whereabouts;
+  /** The court that the page is at, and the call that the court has; "": none. */
+  court: string;
+  call: string;
+  /** The seat that is held, or will be held again after a break; "": none. */
+  seat: string;
+  /** The call that the page plays, or has played; "": none. */
+  mine: string;
+  /** The match has been official for long enough that its result was seen. */
+  seen: boolean;
+}
+
+/**
+ * What the page does next.
+ *
+ * - `stay`: nothing changes.
+ * - `hold`: the seat is that of the call: the page plays it.
+ * - `rest`: the match is over for this page: it gives the seat up and waits.
+ * - `join`: take the seat at this court.
+ * - `go`: go to another court.
+ */
+export type Move = "stay" | "hold" | "rest" | "join" | "go";
+
+/** Decide what the page does next. */
+export function nextMove({ there, court, call, seat, mine, seen }: Situation): Move {
+  const isCalled = there.state === "court";
+  if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
+  const isHere = isCalled && there.court === court;
+  if (isHere && seat === there.seat && call === there.call) return "hold";
+  // The result stays for a while, unless another match has taken its place.
+  if (seat && mine && call === mine && !seen) return "stay";
+  if (!isCalled) return seat ? "rest" : "stay";
+  return isHere ? (call === there.call ? "join" : "stay") : "go";
+}

@@ -1,0 +1,49 @@
+// Tests of where a team's page goes next (client/web/src/core/way.ts).
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { nextMove } from "../../../client/web/src/core/way.ts";
+
+const called = { state: "court", court: "north", seat: "left", call: "c1" };
+const waits = { state: "waits", court: "south", seat: "", call: "" };
+const fresh = { there: waits, court: "north", call: "", seat: "", mine: "", seen: false };
+const playing = { ...fresh, there: called, call: "c1", seat: "left", mine: "c1" };
+
+const TABLE = [
+  ["waits without a seat", fresh, "stay"],
+  ["is called to this court", { ...fresh, there: called, call: "c1" }, "join"],
+  ["is called, and the page does not see the match yet", { ...fresh, there: called }, "stay"],
+  ["is called to another court", { ...fresh, there: { ...called, court: "south" } }, "go"],
+  ["has joined", { ...playing, mine: "" }, "hold"],
+  ["plays", playing, "stay"],
+  ["has left, and comes back by a button", { ...playing, seat: "" }, "stay"],
+  ["has played, and the result is on the screen", { ...playing, there: waits }, "stay"],
+  ["has played, and the result was seen", { ...playing, there: waits, seen: true }, "rest"],
+  ["has played, and another match is open", { ...playing, there: waits, call: "c2" }, "rest"],
+  ["was reloaded after its match", { ...playing, there: waits, mine: "", call: "c2" }, "rest"],
+  [
+    "is called to another court while the result is on the screen",
+    { ...playing, there: { ...called, court: "south", call: "c2" } },
+    "stay",
+  ],
+  [
+    "is called to another court after that",
+    { ...playing, there: { ...called, court: "south", call: "c2" }, seen: true },
+    "go",
+  ],
+  [
+    "keeps its seat in the next match of the court",
+    { ...playing, there: { ...called, call: "c2" }, call: "c2" },
+    "hold",
+  ],
+  [
+    "has the other seat in the next match of the court",
+    { ...playing, there: { ...called, seat: "right", call: "c2" }, call: "c2" },
+    "join",
+  ],
+  ["is out", { ...fresh, there: { ...waits, state: "out" } }, "stay"],
+];
+
+for (const [name, situation, move] of TABLE) {
+  test(`a team that ${name}: ${move}`, () => assert.equal(nextMove(situation), move));
+}

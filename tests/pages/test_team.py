@@ -1,0 +1,110 @@
+"""A team's page in a contest with an office: it finds the team's courts by itself."""
+
+import json
+import re
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from contestant import Contestant, Sit
+from lacoc_process import run_lacoc, started
+from playwright.sync_api import expect
+from ports import free_port
+from show import violations
+
+from lacoc_server.contest.organiser import enter
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
+PERSON = "Ants"
+"""Plays its first match at the second court, so that its page must go there."""
+WAIT_MS = 90_000
+
+
+@contextmanager
+def contest(folder: Path) -> Iterator[dict[str, Any]]:
+    """Run a contest of one team of people and three bots on two courts; give its addresses."""
+    courts = "".join(
+        f"""
+[court.{name}]
+arena = "othello"
+listen = ["127.0.0.1:{free_port()}"]
+referee.token = "the whistle of {name}"
+"""
+        for name in ("north", "south")
+    )
+    file = folder / "contest.toml"
+    file.write_text(f"""
+[contest]
+name = "Spring Cup"
+least_rest_s = 3.0
+[office]
+token = "the token of the office"
+{courts}
+[stage.league]
+format = "round-robin"
+arena = "othello"
+settings.match.duration_s = 4.0
+settings.match.countdown_s = 0.5
+settings.match.start = "ready"
+""")
+    for team in TEAMS:
+        enter(file, team, None, "" if team == PERSON else "straight", "")
+    words = ("contest", "run", str(file), "--speed", "2", "--json")
+    with started(*words, stdout=subprocess.PIPE, text=True) as run:
+        try:
+            assert run.stdout is not None
+            opened = json.loads(run.stdout.readline())
+            invite = ("contest", "invite", "--contest", str(file), "--pages", opened["url"])
+            lines = json.loads(run_lacoc(*invite, "--json").stdout)
+            yield opened | lines[PERSON]
+            assert run.wait(WAIT_MS / 1000) == 0
+        finally:
+            run.kill()
+
+
+def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, console: Any) -> None:
+    """With the team's link a page shows what comes next, and plays at whichever court it is.
+
+    A wrong token opens nothing. Both are typed on the same page; the link has the right one.
+    """
+    console.expect("ERR_CONNECTION|WebSocket")  # the contest ends before the page is closed
+    with contest(tmp_path) as there:
+        link = there["link"]
+        player = sit(there["url"])
+        type_wrong_token(player, link)
+        player.page.goto(link)
+        # The token is kept for the tab, also over a reload; it does not stay in the address.
+        expect(player.page).to_have_url(re.compile("^[^#]*$"))
+        player.page.reload()
+        opponents = [play_a_match(player, first) for first in (True, False, False)]
+        assert sorted(opponents) == sorted(set(TEAMS) - {PERSON})
+        player.sees(".entrance[data-state=over]", "The contest is over: place")
+        assert violations(player.page) == []
+
+
+def type_wrong_token(player: Contestant, link: str) -> None:
+    """Type a token that no team has, and see that it is refused."""
+    player.page.goto(link.partition("&token=")[0])
+    player.page.fill("#team-token", "a token that no team has")
+    player.page.click("button[type=submit]")
+    player.sees("#team-token-error", "No team of this contest has this token.")
+
+
+def play_a_match(player: Contestant, first: bool) -> str:
+    """Play the match to which the page goes by itself; return the opponent's name."""
+    button = player.find("button.ready")
+    expect(button).to_be_visible(timeout=WAIT_MS)
+    player.stands("seated")
+    if first:
+        assert "court=south" in player.page.url
+    button.click()
+    player.phase(Phase.PLAYING)
+    teams = " ".join(player.find(".score-bug .team").all_inner_texts())
+    player.sees(".result h1")
+    return next(name for name in TEAMS if name != PERSON and name in teams)
