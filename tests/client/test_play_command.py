@@ -32,6 +32,7 @@ class Terminal:
             timeout=TIMEOUT_S,
             dimensions=(30, 110),
             encoding="utf-8",
+            codec_errors="replace",  # a kill can cut a character in two
             # A test runner may name another size, and that would count.
             env=environment(TERM="xterm-256color", LINES="30", COLUMNS="110"),
         )
