@@ -26,7 +26,7 @@ from msgspec.structs import replace
 from benchmarks import contest_played
 from benchmarks.forger import Forger
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.folder import file_hash
+from lacoc_server.contest.kept.folder import file_hash
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (

@@ -24,12 +24,13 @@ from distributed import LocalCluster
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import installed_robots, robot_folder
-from lacoc_server.contest import headless, organiser
-from lacoc_server.contest.cluster import Cluster
-from lacoc_server.contest.folder import ContestFolder
-from lacoc_server.contest.plans import note_plans
-from lacoc_server.contest.pool import Pool
-from lacoc_server.contest.store import FactStore
+from lacoc_server.contest import organiser
+from lacoc_server.contest.headless.cluster import Cluster
+from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.headless.pool import Pool
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import note_plans
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_shared.contest.tokens import new_token
 
 _DASK_MOST = 1.05
@@ -55,7 +56,7 @@ games = 2
 settings = {{ match = {{ duration_s = {seconds} }} }}
 """
 
-Engine = AbstractContextManager[headless.Engine]
+Engines = AbstractContextManager[Engine]
 
 
 def main() -> None:
@@ -121,13 +122,13 @@ def _contest(
     return file
 
 
-def _play(file: Path, engine: Engine) -> tuple[int, float, object]:
+def _play(file: Path, engine: Engines) -> tuple[int, float, object]:
     """Play a contest; return how many games were played, the time [s], and the tables."""
     where = ContestFolder(file)
     with FactStore(where.facts) as store, engine as opened:
         note_plans(store, where.plans)
         begun_s = time.monotonic()
-        played = headless.play(where, store, opened, "planner", lambda _: None)
+        played = play(where, store, opened, "planner", lambda _: None)
         took_s = round(time.monotonic() - begun_s, 2)
     return played, took_s, [view.tables for view in organiser.sheet(file).stages]
 

@@ -24,9 +24,9 @@ import psutil
 
 from benchmarks.processes import LACOC, read_line, started
 from lacoc_server.contest import organiser
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, Played, Recalled
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.contest.tokens import new_token
 
 _REST_S = 1.0

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Self
 
 from lacoc_server.contest import organiser
-from lacoc_server.contest.pool import Ended, Job, Pool, attempt
+from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
 from lacoc_shared.words import Phrase
 
 TOKENS = {seat: f"token-of-{seat}-{seat}" for seat in ("left", "right", "referee")}

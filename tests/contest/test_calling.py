@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-from lacoc_server.contest.calling import LOST_MS, Ended, Seen, calls, results, taken_back, wanted
-from lacoc_server.contest.fixture import fixture
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
@@ -19,7 +17,17 @@ from lacoc_server.contest.league.facts import (
     Settings,
     Withdrawn,
 )
+from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.live.calling import (
+    LOST_MS,
+    Ended,
+    Seen,
+    calls,
+    results,
+    taken_back,
+    wanted,
+)
 from lacoc_shared.words import render
 
 NOW_MS = 1_000_000

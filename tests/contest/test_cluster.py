@@ -9,8 +9,8 @@ from benchmarks.contest_played import enter
 from distributed import LocalCluster
 
 from lacoc_server.contest import organiser
-from lacoc_server.contest.cluster import Cluster
-from lacoc_server.contest.pool import Pool
+from lacoc_server.contest.headless.cluster import Cluster
+from lacoc_server.contest.headless.pool import Pool
 from lacoc_shared.mistakes import UserError
 
 

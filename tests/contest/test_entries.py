@@ -12,10 +12,10 @@ from benchmarks.contest_played import CONTEST, FINAL, IDLE, SWISS
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot
 from lacoc_server.contest import organiser
-from lacoc_server.contest.entries import EntryFolder, gather, weigh
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.entries import EntryFolder, gather, weigh
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Closed, Disqualified, FilesChanged, Withdrawn
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.mistakes import FileRefused, UserError
 
 ENTRY = gather(None, "planner", "hexapod")

@@ -13,13 +13,14 @@ from benchmarks import contest_played
 from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, Here
 from lacoc_process import Lacoc
 
-from lacoc_server.contest import headless, organiser
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest import organiser
+from lacoc_server.contest.headless.play import play
+from lacoc_server.contest.headless.pool import Pool
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
-from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.publish import tables
 from lacoc_server.contest.sheet import ContestSheet
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.summary import Summary, summary
 
@@ -114,7 +115,7 @@ def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> No
 
     with FactStore(where.facts) as store, Pool(2) as pool:
         organiser.prepare(where, store)
-        headless.play(where, store, pool, "planner", changed)
+        play(where, store, pool, "planner", changed)
     assert kills < 3
     assert bytes_of(organiser.sheet(file)) == bytes_of(organiser.sheet(played / "contest.toml"))
 
@@ -149,7 +150,7 @@ def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> N
 
     with FactStore(where.facts) as store:
         organiser.prepare(where, store)
-        headless.play(where, store, Here(), "planner", changed)
+        play(where, store, Here(), "planner", changed)
     view = organiser.sheet(file).stages[0]
     assert "Eve" not in view.stage.entries
     of_bob = [match for match in view.matches if "Bob" in match.teams]
@@ -185,7 +186,7 @@ def test_void_games_are_played_again_and_at_last_drawn(
         found = summary(path)
         return found and msgspec.structs.replace(found, winner="void")
 
-    monkeypatch.setattr(headless, "summary", void)
+    monkeypatch.setattr("lacoc_server.contest.headless.play.summary", void)
     assert contest_played.play(file) == 4
     with FactStore(ContestFolder(file).facts) as store:
         played = [fact for fact in store.facts() if isinstance(fact, Played)]

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 from benchmarks.contest_played import CONTEST
 
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import note_plans
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Closed, Drawn, Entered, Planned, new
-from lacoc_server.contest.plans import note_plans
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.mistakes import UserError
 
 GROUPS = '[stage.groups]\nformat = "round-robin"\n'

@@ -12,11 +12,11 @@ from benchmarks import contest_played
 from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, TOKENS
 
 from lacoc_server.contest import organiser
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.facts import Closed, new
 from lacoc_server.contest.publish import GAMES, STANDINGS
-from lacoc_server.contest.store import FactStore
-from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.mistakes import UserError
 
 Run = Callable[..., tuple[int, str, str]]

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Closed, Entered, Withdrawn, new
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.mistakes import UserError
 
 APPEND = """
 import sys
 from pathlib import Path
 from lacoc_server.contest.league.facts import Entered, new
-from lacoc_server.contest.store import FactStore
+from lacoc_server.contest.kept.store import FactStore
 
 name, count = sys.argv[2], int(sys.argv[3])
 with FactStore(Path(sys.argv[1])) as store:

@@ -13,7 +13,8 @@ from msgspec.structs import replace
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import (
@@ -30,7 +31,6 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.publish import SHEET, tables
-from lacoc_server.contest.store import FactStore
 from lacoc_server.contest.verify.check import check
 from lacoc_server.contest.verify.games import check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, check_history, decisions, files_of

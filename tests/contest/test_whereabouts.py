@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 from chance_event import GAME_MS, LEAST_REST_MS, Event
 
-from lacoc_server.contest.calling import Seen
 from lacoc_server.contest.league.facts import (
     Called,
     Disqualified,
@@ -16,7 +15,8 @@ from lacoc_server.contest.league.facts import (
     Settings,
     Withdrawn,
 )
-from lacoc_server.contest.whereabouts import Courts, Pace, game_ms, whereabouts
+from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import faults, render
 

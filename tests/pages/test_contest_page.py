@@ -15,10 +15,10 @@ from venue import Venue
 
 from lacoc_robots.library import robot_folder
 from lacoc_server.contest import organiser
+from lacoc_server.contest.headless.pool import Pool
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import Called, Entered, Played, decode
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.pool import Pool
 from lacoc_server.contest.sheet import ContestSheet, encode, sheet
 
 pytestmark = pytest.mark.slow

@@ -16,7 +16,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_client.bot_player import BotPlayer
 from lacoc_client.controller import Controller
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.contest.court_link import CourtLink, CourtResult, NoAnswer
+from lacoc_server.contest.live.court_link import CourtLink, CourtResult, NoAnswer
 from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import AssignedSeat

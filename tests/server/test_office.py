@@ -22,7 +22,7 @@ from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.team_way import where
-from lacoc_server.contest.court_link import CourtLink, NoAnswer
+from lacoc_server.contest.live.court_link import CourtLink, NoAnswer
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start

@@ -13,9 +13,9 @@ from rich.table import Table
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.stand_test import try_standing
+from lacoc_server.contest.headless.pool import Job, interrupted_by_signals, play_all
 from lacoc_server.contest.league.formats.round_robin import circle_round
 from lacoc_server.contest.league.standings import Counted, Standing, standings
-from lacoc_server.contest.pool import Job, interrupted_by_signals, play_all
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player, seated
 from lacoc_shared.command import options, screen

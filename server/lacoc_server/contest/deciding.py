@@ -5,7 +5,8 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Changes, Contest, changes, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
@@ -18,7 +19,6 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 

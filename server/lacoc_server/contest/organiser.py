@@ -6,10 +6,15 @@ from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
 
-from lacoc_server.contest import headless, publish
+from lacoc_server.contest import publish
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.entries import gather, weigh
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.kept.entries import gather, weigh
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import note_plans
+from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
@@ -21,11 +26,7 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.plans import note_plans
 from lacoc_server.contest.sheet import ContestSheet
-from lacoc_server.contest.sheet_writer import Progress, SheetWriter
-from lacoc_server.contest.store import FactStore
-from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -132,7 +133,7 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
 
 
 def play_headless(
-    file: Path, steer: str, engine: AbstractContextManager[headless.Engine], progress: Progress
+    file: Path, steer: str, engine: AbstractContextManager[Engine], progress: Progress
 ) -> tuple[ContestSheet, int]:
     """Play a contest to its end without a network.
 
@@ -153,7 +154,7 @@ def play_headless(
         prepare(where, store)
         writer = SheetWriter(where, progress)
         with engine as opened:
-            played = headless.play(where, store, opened, steer, writer)
+            played = play(where, store, opened, steer, writer)
         return writer.write(), played
 
 

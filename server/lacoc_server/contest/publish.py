@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.entries import EntryFolder
-from lacoc_server.contest.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.entries import EntryFolder
+from lacoc_server.contest.kept.folder import ContestFolder, file_hash
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Played

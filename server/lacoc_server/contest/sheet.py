@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from lacoc_server.contest.fixture import match_fixture
 from lacoc_server.contest.league.contest import Contest, StageView, Unused, compute
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned
+from lacoc_server.contest.league.fixture import match_fixture
 from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.rating import Rated, Rating, ratings
 from lacoc_server.contest.league.schedule import playable

@@ -10,8 +10,8 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.words import render, say
 
 if TYPE_CHECKING:
+    from lacoc_server.contest.kept.sheet_writer import Progress
     from lacoc_server.contest.sheet import ContestSheet
-    from lacoc_server.contest.sheet_writer import Progress
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
 
@@ -110,7 +110,7 @@ def run(
     the files of both teams, the rules and the software, and is never played twice. If one entry
     changes, a new contest with the same folder of records plays only the games of that team.
     """
-    from lacoc_server.contest.pool import Pool, interrupted_by_signals
+    from lacoc_server.contest.headless.pool import Pool, interrupted_by_signals
 
     with interrupted_by_signals(), screen.progress() as progress:
         task = progress.add_task(render(say("simulate.matches")), total=None)
@@ -120,7 +120,7 @@ def run(
 
         if headless:
             from lacoc_server.contest import organiser
-            from lacoc_server.contest.cluster import Cluster
+            from lacoc_server.contest.headless.cluster import Cluster
 
             engine = Pool(jobs) if cluster is None else Cluster(cluster)
             sheet, played = organiser.play_headless(file, steer, engine, changed)
@@ -144,7 +144,7 @@ def _live(
     json: bool,
 ) -> "ContestSheet":
     """Run the contest at its courts until it is over, or until Ctrl-C."""
-    from lacoc_server.contest.live import play_live
+    from lacoc_server.contest.live.run import play_live
 
     def opened(url: str, courts: dict[str, str]) -> None:
         if json:

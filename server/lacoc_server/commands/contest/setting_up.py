@@ -9,7 +9,7 @@ from rich.text import Text
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.limits import Limits
-from lacoc_server.contest.plans import plans
+from lacoc_server.contest.kept.plans import plans
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import entrances

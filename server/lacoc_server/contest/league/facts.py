@@ -155,7 +155,7 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     record: str = ""
     """File name of the court's record."""
     record_hash: str = ""
-    """Hash of that file (`lacoc_server.contest.folder.file_hash`)."""
+    """Hash of that file (`lacoc_server.contest.kept.folder.file_hash`)."""
 
 
 class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):

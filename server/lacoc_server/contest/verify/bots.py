@@ -5,8 +5,8 @@ This needs no physics, so it is exact on any machine.
 
 from lacoc_arenas import brains
 from lacoc_arenas.arena import Arena
-from lacoc_server.contest.entries import Entry
-from lacoc_server.contest.pool import COURT
+from lacoc_server.contest.headless.pool import COURT
+from lacoc_server.contest.kept.entries import Entry
 from lacoc_shared import __version__
 from lacoc_shared.codec import decode
 from lacoc_shared.inputs import KeySeat

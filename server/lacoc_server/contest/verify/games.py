@@ -7,9 +7,9 @@ from typing import Any
 import msgspec
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.contest.entries import Entry, EntryFolder
-from lacoc_server.contest.folder import file_hash
-from lacoc_server.contest.headless import late_ticks, outcome
+from lacoc_server.contest.headless.play import late_ticks, outcome
+from lacoc_server.contest.kept.entries import Entry, EntryFolder
+from lacoc_server.contest.kept.folder import file_hash
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Planned, Played
 from lacoc_server.contest.league.formats.installed import FORMATS

@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.entries import EntryFolder
+from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import AnyFact, Played

@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from secrets import token_bytes
 
-from lacoc_server.contest.calling import Seen
-from lacoc_server.contest.court_link import Asked, CourtLink
+from lacoc_server.contest.kept.plans import game
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Planned
-from lacoc_server.contest.plans import game
-from lacoc_server.contest.whereabouts import Courts, Pace, game_ms, whereabouts
+from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared import seal
 from lacoc_shared.messages.office import Whereabouts
 

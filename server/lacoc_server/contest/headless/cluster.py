@@ -3,7 +3,7 @@
 from concurrent.futures import Future
 from typing import Self
 
-from lacoc_server.contest.pool import Ended, Job, attempt
+from lacoc_server.contest.headless.pool import Ended, Job, attempt
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say

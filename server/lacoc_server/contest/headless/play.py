@@ -18,15 +18,15 @@ from typing import NamedTuple, Protocol
 
 import msgspec
 
-from lacoc_server.contest.entries import Entry
-from lacoc_server.contest.folder import ContestFolder, file_hash
+from lacoc_server.contest.headless.pool import Ended, Job, ended, first_done
+from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest, StageView, compute
 from lacoc_server.contest.league.facts import AnyFact, Outcome, Played, Replaced, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import due, playable
-from lacoc_server.contest.pool import Ended, Job, ended, first_done
-from lacoc_server.contest.store import FactStore
 from lacoc_server.simulate import Seated
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_server.world import arithmetic

@@ -4,9 +4,9 @@ import hashlib
 from pathlib import Path
 
 from lacoc_arenas.arena import Arena
-from lacoc_server.contest.entries import EntryFolder
+from lacoc_server.contest.kept.entries import EntryFolder
+from lacoc_server.contest.kept.plans import game, plans
 from lacoc_server.contest.league.facts import Planned
-from lacoc_server.contest.plans import game, plans
 from lacoc_shared.contest import file as contests
 
 

@@ -8,11 +8,11 @@ import msgspec
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
-from lacoc_server.contest.store import FactStore
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say

@@ -6,15 +6,15 @@ from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from lacoc_server.contest import venue
-from lacoc_server.contest.court_link import CourtLink
-from lacoc_server.contest.folder import ContestFolder
-from lacoc_server.contest.office import Office
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.kept.tokens import TeamTokens
+from lacoc_server.contest.live import venue
+from lacoc_server.contest.live.court_link import CourtLink
+from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.organiser import prepare
 from lacoc_server.contest.sheet import ContestSheet
-from lacoc_server.contest.sheet_writer import Progress, SheetWriter
-from lacoc_server.contest.store import FactStore
-from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import say

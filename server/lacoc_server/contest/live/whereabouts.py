@@ -9,12 +9,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 from typing import NamedTuple
 
-from lacoc_server.contest.calling import Seen
-from lacoc_server.contest.fixture import fixture
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.facts import AnyFact, Called, Played
+from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import playable
+from lacoc_server.contest.live.calling import Seen
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import Phrase, say
 

@@ -8,9 +8,9 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import Contest
-from lacoc_server.contest.tokens import TeamTokens
 from lacoc_shared.command.child import apart, command_line, kept_child
 from lacoc_shared.contest.file import Court
 from lacoc_shared.mistakes import UserError

@@ -8,18 +8,18 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 
-from lacoc_server.contest.calling import Ended, Seen, calls, results, taken_back, wanted
-from lacoc_server.contest.court_link import Asked, CourtLink
-from lacoc_server.contest.entries import EntryFolder
-from lacoc_server.contest.fixture import fixture
-from lacoc_server.contest.headless import outcome
+from lacoc_server.contest.headless.play import outcome
+from lacoc_server.contest.kept.entries import EntryFolder
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.kept.tokens import lasting_hash
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
+from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due
-from lacoc_server.contest.store import FactStore
-from lacoc_server.contest.teller import Teller
-from lacoc_server.contest.tokens import lasting_hash
+from lacoc_server.contest.live.calling import Ended, Seen, calls, results, taken_back, wanted
+from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_server.contest.live.teller import Teller
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.seat import Phase

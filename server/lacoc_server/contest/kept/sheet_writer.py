@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.publish import write
 from lacoc_server.contest.sheet import ContestSheet

@@ -1,0 +1,1 @@
+"""A contest without a network: bots play its games in many processes."""

@@ -1,0 +1,1 @@
+"""What a contest keeps on the disk: its file, facts, frozen entries, tokens and sheet."""
