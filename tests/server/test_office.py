@@ -126,7 +126,7 @@ def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
     *_, verdict = verify(played)
     assert isinstance(verdict, Verdict)
     assert verdict.kind is Kind.SAME
-    assert waiting.link.call == other
+    waiting.until(lambda: waiting.link.call == other)
 
 
 def test_only_the_tokens_of_the_match_open_its_seats(waiting: Office) -> None:
