@@ -2,7 +2,6 @@
 
 import os
 import signal
-from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -35,10 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Select the tests of this run, and put them into an order in which they take least time.
-
-    The soak tests are first, because they take longest. Files with tests of pages lie evenly among
-    the others: such a test often waits, and together they would wait for each other.
+    """Select the tests of this run, and put the soak tests first, because they take longest.
 
     With --long, run tests marked long and all property tests; without it, tests not marked long.
     """
@@ -48,9 +44,4 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         again = config.getoption("long") and item.get_closest_marker("hypothesis") is not None
         (wanted if long is config.getoption("long") or again else others).append(item)
     config.hook.pytest_deselected(items=others)
-    places: dict[Path, tuple[bool, float]] = {}
-    for kind in (True, False):
-        files = [*dict.fromkeys(i.path for i in wanted if ("pages" in i.path.parts) is kind)]
-        for number, file in enumerate(files):
-            places[file] = ("soak" not in file.parts, (number + 0.5) / len(files))
-    items[:] = sorted(wanted, key=lambda item: places[item.path])
+    items[:] = sorted(wanted, key=lambda item: "soak" not in item.path.parts)
