@@ -177,7 +177,10 @@ def _between(
         stays = [team for team in teams if team not in missing]
         return _decided(pairing, teams, games, stays[0] if stays else NOBODY, "walkover")
     number = len(games) + 1
-    seats = teams if swapped == (number % 2 == 0) else (teams[1], teams[0])
+    # A correction may change who would have begun left, so the games that count decide first.
+    more_left = sum(1 if game.teams == teams else -1 for game in counted.values())
+    first_right = swapped if more_left == 0 else more_left > 0
+    seats = (teams[1], teams[0]) if first_right else teams
     return Match(
         pairing=pairing,
         teams=teams,
