@@ -10,6 +10,10 @@ ARGS ?=
 WORKERS ?= 5
 PYTEST := $(RUN) pytest --numprocesses $(WORKERS) --dist worksteal
 
+# Our code is compiled once: else each of the tests' many processes compiles it again.
+unexport PYTHONDONTWRITEBYTECODE
+COMPILE := $(RUN) compileall -q shared robots arenas server client
+
 # The C library computes as on an older processor, so sines and cosines have other last bits.
 OLDER_PROCESSOR := glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-FMA_Usable,-FMA4_Usable,-AVX2_Usable
 PHYSICS_TESTS := $(addprefix tests/server/test_,$(addsuffix .py,world replay recovery simulate damaged_record left_behind))
@@ -29,11 +33,13 @@ demo: .venv/.server $(PAGES) ## See a whole match: a court, two bots and a refer
 	$(BIN)/lacoc demo $(ARGS)
 
 test: .venv/.test .venv/.web $(PAGES) ## Run the tests.
+	$(COMPILE)
 	$(PYTEST) $(ARGS)
 
 test-all: test test-long ## Run all tests.
 
 test-long: .venv/.test .venv/.web $(PAGES) ## Run the long tests: soak, fuzzing, kills, other arithmetic, many examples.
+	$(COMPILE)
 	$(PYTEST) --long $(ARGS)
 	GLIBC_TUNABLES=$(OLDER_PROCESSOR) $(PYTEST) $(PHYSICS_TESTS) $(ARGS)
 

@@ -241,7 +241,7 @@ def _score(copy: _Copy) -> None:
     result = copy.record.result
     if result is not None and last == len(copy.record.frames):
         scores = tuple(score + (at == seat) for at, score in enumerate(result.scores))
-        copy.record.result = structs.replace(result, scores=scores)
+        copy.record.results = [structs.replace(result, scores=scores)]
 
 
 def _result(copy: _Copy) -> None:
@@ -257,7 +257,7 @@ def _result(copy: _Copy) -> None:
         {"teams": ("Others", *result.teams[1:])},
         {"digest": "00" * 8},
     )
-    copy.record.result = structs.replace(result, **copy.chance.choice(changes))
+    copy.record.results = [structs.replace(result, **copy.chance.choice(changes))]
 
 
 def _event_changed(copy: _Copy) -> None:

@@ -123,14 +123,14 @@ def _drawing(browser: Browser, address: str, arena: str) -> dict[str, float]:
     page = browser.new_page(viewport=SIZE)
     stand = Stand(page, address)
     stand.open(f"{arena}.bin", frames=_STEADY, q="low", beat=60)
-    frames, cpu_s, begin_s = stand.view("drawnFrames"), _cpu_s(), time.perf_counter()
+    frames, cpu_s, begin_s = stand.view("drawnFrames"), processor_s(), time.perf_counter()
     page.wait_for_timeout(1000 * MEASURE_S)
     drawn, passed_s = stand.view("drawnFrames") - frames, time.perf_counter() - begin_s
     figures = {
         "fps": drawn / passed_s,
         "p95_ms": stand.view("frameMsP95"),
         "pixel_ratio": stand.view("ratio"),
-        "cpu_ms": 1000 * (_cpu_s() - cpu_s) / drawn,
+        "cpu_ms": 1000 * (processor_s() - cpu_s) / drawn,
     }
     page.close()
     return figures
@@ -171,7 +171,7 @@ def _loading(browser: Browser) -> dict[str, int]:
     return {"js_gzip_bytes": sizes["js"], "css_gzip_bytes": sizes["css"]}
 
 
-def _cpu_s() -> float:
+def processor_s() -> float:
     """Return the processor time of all processes below this one, which are the browser's [s]."""
     return sum(_children_s(os.getpid()))
 

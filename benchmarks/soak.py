@@ -103,8 +103,8 @@ class Figures:
     def held(self) -> bool:
         """Return whether all records verify, and no process grew or kept what it opened.
 
-        The visitors' processes may grow: each makes thousands of visits, which would otherwise be
-        programs that end.
+        The visitors' processes may grow: each makes thousands of visits. Real visits are short
+        programs, one for each.
         """
         return self.same == self.matches and all(
             not self.left_over(process)

@@ -28,8 +28,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Set the number of examples for each property: 40, or 400 with --long."""
+    """Set the number of examples for each property, 40 or 400 with --long, and the environment."""
     settings.load_profile("thorough" if config.getoption("long") else "quick")
+    if "PYTEST_XDIST_WORKER" in os.environ or not config.getoption("numprocesses", None):
+        # A process whose files may not grow would write half of its bytecode, which breaks others.
+        os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 
 
 @pytest.hookimpl(trylast=True)

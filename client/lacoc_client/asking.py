@@ -172,7 +172,7 @@ def understood() -> Iterator[None]:
 
 
 def no_answer(session: Session, court: str) -> Phrase:
-    """Say why a court does not answer, and which courts there are."""
+    """Say why a court does not answer; if there is no such court, also which ones there are."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:

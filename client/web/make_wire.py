@@ -3,8 +3,9 @@
     python client/web/make_wire.py
 
 src/core/wire.gen.ts has the court's messages as types, from the Python structs,
-src/core/contest/sheet.gen.ts the sheet of a contest, and src/i18n/words.gen.ts the table of
-everything that is said, without what only commands say.
+src/core/desk.gen.ts those of an office's desk, src/core/contest/sheet.gen.ts the sheet of a
+contest, and src/i18n/words.gen.ts the table of everything that is said, without what only commands
+say.
 A test says when a file is behind.
 """
 
@@ -23,9 +24,11 @@ from lacoc_client.classroom import cards, tournament
 from lacoc_client.design import folder, requests
 from lacoc_client.design.learning import diary, draft, learner, rules
 from lacoc_client.design.table import FileRow, FileTable
+from lacoc_client.gateway import scores
 from lacoc_client.gateway.page import TRY_LATER
 from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
 from lacoc_client.gateway.wire import Kind
+from lacoc_client.office import links
 from lacoc_client.phases import facts
 from lacoc_server.contest import sheet
 from lacoc_server.contest.league import contest, draws, matches, pairing, rating, standings
@@ -39,7 +42,7 @@ from lacoc_shared.codec import message_hash
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
-from lacoc_shared.messages import office
+from lacoc_shared.messages import desk, office
 from lacoc_shared.record import schema
 from lacoc_shared.seat import (
     BEAT_S,
@@ -78,6 +81,7 @@ STRUCTS = (
     office.AssignedSeat,
     office.Assigned,
     office.Whereabouts,
+    schema.Origin,
     schema.Setup,
     schema.Header,
     schema.Result,
@@ -130,6 +134,23 @@ CONTEST_STRUCTS = (
     rating.Rating,
     sheet.Coming,
     sheet.ContestSheet,
+)
+DESK_STRUCTS = (
+    desk.Files,
+    *typing.get_args(desk.AnyRequest),
+    desk.EventInfo,
+    desk.OwnEntry,
+    desk.TeamRow,
+    desk.CourtRow,
+    desk.Moved,
+    desk.Slot,
+    desk.OfficeView,
+    desk.Overviewed,
+    desk.Effect,
+    desk.Said,
+    links.TeamLink,
+    links.TeamLinks,
+    scores.CourtScore,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
 CONSTANTS: dict[str, float | str] = {
@@ -192,6 +213,18 @@ def sheet_types() -> str:
     """Return the types of the sheet of a contest."""
     parts = [*_head("../"), _constants({"VERSION": sheet.VERSION})]
     return "\n\n".join([*parts, *map(_interface, CONTEST_STRUCTS)]) + "\n"
+
+
+def desk_types() -> str:
+    """Return the types of what pages and the desk of an office say to each other."""
+    names = " | ".join(kind.__name__ for kind in typing.get_args(desk.AnyRequest))
+    parts = [
+        *_head("./"),
+        'import type { Mistake, SentFile } from "./wire.gen";',
+        *map(_interface, DESK_STRUCTS),
+        f"export type AnyRequest = {names};",
+    ]
+    return "\n\n".join(parts) + "\n"
 
 
 def _head(core: str) -> list[str]:
@@ -280,7 +313,7 @@ def _need_a_reason() -> str:
 def _type(hint: Any) -> str:
     if hint in _SIMPLE:
         return _SIMPLE[hint]
-    if hint in STRUCTS or hint in CONTEST_STRUCTS or hint in _IMPORTS:
+    if hint in (*STRUCTS, *CONTEST_STRUCTS, *DESK_STRUCTS) or hint in _IMPORTS:
         return str(hint.__name__)
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin is tuple:
@@ -315,6 +348,7 @@ def words() -> str:
 
 FILES = {
     _SOURCE / "core" / "wire.gen.ts": wire_types,
+    _SOURCE / "core" / "desk.gen.ts": desk_types,
     _SOURCE / "core" / "contest" / "sheet.gen.ts": sheet_types,
     _SOURCE / "i18n" / "words.gen.ts": words,
 }

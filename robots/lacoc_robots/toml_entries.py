@@ -180,7 +180,7 @@ class Entries:
         self._taken.add(name)
         value = self._table.get(name, default)
         if value is None:
-            self.note(name, say("gait.nothing"), expected)
+            self.note(name, say("gait.no-entry"), expected)
         return value
 
     def _check(

@@ -8,6 +8,8 @@ from lacoc_shared.words import say
 
 EVERY_COURT = "lacoc/*/live/court"
 """Key expression for the announcements of all courts that can be reached (Zenoh's liveliness)."""
+DESK = "lacoc/office/desk"
+"""Key expression on which an office's desk takes requests of pages, in a session of its own."""
 COMMAND_MAX_BYTES = 1024
 """Largest command, ready, leave or question where a team plays that is read."""
 ENTER = "enter"

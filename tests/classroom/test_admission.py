@@ -6,12 +6,11 @@ from hypothesis import strategies as st
 
 from lacoc_client.classroom.admission import (
     _UNSEEN,
-    Guesses,
-    new_code,
-    read_code,
     read_name,
     same_name,
 )
+from lacoc_client.gateway.guesses import Guesses
+from lacoc_shared.contest.codes import new_code, read_code
 from lacoc_shared.mistakes import UserError
 
 

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.terminal.key_script import KeyScript, PipeKeys
+from lacoc_client.terminal.pipe_keys import PipeKeys
+from lacoc_shared.gait.key_script import KeyScript
 from lacoc_shared.words import render
 
 BEAT_S = 0.02

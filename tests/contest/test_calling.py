@@ -1,24 +1,12 @@
 """Tests of the pure part of an office: which facts follow from what its courts show."""
 
-import itertools
 from typing import Any
 
 import pytest
+from cup import NOW_MS, Cup
 
-from lacoc_server.contest.league.contest import Contest, compute
-from lacoc_server.contest.league.facts import (
-    AnyFact,
-    Called,
-    Drawn,
-    Entered,
-    Planned,
-    Played,
-    Recalled,
-    Settings,
-    Withdrawn,
-)
+from lacoc_server.contest.league.facts import Called, Moved, Played, Recalled, Withdrawn
 from lacoc_server.contest.league.fixture import fixture
-from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.live.calling import (
     LOST_MS,
     Ended,
@@ -30,128 +18,110 @@ from lacoc_server.contest.live.calling import (
 )
 from lacoc_shared.words import render
 
-NOW_MS = 1_000_000
-TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
 
-
-class Facts:
-    """The facts of a contest of four teams, which a test goes on with."""
-
-    def __init__(self, how: str = "round-robin", **settings: Any) -> None:
-        self._numbers = itertools.count(1)
-        self.facts: list[AnyFact] = []
-        for team in TEAMS:
-            self.add(Entered, team=team)
-        self.add(Planned, stage="cup", format=how, settings=Settings(**settings))
-        self.add(Drawn, stage="cup", entries=TEAMS)
-
-    def add(self, kind: type[AnyFact], **values: Any) -> AnyFact:
-        number = next(self._numbers)
-        fact = kind(id=f"f{number}", number=number, at_ms=NOW_MS, **values)
-        self.facts.append(fact)
-        return fact
-
-    def call(self, court: str = "north") -> Called:
-        """Append the call of the next game to a court."""
-        (called,) = calls(self.contest, {court: Seen(NOW_MS)}, NOW_MS, 0)
-        fact = self.add(
-            Called, pairing=called.pairing, game=called.game, teams=called.teams, court=court
-        )
-        assert isinstance(fact, Called)
-        return fact
-
-    @property
-    def contest(self) -> Contest:
-        return compute(self.facts, FORMATS)
+def called(cup: Cup, court: str = "north") -> Called:
+    """Call the next game to a court."""
+    (call,) = calls(cup.contest, {court: Seen(NOW_MS)}, NOW_MS, 0)
+    return cup.append(call)
 
 
 def test_free_courts_that_are_there_get_games() -> None:
-    """Each court that was heard lately and has no game gets one; no team gets two."""
-    facts = Facts()
+    """Each court that was heard lately gets a game, no team gets two; a held game is left out."""
+    cup = Cup()
     seen = {"north": Seen(NOW_MS), "gone": Seen(NOW_MS - LOST_MS), "south": Seen(NOW_MS)}
-    given = calls(facts.contest, seen, NOW_MS, 0)
+    given = calls(cup.contest, seen, NOW_MS, 0)
     assert [one.court for one in given] == ["north", "south"]
     assert len({team for one in given for team in one.teams}) == 4
     first = (given[0].pairing, given[0].game)
-    others = calls(facts.contest, seen, NOW_MS, 0, held=[first])
+    others = calls(cup.contest, seen, NOW_MS, 0, held=[first])
     assert first not in [(one.pairing, one.game) for one in others]
     assert others, "a game that is held back keeps no court from the others"
 
 
+def test_a_game_that_was_moved_goes_back_unless_it_has_begun() -> None:
+    """It is called again where it was moved; a game that is played stays."""
+    cup = Cup()
+    call = called(cup)
+    seen = {"north": Seen(NOW_MS, call.id), "south": Seen(NOW_MS)}
+    cup.add(Moved, pairing=call.pairing, court="south")
+    begun = {**seen, "north": Seen(NOW_MS, call.id, True)}
+    assert not list(taken_back(cup.contest, begun, NOW_MS))
+    (back,) = taken_back(cup.contest, seen, NOW_MS)
+    assert isinstance(back, Recalled)
+    cup.add(Recalled, pairing=back.pairing, game=back.game, reason=back.reason)
+    again = {one.court: one.pairing for one in calls(cup.contest, seen, NOW_MS, 0)}
+    assert again["south"] == call.pairing
+    assert again["north"] != call.pairing, "the other court does not wait"
+    called(cup, "south")
+    assert not list(taken_back(cup.contest, seen, NOW_MS)), "it is where it was moved"
+    cup.add(Moved, pairing=call.pairing, not_before_ms=NOW_MS + 1)
+    assert len(list(taken_back(cup.contest, seen, NOW_MS))) == 1
+
+
 def test_a_call_is_sent_until_the_court_has_it() -> None:
-    """A call is wanted as long as its court shows another call or none."""
-    facts = Facts()
-    call = facts.call()
-    assert list(wanted(facts.contest, {})) == [call]
-    assert list(wanted(facts.contest, {"north": Seen(NOW_MS, "f1")})) == [call]
-    assert list(wanted(facts.contest, {"north": Seen(NOW_MS, call.id)})) == []
+    """A call is sent as long as its court shows another call or none."""
+    cup = Cup()
+    call = called(cup)
+    assert list(wanted(cup.contest, {})) == [call]
+    assert list(wanted(cup.contest, {"north": Seen(NOW_MS, "f1")})) == [call]
+    assert list(wanted(cup.contest, {"north": Seen(NOW_MS, call.id)})) == []
 
 
 def test_the_result_of_a_call_is_taken_once() -> None:
-    """A result counts if it is that of the call; afterwards the game is not running any more."""
-    facts = Facts()
-    call = facts.call()
+    """A result counts once, if its court shows the call and the end of the match."""
+    cup = Cup()
+    call = called(cup)
     end = Ended((20, 16), "left", "x.mcap")
-    assert not list(results(facts.contest, {"north": Seen(NOW_MS, "f1", True, end)}))
-    assert not list(results(facts.contest, {"north": Seen(NOW_MS, call.id, True)}))
-    (played,) = results(facts.contest, {"north": Seen(NOW_MS, call.id, True, end)})
+    assert not list(results(cup.contest, {"north": Seen(NOW_MS, "f1", True, end)}))
+    assert not list(results(cup.contest, {"north": Seen(NOW_MS, call.id, True)}))
+    (played,) = results(cup.contest, {"north": Seen(NOW_MS, call.id, True, end)})
     assert isinstance(played, Played)
     assert (played.teams, played.scores, played.record) == (call.teams, (20, 16), "x.mcap")
-    facts.add(
-        Played,
-        pairing=call.pairing,
-        game=call.game,
-        teams=call.teams,
-        scores=(20, 16),
-        outcome="left",
-    )
-    assert not list(results(facts.contest, {"north": Seen(NOW_MS, call.id, True, end)}))
+    cup.append(played)
+    assert not list(results(cup.contest, {"north": Seen(NOW_MS, call.id, True, end)}))
 
 
 @pytest.mark.parametrize(
     ("seen", "is_lost"),
     [
         (None, True),
-        (Seen(NOW_MS), False),
-        (Seen(NOW_MS - LOST_MS - 1), True),
-        (Seen(NOW_MS - LOST_MS - 1, "call"), True),
-        (Seen(NOW_MS - LOST_MS - 1, "call", begun=True), False),
+        (Seen(NOW_MS + 1), False),
+        (Seen(NOW_MS), True),
+        (Seen(NOW_MS, "call"), True),
+        (Seen(NOW_MS, "call", begun=True), False),
     ],
 )
-def test_a_court_that_is_gone_loses_what_it_had_not_begun(seen: Seen | None, is_lost: bool) -> None:
-    """A game is taken back from a court that was not heard for long, unless it had begun."""
-    facts = Facts()
-    call = facts.call()
-    courts = {}
-    if seen is not None:
-        courts["north"] = seen._replace(call=call.id if seen.call else "")
-    later_ms = NOW_MS + (LOST_MS + 1 if seen is None else 1)
-    facts.facts[-1] = call
-    early = NOW_MS - LOST_MS - 1
-    facts.facts[-1] = Called(
-        id=call.id,
-        number=call.number,
-        at_ms=NOW_MS if seen is None else early,
-        pairing=call.pairing,
-        game=call.game,
-        teams=call.teams,
-        court="north",
-    )
-    back = list(taken_back(facts.contest, courts, later_ms))
-    assert bool(back) == is_lost
+def test_a_court_that_is_gone_loses_a_game_that_has_not_begun(
+    seen: Seen | None, is_lost: bool
+) -> None:
+    """A game is taken back if its court was silent for `LOST_MS` and the game has not begun."""
+    cup = Cup()
+    call = called(cup)
+    north = {} if seen is None else {"north": seen._replace(call=call.id if seen.call else "")}
+    assert list(taken_back(cup.contest, north, NOW_MS + LOST_MS)) == []
+    assert bool(list(taken_back(cup.contest, north, NOW_MS + LOST_MS + 1))) == is_lost
 
 
 def test_a_game_that_is_not_needed_comes_back() -> None:
     """When a team leaves, its game is taken back, unless it has begun."""
-    facts = Facts()
-    call = facts.call()
+    cup = Cup()
+    call = called(cup)
     seen = {"north": Seen(NOW_MS, call.id)}
-    assert not list(taken_back(facts.contest, seen, NOW_MS))
-    facts.add(Withdrawn, team=call.teams[0])
-    (back,) = taken_back(facts.contest, seen, NOW_MS)
+    assert not list(taken_back(cup.contest, seen, NOW_MS))
+    cup.add(Withdrawn, team=call.teams[0])
+    (back,) = taken_back(cup.contest, seen, NOW_MS)
     assert isinstance(back, Recalled)
     begun = {"north": Seen(NOW_MS, call.id, begun=True)}
-    assert not list(taken_back(facts.contest, begun, NOW_MS))
+    assert not list(taken_back(cup.contest, begun, NOW_MS))
+
+
+def test_a_group_called_f_plays_no_final() -> None:
+    """Groups have letters as the parts of a bracket have."""
+    contest = Cup(teams=34, groups=17).contest
+    (view,) = contest.stages
+    said = {fixture(contest, view, match, 1).code for match in view.matches}
+    assert {match.pairing.section for match in view.matches} >= {"f", "l", "p"}
+    assert said == {"fixture.round"}
 
 
 @pytest.mark.parametrize(
@@ -185,7 +155,7 @@ def test_a_game_that_is_not_needed_comes_back() -> None:
 )
 def test_what_is_played_is_said(how: str, settings: dict[str, Any], said: list[str]) -> None:
     """Each match has its usual name, in groups and in a bracket."""
-    contest = Facts(how, **settings).contest
+    contest = Cup(how, **settings).contest
     (view,) = contest.stages
     game = min(2, view.stage.settings.games)
     names = [render(fixture(contest, view, match, game), "en") for match in view.matches]

@@ -17,7 +17,7 @@ from lacoc_shared.mistakes import UserError
 @pytest.mark.long
 @pytest.mark.slow
 def test_a_cluster_gives_the_same_tables(tmp_path: Path) -> None:
-    """Two workers, one of which is killed, give the tables of this machine's processes."""
+    """Two workers, one of which is killed, give the same tables as processes of this machine."""
     here = enter(tmp_path / "here")
     sheet, games = organiser.play_headless(here, "planner", Pool(2), lambda done, there: None)
     there = enter(tmp_path / "there")
@@ -38,7 +38,7 @@ def test_a_cluster_gives_the_same_tables(tmp_path: Path) -> None:
     assert [view.tables for view in other.stages] == tables
 
 
-def test_a_cluster_that_is_not_there_is_said(tmp_path: Path) -> None:
-    """The error says what to start, and where."""
+def test_a_cluster_that_does_not_answer_is_refused(tmp_path: Path) -> None:
+    """If no cluster answers at the address, the error names the command that starts one."""
     with pytest.raises(UserError, match="dask scheduler"):
         Cluster("tcp://127.0.0.1:1")

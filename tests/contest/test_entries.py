@@ -23,12 +23,12 @@ ENTRY = gather(None, "planner", "hexapod")
 
 @dataclass
 class Cup:
-    """A contest in which nobody has entered yet."""
+    """A contest that begins without teams."""
 
     file: Path
 
     def enter(self, team: str, bot: str = "planner", reason: str = "") -> str:
-        """Enter a team; return the code of what was said."""
+        """Enter a team; return the code of the answer."""
         return organiser.enter(self.file, team, None, bot, reason).code
 
     def out(self, team: str, *, disqualified: bool = False) -> None:
@@ -37,7 +37,7 @@ class Cup:
 
     @property
     def facts(self) -> tuple[AnyFact, ...]:
-        """All facts."""
+        """Read all facts."""
         with FactStore(ContestFolder(self.file).facts) as store:
             return store.facts()
 
@@ -61,13 +61,13 @@ def cup(tmp_path: Path) -> Cup:
     ],
 )
 def test_each_part_changes_the_hash(change: dict[str, object]) -> None:
-    """The hash of an entry depends on each file and on the bot, and not on the team."""
+    """Another file or bot gives an entry another hash; the same files give the same one."""
     assert msgspec.structs.replace(ENTRY, **change).hash != ENTRY.hash
     assert gather(None, "planner", "hexapod").hash == ENTRY.hash
 
 
 def test_frozen_files_that_were_changed_are_found(tmp_path: Path) -> None:
-    """Saved twice, an entry is one folder; a changed, missing or added file is found."""
+    """An entry that is saved twice has one folder; a changed or missing file is found."""
     folder = EntryFolder(tmp_path)
     entry = msgspec.structs.replace(ENTRY, bot="idle", program=IDLE.encode())
     assert folder.save(entry) == folder.save(entry) == entry.hash
@@ -88,7 +88,7 @@ def test_frozen_files_that_were_changed_are_found(tmp_path: Path) -> None:
 
 
 def test_every_mistake_of_every_file_is_told(tmp_path: Path) -> None:
-    """Wrong files are refused at once, with every mistake; nothing is kept of them."""
+    """If several files of an entry are wrong, the refusal lists the mistakes of more than one."""
     own = tmp_path / "own"
     own.mkdir()
     (own / "robot.toml").write_text("legs = 3\n")
@@ -105,7 +105,7 @@ def test_every_mistake_of_every_file_is_told(tmp_path: Path) -> None:
     [("def bot(:\n", r"bot\.py:1"), ("x = 1\n", r"bot\.py"), ("\0", "null")],
 )
 def test_a_bot_with_a_mistake_is_refused(cup: Cup, source: str, said: str) -> None:
-    """A program with a mistake in its grammar, or without the function, is refused."""
+    """An unknown bot is refused, and so is a program that is no Python or has no function `bot`."""
     program = cup.file.with_name("bot.py")
     program.write_text(source)
     with pytest.raises(UserError, match=said):
@@ -124,19 +124,19 @@ def test_two_teams_have_the_same_files(cup: Cup) -> None:
 
 @pytest.mark.parametrize("team", ["", "   ", "x" * 25, "a\nb", "a\u202eb", "a\0b"])
 def test_a_name_that_cannot_be_shown_is_refused(cup: Cup, team: str) -> None:
-    """A team's name is as long as a court allows, and has no invisible characters."""
+    """A team's name that is empty, too long or has invisible characters is refused."""
     with pytest.raises(UserError, match="1 to 24"):
         cup.enter(team)
 
 
-def test_one_name_is_one_team_however_it_is_typed(cup: Cup) -> None:
-    """An accent that is typed as a character of its own makes no second team."""
+def test_a_name_typed_with_a_combining_accent_is_the_same_team(cup: Cup) -> None:
+    """A name with an accent is the same team, also if the accent is a character of its own."""
     cup.enter("Café")
     assert cup.enter("Cafe\u0301", "nearest") == "contest.entered-again"
 
 
 def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
-    """When the time is over nobody enters any more, and files change only with a reason."""
+    """After the deadline no team can enter, and files change only with a reason."""
     cup.enter("Ann")
     assert cup.enter("Ann", "nearest") == "contest.entered-again"
     assert cup.enter("Ann", "nearest") == "contest.entered-same"
@@ -180,7 +180,7 @@ def test_a_contest_needs_two_teams_and_a_stage(cup: Cup) -> None:
 
 
 def test_an_own_robot_is_in_the_entry(tmp_path: Path) -> None:
-    """A folder with a robot file enters that robot; without one it is the contest's."""
+    """A folder's entry has the folder's robot file, or the contest's robot if there is none."""
     own = tmp_path / "own"
     own.mkdir()
     (own / "Loco-data.txt").write_bytes(ENTRY.locomotion or b"")

@@ -40,7 +40,7 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
     ],
 )
 def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -> None:
-    """A mistake in a stage is told with the file and the stage, in one line."""
+    """A mistake in a stage is one line that names the contest file and what is wrong."""
     with pytest.raises(UserError, match=said) as wrong:
         folder(tmp_path, stages)
     assert "contest.toml" in str(wrong.value)

@@ -1,4 +1,4 @@
-"""Tests of the published folder, and of the commands with which an organiser gets to it."""
+"""Tests of the published folder, and of the commands that lead to it."""
 
 import csv
 import io
@@ -11,6 +11,7 @@ import pytest
 from benchmarks import contest_played
 from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, TOKENS
 
+from lacoc_client.film import contest as film_contest
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
@@ -33,8 +34,8 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.slow
-def test_it_has_no_token(copied: Path) -> None:
-    """No file of the folder has a token in it, or in its name."""
+def test_the_folder_has_no_token(copied: Path) -> None:
+    """No file of the published folder has a token in its content or its name."""
     where = ContestFolder(copied)
     secrets = [*TOKENS.values(), *(TeamTokens(where.tokens).of(team) for team in BOTS)]
     published = files(contest_played.publish(copied))
@@ -44,8 +45,8 @@ def test_it_has_no_token(copied: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_can_be_written_again(copied: Path) -> None:
-    """Written again, the folder is the same; a file that was damaged in it is mended."""
+def test_the_folder_can_be_written_again(copied: Path) -> None:
+    """Publishing again mends damaged files; it fails if a record has changed or is missing."""
     folder = copied.parent / "published"
     before = files(folder)
     for name in before:
@@ -64,7 +65,7 @@ def test_it_can_be_written_again(copied: Path) -> None:
 
 
 def test_files_of_teams_come_with_the_end_of_entries(tmp_path: Path) -> None:
-    """While entries are open, nobody sees another team's files; then they are in the folder."""
+    """The files of teams are in the published folder only when entries are closed."""
     file = contest_played.enter(tmp_path)
     folder = contest_played.publish(file)
     assert [name for name in files(folder) if name.startswith(("entries", "records"))] == []
@@ -75,8 +76,8 @@ def test_files_of_teams_come_with_the_end_of_entries(tmp_path: Path) -> None:
     assert len(entries) == len({*BOTS.values()})
 
 
-def test_names_are_data(tmp_path: Path) -> None:
-    """No name leaves the folder, becomes a formula, or breaks a table."""
+def test_names_of_teams_are_no_paths(tmp_path: Path) -> None:
+    """Strange team names stay as they are, and nothing is written outside the published folder."""
     file = contest_played.enter(
         tmp_path / "in" / "side", CONTEST + SWISS, dict.fromkeys(NAMES, "planner")
     )
@@ -92,7 +93,7 @@ def test_names_are_data(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_tables_are_for_spreadsheets(played: Path) -> None:
-    """The tables are CSV with a mark for Excel; a name that looks like a formula is a text."""
+    """Tables are CSV with a byte order mark for Excel; a name like a formula begins with '."""
     rows = {}
     for name in (STANDINGS, GAMES):
         text = (played / "published" / name).read_bytes()
@@ -140,7 +141,7 @@ def test_the_commands_from_an_empty_folder_to_standings(
 def test_exit_codes_and_languages(
     copied: Path, lacoc: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Verify ends with 0, 1 or 2; what it says is English or Japanese."""
+    """Verify exits with 0, 1 or 2, in English or Japanese; other commands that fail exit with 2."""
     folder = copied.parent / "published"
     verify = ("contest", "verify", folder, "--jobs", "1", "--sample", "1", "--seed", "1")
     code, said, note = lacoc(*verify)
@@ -167,3 +168,16 @@ def test_exit_codes_and_languages(
     assert lacoc("contest", "enter", "Zoe", "--contest", copied)[0] == 2
     assert lacoc("contest", "withdraw", "Zoe", "--contest", copied)[0] == 2
     assert lacoc("contest", "run", copied.parent / "none.toml", "--headless")[0] == 2
+
+
+@pytest.mark.slow
+def test_a_reel_finds_the_records(played: Path) -> None:
+    """A film of the published folder, or of the contest's own, has the record of every game."""
+    published = film_contest.records(played / "published")
+    own = film_contest.records(played)
+
+    rows = csv.DictReader(io.StringIO((played / "published" / GAMES).read_text("utf-8-sig")))
+    names = [Path(row["record"]).name for row in rows if row["outcome"] != "void"]
+    assert sorted(path.name for path in published) == sorted(names)
+    assert [path.name for path in own] == [path.name for path in published]
+    assert all(path.is_file() for path in [*published, *own])

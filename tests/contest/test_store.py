@@ -39,7 +39,7 @@ def appending(path: Path, name: str, count: int) -> subprocess.Popen[str]:
 
 @pytest.mark.slow
 def test_two_programs_append_and_one_is_killed(tmp_path: Path) -> None:
-    """Facts of two programs get one order; what was appended before a kill is there, in pairs."""
+    """Two programs append pairs of facts; after one is killed, no pair is lost or broken."""
     path = tmp_path / "facts.db"
     first, second = appending(path, "x", 50), appending(path, "y", 100_000)
     assert second.stdout is not None
@@ -59,8 +59,8 @@ def test_two_programs_append_and_one_is_killed(tmp_path: Path) -> None:
     assert teams[0::2] == [team.replace("-b", "-a") for team in teams[1::2]]
 
 
-def test_a_decision_sees_all_facts_and_nobody_appends_meanwhile(tmp_path: Path) -> None:
-    """What follows from the facts is appended in one step; with an error nothing is appended."""
+def test_a_decision_sees_all_facts_and_appends_all_or_nothing(tmp_path: Path) -> None:
+    """`decide` sees facts that another store appended; after an error it appends nothing."""
     path = tmp_path / "facts.db"
     with FactStore(path) as store, FactStore(path) as other:
         other.append(new(Entered, team="Ann"))
@@ -85,7 +85,11 @@ def test_facts_stay_as_they_are(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_appends_nothing(tmp_path: Path) -> None:
-    """If the disk is full, nothing is appended and the message says so; later it works again."""
+    """If the file can't grow, nothing is appended and the error names the file.
+
+    When there is room again, facts can be appended. A limit for this process's files acts as the
+    full disk.
+    """
     path = tmp_path / "facts.db"
     with FactStore(path) as store:
         store.append(new(Entered, team="Ann"))
@@ -112,7 +116,7 @@ def test_a_full_disk_appends_nothing(tmp_path: Path) -> None:
     ],
 )
 def test_a_damaged_file_is_told(tmp_path: Path, part: bytes, said: str) -> None:
-    """A damaged file, or one of something else, is told and not touched."""
+    """A damaged file is reported and not changed; a database of something else is refused."""
     path = tmp_path / "facts.db"
     with FactStore(path) as store:
         store.append(*(new(Entered, team=f"{number:060}") for number in range(300)))

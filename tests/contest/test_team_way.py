@@ -1,7 +1,6 @@
-"""Teams find their courts by themselves: a whole contest over two courts, with one token a team."""
+"""Tests that teams find their courts with one token each, in a whole contest on two courts."""
 
 import json
-import os
 import subprocess
 from pathlib import Path
 
@@ -13,12 +12,12 @@ from lacoc_server.contest.organiser import enter
 
 TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
 PEOPLE = TEAMS[:2]
-"""They play with `lacoc play` in a terminal; the others are bots."""
+"""Teams that play with `lacoc play` in a terminal; the others are bots."""
 WAIT_S = 120.0
 
 
 def write_contest(folder: Path) -> Path:
-    """Write a contest of four teams on two courts, everybody against everybody."""
+    """Write a contest in which four teams play each other on two courts; enter the teams."""
     courts = "".join(
         f"""
 [court.{name}]
@@ -73,7 +72,6 @@ def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
                 "--ready",
                 stdin=subprocess.DEVNULL,
                 cwd=tmp_path,
-                env=os.environ | {"LACOC_LANG": "en"},
                 **streams,
             )
         )

@@ -1,4 +1,4 @@
-"""Tests of the check of a published contest: honest ones follow, forged ones do not."""
+"""Tests of the check of a published contest: an honest one passes, a forged one does not."""
 
 import shutil
 from itertools import combinations
@@ -40,7 +40,7 @@ from lacoc_shared.record.reader import Record
 
 
 def findings(folder: Path, proven: bool = False) -> list[str]:
-    """Return the codes of what does not follow."""
+    """Check a published folder and its games; return the codes of all findings."""
     facts = read(folder)
     found = [*check_published(folder, facts)]
     for game in games_of(facts):
@@ -68,7 +68,7 @@ def test_no_forgery_is_missed(played: Path, tmp_path: Path, forgeries: int) -> N
 
 @pytest.mark.slow
 def test_a_record_that_was_written_again_is_no_forgery(copied: Path) -> None:
-    """The forger's way to write a record changes nothing: without a forgery all follows."""
+    """A record that the forger reads and writes again without a change passes the check."""
     folder = copied.parent / "published"
     facts = [*read(folder)]
     at = next(at for at, fact in enumerate(facts) if isinstance(fact, Played))
@@ -84,8 +84,11 @@ def test_a_record_that_was_written_again_is_no_forgery(copied: Path) -> None:
 
 
 @pytest.mark.slow
-def test_an_honest_contest_with_decisions_follows(copied: Path) -> None:
-    """A replay, a corrected result, other files and a withdrawal are told, and all follows."""
+def test_an_honest_contest_with_decisions_passes(copied: Path) -> None:
+    """A contest with a replay, new files, a corrected result and a withdrawal passes the check.
+
+    The check lists these decisions.
+    """
     where = ContestFolder(copied)
     with FactStore(where.facts) as store:
         last = next(fact for fact in reversed(store.facts()) if isinstance(fact, Played))
@@ -109,7 +112,7 @@ def test_an_honest_contest_with_decisions_follows(copied: Path) -> None:
 
 @pytest.mark.slow
 def test_a_clock_that_was_corrected_changes_nothing(copied: Path) -> None:
-    """The times of facts may go back: their order is that of their numbers."""
+    """A contest passes even if the times of its facts go back; their numbers give the order."""
     folder = copied.parent / "published"
     facts = read(folder)
     back = [replace(fact, at_ms=10**12 - 1000 * fact.number) for fact in facts]
@@ -122,7 +125,7 @@ def test_a_clock_that_was_corrected_changes_nothing(copied: Path) -> None:
 
 @pytest.mark.slow
 def test_no_code_of_a_stranger_runs(copied: Path, tmp_path: Path) -> None:
-    """An arena that is a folder, and a program of a bot, are never run by verify."""
+    """The check runs no arena that is a folder, and no program of a bot."""
     folder = copied.parent / "published"
     evil = tmp_path / "evil"
     shutil.copytree(Path(contest_forging.__file__).parents[1] / "arenas/lacoc_arenas/othello", evil)
@@ -140,8 +143,8 @@ def test_no_code_of_a_stranger_runs(copied: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "..", "a/b.mcap", "x.mcap", "\0", "x" * 5000, "."])
-def test_any_name_of_a_record_is_looked_at(tmp_path: Path, name: str) -> None:
-    """A record that is not there, or a name that is no file, is a finding and no error."""
+def test_any_name_of_a_record_can_be_checked(tmp_path: Path, name: str) -> None:
+    """A missing record, or a name that can't be a record's, is a finding and raises no error."""
     plan = new(Planned, stage="a", format="round-robin", arena="othello")
     facts = numbered(
         new(Entered, team="A", files="f" * 32),
@@ -165,7 +168,7 @@ def test_any_name_of_a_record_is_looked_at(tmp_path: Path, name: str) -> None:
 
 
 def test_earlier_facts_must_still_be_there() -> None:
-    """What was published before may only be appended to."""
+    """A later publication must begin with all facts of an earlier one, unchanged."""
     facts = numbered(new(Entered, team="A"), new(Entered, team="B"), new(Closed))
     assert [*check_earlier(facts[:2], facts)] == [*check_earlier(facts, facts)] == []
     for now in (facts[:1], numbered(facts[1], facts[0]), (facts[0], replace(facts[1], team="C"))):
@@ -174,7 +177,7 @@ def test_earlier_facts_must_still_be_there() -> None:
 
 
 def test_files_count_from_when_they_were_entered() -> None:
-    """Before the end of entries only the newest files count; later those before them too."""
+    """A team may play with its newest files; after entries closed, also with those before them."""
     game = new(Played, pairing="a", game=1, teams=("A", "B"), scores=(0, 0), outcome="draw")
     facts = numbered(
         new(Entered, team="A", files="1"),
@@ -205,7 +208,7 @@ def test_files_count_from_when_they_were_entered() -> None:
     ],
 )
 def test_the_order_of_facts_is_checked(facts: list[AnyFact], code: str) -> None:
-    """An honest contest can't have these facts in this order."""
+    """Facts in an order that an honest contest can't have are found."""
     history = numbered(*facts)
     assert code in {one.code for one in check_history(history, compute(history, FORMATS))}
 
@@ -225,7 +228,10 @@ def test_a_gap_in_the_numbers_is_found() -> None:
 def test_the_promised_number_of_forgeries_is_found_as_often_as_promised(
     games: int, data: st.DataObject
 ) -> None:
-    """Over all samples, `least_forged` forged games are found with the confidence, one less not."""
+    """If `least_forged` games are forged, at least 95 % of all samples have one of them.
+
+    If one game less is forged, fewer samples have one.
+    """
     checked = data.draw(st.integers(1, games))
     least = least_forged(games, checked)
     samples = [*combinations(range(games), checked)]
@@ -236,7 +242,7 @@ def test_the_promised_number_of_forgeries_is_found_as_often_as_promised(
     assert least <= games - checked + 1
 
 
-def test_a_sample_takes_each_games_as_often() -> None:
+def test_a_sample_takes_each_pair_equally_often() -> None:
     """Every pair of 5 games is chosen about equally often, and the same seed chooses the same."""
     counts = dict.fromkeys(combinations(range(5), 2), 0)
     for seed in range(5000):

@@ -1,17 +1,15 @@
-"""Where each team plays, or what it waits for: tables of small contests."""
+"""Tests of where each team of a contest plays, or what it waits for."""
 
 from random import Random
-from typing import Any
 
 import pytest
 from chance_event import GAME_MS, LEAST_REST_MS, Event
+from cup import Cup
 
 from lacoc_server.contest.league.facts import (
-    Called,
     Disqualified,
     Drawn,
     Planned,
-    Played,
     Settings,
     Withdrawn,
 )
@@ -25,30 +23,13 @@ GAME = 120_000
 """Length of a game in these tests [ms]."""
 
 
-class Cup(Event):
-    """A contest of four teams in one group or bracket: t001 to t004."""
-
-    def __init__(self, how: str = "round-robin", teams: int = 4, **settings: Any) -> None:
-        super().__init__(teams, 2, Random(1))
-        self.now_ms = 1_000_000
-        self.begin("cup", how, self.names, **settings)
-
-    def call(self, pairing: str, court: str, teams: tuple[str, str], game: int = 1) -> str:
-        self.add(Called, pairing=pairing, game=game, teams=teams, court=court)
-        return self.facts[-1].id
-
-    def won(self, pairing: str, teams: tuple[str, str], game: int = 1) -> None:
-        """Let the left team win a game."""
-        self.add(Played, pairing=pairing, game=game, teams=teams, scores=(3, 1), outcome="left")
-
-    def where(self, calls: dict[str, str], rest_ms: int = 0) -> dict[str, Whereabouts]:
-        """Say where the teams are; `calls` has the call that each court has."""
-        seen = {court: Seen(self.now_ms, calls.get(court, "")) for court in ADDRESSES}
-        pace = Pace(self.now_ms, GAME, rest_ms)
-        found = whereabouts(self.contest, Courts(seen, ADDRESSES), pace)
-        for there in found.values():
-            assert faults(there.said) == []
-        return found
+def where(cup: Cup, calls: dict[str, str], rest_ms: int = 0) -> dict[str, Whereabouts]:
+    """Return where each team is; `calls` has the call that each court has."""
+    seen = {court: Seen(cup.now_ms, calls.get(court, "")) for court in ADDRESSES}
+    found = whereabouts(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, rest_ms))
+    for there in found.values():
+        assert faults(there.said) == []
+    return found
 
 
 def playing(cup: Cup) -> dict[str, str]:
@@ -64,10 +45,10 @@ def playing(cup: Cup) -> dict[str, str]:
 
 
 def test_a_team_whose_match_is_open_hears_where() -> None:
-    """It hears court, address, seat, call, what is played and against whom."""
+    """A team whose match is open hears its court, address, seat, call, fixture and opponent."""
     cup = Cup()
     calls = playing(cup)
-    found = cup.where(calls)
+    found = where(cup, calls)
     left, right = cup.contest.running[0].teams
     there, other = found[left], found[right]
     assert (there.state, there.court, there.address) == ("court", "north", ADDRESSES["north"])
@@ -78,34 +59,34 @@ def test_a_team_whose_match_is_open_hears_where() -> None:
 
 
 def test_a_team_waits_until_its_court_has_the_match() -> None:
-    """A call that the court does not have yet opens no seat: the team hears that it comes."""
+    """Until its court has the match, a team waits: it hears court and opponent, but no address."""
     cup = Cup()
     calls = playing(cup)
     left, right = cup.contest.running[0].teams
-    found = cup.where(calls | {"north": ""})
+    found = where(cup, calls | {"north": ""})
     assert (found[left].state, found[left].address, found[left].call) == ("waits", "", "")
     assert (found[left].court, found[left].about_s, found[left].games_before) == ("north", 0, 0)
     assert render(found[left].said) == f"Court north, in a moment, against {right}."
 
 
 def test_how_long_a_team_waits() -> None:
-    """A free court takes the first match; the next ones wait for the games before them."""
+    """A team whose match waits for a court hears which one is free next, and in how long."""
     cup = Cup(teams=6)  # three matches a round, two courts
     calls = playing(cup)
     matches = cup.contest.stages[0].matches
     waits = matches[2].teams
     cup.now_ms += 30_000
-    there = cup.where(calls)[str(waits[0])]
+    there = where(cup, calls)[str(waits[0])]
     assert (there.state, there.court, there.opponent) == ("waits", "north", waits[1])
     assert (there.games_before, there.about_s) == (0, 90)
     assert render(there.said) == f"Court north, about 2 minutes, against {waits[1]}."
     busy = cup.contest.running[0].teams[0]
-    assert cup.where(calls)[busy].state == "court"
-    assert cup.where({}, rest_ms=0)[str(waits[0])].games_before == 0
+    assert where(cup, calls)[busy].state == "court"
+    assert where(cup, {}, rest_ms=0)[str(waits[0])].games_before == 0
 
 
 def test_a_team_rests_before_its_next_match() -> None:
-    """The time of rest counts in the estimate, also where a court is free."""
+    """The estimate counts the rest of a team, also if a court is free."""
     cup = Cup(teams=3, how="round-robin")
     first = cup.contest.stages[0].matches
     match = next(one for one in first if one.state == "open")
@@ -113,13 +94,13 @@ def test_a_team_rests_before_its_next_match() -> None:
     cup.call(match.pairing.id, "north", match.next_seats)
     cup.now_ms += GAME
     cup.won(match.pairing.id, match.next_seats)
-    found = cup.where({}, rest_ms=60_000)
+    found = where(cup, {}, rest_ms=60_000)
     coming = [there for there in found.values() if there.about_s is not None]
     assert {there.about_s for there in coming} == {60, 60 + (GAME + 60_000) // 1000}
 
 
 def test_a_knockout_goes_on() -> None:
-    """The winner of a first match waits for its opponent; the loser is out, and later ranked."""
+    """A winner waits for its next opponent; a loser is out, and hears its place at the end."""
     cup = Cup("single-knockout")
     final = next(match for match in cup.contest.stages[0].matches if match.state == "waits")
     first, second = (m for m in cup.contest.stages[0].matches if m.state == "open")
@@ -127,7 +108,7 @@ def test_a_knockout_goes_on() -> None:
     assert second.next_seats is not None
     cup.won(first.pairing.id, first.next_seats)
     winner, loser = first.next_seats
-    found = cup.where({})
+    found = where(cup, {})
     assert (found[winner].state, found[winner].opponent) == ("waits", "")
     assert found[winner].about_s is None
     assert render(found[winner].said) == (
@@ -137,14 +118,14 @@ def test_a_knockout_goes_on() -> None:
     assert render(found[loser].said) == "You have played your last match."
     cup.won(second.pairing.id, second.next_seats)
     cup.won(final.pairing.id, (winner, second.next_seats[0]))
-    found = cup.where({})
+    found = where(cup, {})
     assert {there.state for there in found.values()} == {"over"}
     assert render(found[winner].said) == "The contest is over: place 1 in cup."
     assert (found[loser].state, found[loser].rank) == ("over", 3)
 
 
 def test_a_stage_that_is_not_drawn() -> None:
-    """Who may still be drawn waits; who withdrew or was expelled is out."""
+    """A team that may still be drawn waits; a team that withdrew or was disqualified is out."""
     cup = Cup()
     cup.add(Planned, stage="finals", format="single-knockout", after="cup", teams=2)
     for match in cup.contest.stages[0].matches[:-1]:
@@ -152,22 +133,22 @@ def test_a_stage_that_is_not_drawn() -> None:
         cup.won(match.pairing.id, match.next_seats)
     last = {str(team) for team in cup.contest.stages[0].matches[-1].teams}
     free = next(name for name in cup.names if name not in last)
-    assert cup.where({})[free].said.code == "team.awaits-draw"
+    assert where(cup, {})[free].said.code == "team.awaits-draw"
     cup.add(Withdrawn, team=free)
-    assert cup.where({})[free].state == "out"
+    assert where(cup, {})[free].state == "out"
     cup.add(Disqualified, team=next(iter(last)))
-    assert cup.where({})[next(iter(last))].state == "out"
+    assert where(cup, {})[next(iter(last))].state == "out"
     match = cup.contest.stages[0].matches[-1]
     assert match.decided, "its opponent has won by walkover"
     here = {team.name for team in cup.contest.teams if not team.gone}
     cup.add(Drawn, stage="finals", entries=tuple(sorted(here)))
     in_final = set(cup.contest.stages[1].stage.entries)
-    states = {name: there.state for name, there in cup.where({}).items()}
+    states = {name: there.state for name, there in where(cup, {}).items()}
     assert {name for name, state in states.items() if state == "waits"} == in_final
 
 
 def test_before_the_first_draw_all_wait() -> None:
-    """Teams that have entered wait for the draw."""
+    """Before the first draw, all teams that have entered wait for the draw."""
     event = Event(3, 1, Random(1))
     event.add(Planned, stage="cup", format="round-robin", settings=Settings())
     found = whereabouts(event.contest, Courts({}, {}), Pace(0, GAME))
@@ -175,7 +156,7 @@ def test_before_the_first_draw_all_wait() -> None:
 
 
 def test_the_usual_length_of_a_game() -> None:
-    """It is the median of the games that have ended; before that, a guess."""
+    """The usual length is the median of all games that have ended; before, a given value."""
     cup = Cup()
     assert game_ms(cup.facts, 7) == 7
     for match, length in zip(cup.contest.stages[0].matches, (10, 20, 90), strict=False):
@@ -189,7 +170,7 @@ def test_the_usual_length_of_a_game() -> None:
 @pytest.mark.parametrize("how", ["round-robin", "swiss", "single-knockout", "double-knockout"])
 @pytest.mark.parametrize("trouble", [0.0, 0.3])
 def test_any_contest(how: str, trouble: float) -> None:
-    """At each step of any contest each team has one place, and who has a call is not out."""
+    """At each step of a random contest, exactly the teams that are called are on a court."""
     event = Event(7, 2, Random(how), trouble)
     event.begin("cup", how, event.names, games=3)
     addresses = dict.fromkeys(event.courts, "tcp/10.0.0.1:7447")

@@ -252,6 +252,10 @@ def test_a_table_is_taken_to_practice(page: DesignClient) -> None:
     bad = {**table, "rows": [{**table["rows"][0], "angles_deg": [999.0] * 18}, *table["rows"][1:]]}
     reply = refused(page, "play", table=bad, sequences=sequences)
     assert reply["mistakes"]
+    assert refused(page, "hand_on", table=bad, sequences=sequences)["mistakes"]
+    files = page.ask("hand_on", table=table, sequences=sequences)
+    assert files["robot"] is None
+    assert all(files[kind]["data"] for kind in ("postures", "locomotion")), "level B is made, too"
     url = page.ask("play", table=table, sequences=sequences)["url"]
     address, key = url.split("/practice#key=")
     practice = PageConnection(address, "/ws")

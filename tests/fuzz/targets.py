@@ -12,13 +12,13 @@ import doors
 
 from lacoc_arenas.arena import Arena, from_settings
 from lacoc_client.gateway import wire
-from lacoc_client.terminal.key_script import KeyScript
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.match.entry import Entry
 from lacoc_server.world.world import World
 from lacoc_shared import codec, messages
 from lacoc_shared.contest import file as contest
 from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.gait.key_script import KeyScript
 from lacoc_shared.gait.tables import Gait, Posture, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.gait.workbook import read_workbook

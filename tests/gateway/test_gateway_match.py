@@ -1,7 +1,9 @@
 """Tests of whole matches through a gateway, with a real court and pages without a browser."""
 
+import json
 import signal
 import time
+from urllib.request import urlopen
 
 import pytest
 from court_stub import CourtStub
@@ -57,6 +59,12 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     assert late.scene[0] == late.sheet.scene
     assert [seat.team for seat in late.sheet.seats] == ["Ants", "Bees"]
     assert late.welcome["can_act"] is False
+
+    with urlopen(f"{venue.url}/courts.json", timeout=20) as answer:
+        (score,) = json.load(answer)
+    assert (score["court"], score["call"], len(score["scores"])) == ("main", "", 2)
+    assert score["phase"] in (Phase.PLAYING, Phase.FINISHED)
+    assert 0 < score["clock_s"] <= score["duration_s"]
 
     referee.phase(Phase.FINISHED)
     reply = referee.ask("decide", decision={"type": "official"}, reason="")

@@ -1,8 +1,10 @@
-"""A contest that is played by chance, fact by fact, as an office would append them."""
+"""A contest with random results and troubles, fact by fact, as an office appends them."""
 
-import itertools
 from collections.abc import Iterator
 from random import Random
+from typing import TypeVar
+
+from msgspec.structs import replace
 
 from lacoc_server.contest.league.contest import Contest, compute, next_round
 from lacoc_server.contest.league.facts import (
@@ -21,17 +23,20 @@ from lacoc_server.contest.league.facts import (
     Settings,
     Voided,
     Withdrawn,
+    new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import Assignment, assign
+
+_Kind = TypeVar("_Kind", bound=AnyFact)
 
 LEAST_REST_MS = 60_000
 GAME_MS = 180_000
 
 
 class Event:
-    """A contest under way: its facts, and what chance does next."""
+    """A contest under way: its facts, and a random generator that decides what happens next."""
 
     def __init__(self, teams: int, courts: int, random: Random, trouble: float = 0.0) -> None:
         self.random = random
@@ -41,15 +46,21 @@ class Event:
         self.courts = [f"court-{number}" for number in range(1, courts + 1)]
         self.facts: list[AnyFact] = []
         self.now_ms = 0
-        self._numbers = itertools.count()
         self.ends: dict[str, tuple[int, Assignment]] = {}
         """By court: when its game ends, and the game."""
         for name in self.names:
             self.add(Entered, team=name, files=f"files of {name}")
 
-    def add(self, kind: type[AnyFact], **values: object) -> None:
-        number = next(self._numbers)
-        self.facts.append(kind(id=f"f{number}", number=number, at_ms=self.now_ms, **values))
+    def append(self, fact: _Kind) -> _Kind:
+        """Append a fact, with the next number and the present time; return it."""
+        number = len(self.facts)
+        placed = replace(fact, id=f"f{number}", number=number, at_ms=self.now_ms)
+        self.facts.append(placed)
+        return placed
+
+    def add(self, kind: type[_Kind], **values: object) -> _Kind:
+        """Make a fact and append it; return it."""
+        return self.append(new(kind, **values))
 
     def begin(self, stage: str, how: str, entries: list[str], **settings: object) -> None:
         self.add(Planned, stage=stage, format=how, settings=Settings(**settings))
@@ -81,16 +92,17 @@ class Event:
             self._end_first()
 
     def _end_first(self) -> None:
-        """Go to the end of the next game; without one, let time pass for teams that rest."""
+        """End the running game that ends first; if none runs, let time pass for teams that rest."""
         if not self.ends:
             self.now_ms += LEAST_REST_MS
             return
         court = min(self.ends, key=lambda court: (self.ends[court][0], court))
         end_ms, game = self.ends.pop(court)
         self.now_ms = max(self.now_ms, end_ms)
-        if self.random.random() < self.trouble and self._trouble(game):
-            return
-        self._played(game)
+        if self.random.random() < self.trouble:
+            self._trouble(game)
+        else:
+            self._played(game)
 
     def _played(self, game: Assignment) -> None:
         left, right = self.random.randint(0, 9), self.random.randint(0, 9)
@@ -105,8 +117,8 @@ class Event:
             record=f"record of {game.pairing}/{game.game}",
         )
 
-    def _trouble(self, game: Assignment) -> bool:
-        """Let something go wrong; True: the game has no result."""
+    def _trouble(self, game: Assignment) -> None:
+        """Let something go wrong with a game; half of these troubles leave it without a result."""
         about = {"pairing": game.pairing, "teams": game.teams, "reason": "trouble"}
         match self.random.randint(0, 7):
             case 0:
@@ -123,15 +135,12 @@ class Event:
             case 4:
                 self._played(game)
                 self.add(Replay, game=game.game, **about)
-                return True
             case 5:
                 self._played(game)
                 self.add(Replaced, game=game.game, scores=(5, 1), outcome="left", **about)
-                return True
             case 6:
                 self._played(game)
                 self.add(Voided, **about)
-                return True
             case _:
                 self._played(game)
                 earlier = self._earlier()
@@ -143,11 +152,9 @@ class Event:
                         teams=earlier.games[-1].teams,
                         reason="protest",
                     )
-                return True
-        return True
 
     def _earlier(self) -> Match | None:
-        """Choose a match that was played and that no game on a court hangs on."""
+        """Choose a match with games; return None if there is none, or while a court has a game."""
         if self.ends:
             return None
         played = [match for view in self.contest.stages for match in view.matches if match.games]

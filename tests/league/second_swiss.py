@@ -1,4 +1,4 @@
-"""The pairs of a Swiss round by py4swiss: the second opinion on our own."""
+"""Pairs a Swiss round with py4swiss, to compare its pairs with ours."""
 
 from collections.abc import Sequence
 
@@ -20,11 +20,11 @@ FLOATS = {"down": Float.DOWN, "up": Float.UP, "none": Float.NONE}
 
 
 def pairs(players: Sequence[Player], round_number: int) -> set[frozenset[int]] | None:
-    """Pair by the Dutch system, with a difference of one as an absolute preference of a side.
+    """Pair by the Dutch system; a team that sat once more on one side must sit on the other now.
 
     Returns:
-        The pairs by number; None where a bracket had to collapse. There py4swiss follows the rules
-        that ended in January 2026, and the engine those that followed.
+        The pairs by number; None where a bracket had to collapse. There py4swiss follows rules that
+        ended in January 2026, and our engine follows the rules after them.
     """
     numbers = {player.team: player.number for player in players}
     theirs = sorted((_their(player, numbers) for player in players), reverse=True)

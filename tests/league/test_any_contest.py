@@ -1,4 +1,4 @@
-"""Whatever happens in a contest, its pairings are legal and its facts say the same for ever."""
+"""Tests of random contests: each step is legal, and any order of the facts gives the same."""
 
 from collections import Counter
 from random import Random
@@ -17,7 +17,7 @@ FORMAT_NAMES = ("round-robin", "swiss", "single-knockout", "double-knockout")
 
 
 def check_step(event: Event, contest: Contest, given_out: list[Assignment]) -> None:
-    """Check one moment of a contest: no team and no court has two games, and all have rested."""
+    """Check one step of a contest: no team and no court has two games, and teams have rested."""
     games = [*event.ends.values()]
     assert len(games) == len(contest.running) + len(given_out)
     teams = Counter(team for _, game in games for team in game.teams)
@@ -53,7 +53,7 @@ def check_matches(contest: Contest) -> None:
 
 
 def check_facts(event: Event, contest: Contest) -> None:
-    """Check that the facts give the same bytes in any order of arrival, and twice."""
+    """Check that the facts give the same bytes in any order of arrival, also if some come twice."""
     expected = contest.encoded()
     encoded = encode(event.facts)
     for _ in range(3):
@@ -66,7 +66,7 @@ def check_facts(event: Event, contest: Contest) -> None:
 
 
 def check_results(event: Event, contest: Contest) -> None:
-    """Check that each game that was played counts once, or is noted as unused with the reason."""
+    """Check that each game that was played counts once, is listed as unused, or was made void."""
     played = [fact.id for fact in event.facts if isinstance(fact, Played)]
     counts = Counter(
         game.fact for view in contest.stages for match in view.matches for game in match.games
@@ -107,7 +107,7 @@ def play(event: Event, how: str, **options: int) -> None:
 def test_any_contest(
     how: str, teams: int, courts: int, games: int, trouble: float, seed: int
 ) -> None:
-    """Contests of any size with any trouble are played to their end; each step is checked."""
+    """Contests of 2 to 24 teams, also with trouble, come to their end, and each step is legal."""
     event = Event(teams, courts, Random(seed), trouble)
     play(event, how, games=games, groups=1 + teams // 12)
 
@@ -125,7 +125,7 @@ def test_any_contest(
 def test_many_contests(
     how: str, teams: int, courts: int, games: int, trouble: float, seed: int
 ) -> None:
-    """The same with more and larger contests."""
+    """Contests of up to 40 teams, also with trouble, come to their end, and each step is legal."""
     event = Event(teams, courts, Random(seed), trouble)
     play(event, how, games=games, groups=1 + teams // 12)
 
@@ -133,13 +133,13 @@ def test_many_contests(
 @pytest.mark.long
 @pytest.mark.parametrize("how", FORMAT_NAMES)
 def test_200_entries(how: str) -> None:
-    """Contests with 200 entries on 16 courts, with trouble."""
+    """A contest of 200 teams on 16 courts comes to its end, and each step is legal."""
     event = Event(200, 16, Random(1), 0.05)
     play(event, how, groups=20, rounds=5 if how == "swiss" else 0)
 
 
 def test_groups_then_knockout() -> None:
-    """A stage that follows is seeded by the ranking of the one before it."""
+    """The winners of groups lead their ranking; its first eight teams can play a knockout."""
     event = Event(12, 3, Random(5), 0.1)
     event.begin("groups", "round-robin", event.names, groups=3)
     for contest, given_out in event.play("groups"):

@@ -1,4 +1,4 @@
-"""Tests of the circle method: everybody plays equally often, on both sides."""
+"""Tests of the circle method of a round robin: all play equally often, on both sides."""
 
 from collections import Counter
 from itertools import combinations
@@ -18,7 +18,10 @@ def pairings(players: int, rounds: int) -> list[tuple[int, int]]:
 
 @given(PLAYERS, ROUNDS)
 def test_everybody_plays_equally_often(players: int, rounds: int) -> None:
-    """Everybody plays once a round; of an odd number, nobody rests twice more than another."""
+    """No player has two matches in a round, and all have equally many.
+
+    If the number of players is odd, their numbers of matches differ by at most one.
+    """
     matches = pairings(players, rounds)
     played = Counter(player for pair in matches for player in pair)
     assert len(matches) == rounds * (players // 2)
@@ -30,8 +33,8 @@ def test_everybody_plays_equally_often(players: int, rounds: int) -> None:
 
 
 @given(PLAYERS, ROUNDS)
-def test_nobody_meets_the_same_again_while_others_are_left(players: int, rounds: int) -> None:
-    """Two players meet again only after everybody has met everybody."""
+def test_all_players_meet_before_any_meet_again(players: int, rounds: int) -> None:
+    """The numbers of times that pairs of players meet differ by at most one."""
     met = Counter(frozenset(pair) for pair in pairings(players, rounds))
     counts = [met[frozenset(pair)] for pair in combinations(range(players), 2)]
     assert max(counts) - min(counts) <= 1
@@ -49,12 +52,12 @@ def test_sides_are_even(players: int, rounds: int) -> None:
 
 @given(PLAYERS, ROUNDS)
 def test_pairs_that_meet_twice_swap_seats(players: int, rounds: int) -> None:
-    """Of two players who meet again, each sits in both seats, as evenly as possible."""
+    """If two players meet several times, each sits left as often as the other, or once more."""
     seated = Counter(pairings(players, rounds))
     assert all(abs(seated[a, b] - seated[b, a]) <= 1 for a, b in seated)
 
 
 @given(PLAYERS, ROUNDS)
 def test_more_rounds_only_add_matches(players: int, rounds: int) -> None:
-    """Pairings are the same each time; further rounds come after the earlier ones."""
+    """With one more round, the matches of the earlier rounds stay the same."""
     assert pairings(players, rounds + 1)[: rounds * (players // 2)] == pairings(players, rounds)

@@ -1,6 +1,7 @@
-"""What facts mean for matches, brackets and the schedule: one short table each."""
+"""Tests of what facts mean for matches, brackets and the schedule."""
 
 import itertools
+from copy import copy
 from random import Random
 
 import pytest
@@ -13,6 +14,7 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     FilesChanged,
+    Moved,
     NoShow,
     Planned,
     Played,
@@ -39,7 +41,7 @@ FIRST = "s:w1.1"
 
 
 class Facts(list[AnyFact]):
-    """Facts that number themselves."""
+    """A list of facts; `add` gives each its number, and a time of one second more."""
 
     def __init__(self, how: str, teams: str, **settings: object) -> None:
         super().__init__()
@@ -72,7 +74,7 @@ ABOUT = {"pairing": FIRST, "teams": ("a", "b"), "reason": "why"}
 
 
 def test_best_of_three_swaps_sides_and_ends_early() -> None:
-    """After two games won of three no third one is played."""
+    """Teams swap sides after each game; a team that wins two games of three needs no third."""
     facts = Facts("single-knockout", "ab", games=3)
     assert facts.match().next_seats == ("a", "b")
     facts.play(FIRST, 1, "a", "b", 3, 1)
@@ -92,7 +94,7 @@ def test_best_of_three_swaps_sides_and_ends_early() -> None:
     ],
 )
 def test_a_level_match_of_a_knockout(games: list[tuple[int, int]], winner: str, how: str) -> None:
-    """An extra game, then the difference of points, then the better seed decides."""
+    """After a draw an extra game decides; if that is a draw too, the better seed wins."""
     facts = Facts("single-knockout", "ab")
     for number, scores in enumerate(games, 1):
         seats = ("a", "b") if number % 2 else ("b", "a")
@@ -101,7 +103,7 @@ def test_a_level_match_of_a_knockout(games: list[tuple[int, int]], winner: str, 
 
 
 def test_difference_decides_before_the_seed() -> None:
-    """With one game won each, the difference of points decides."""
+    """If both teams have won a game and there is no extra one, the difference of points decides."""
     facts = Facts("single-knockout", "ab", games=2, extra_games=0)
     facts.play(FIRST, 1, "a", "b", 1, 0).play(FIRST, 2, "b", "a", 5, 0)
     assert (facts.match().winner, facts.match().how) == ("b", "difference")
@@ -125,7 +127,7 @@ def test_difference_decides_before_the_seed() -> None:
 def test_decisions_about_a_played_match(
     decision: tuple[type[AnyFact], dict[str, object]], winner: str, how: str, state: str
 ) -> None:
-    """A decision replaces, reopens or voids a result; who leaves later keeps what was won."""
+    """A decision replaces, reopens or voids a result; a team that leaves later keeps its win."""
     facts = Facts("single-knockout", "ab").play(FIRST, 1, "a", "b", 2, 0)
     facts.add(decision[0], **decision[1])
     match = facts.match()
@@ -141,10 +143,10 @@ def test_decisions_about_a_played_match(
         ([(NoShow, {"pairing": FIRST, "team": team}) for team in "ab"], ""),
     ],
 )
-def test_who_is_not_there_loses(
+def test_a_team_that_is_not_there_loses(
     leaving: list[tuple[type[AnyFact], dict[str, object]]], winner: str
 ) -> None:
-    """Whoever withdraws, is disqualified or does not appear loses what was not played."""
+    """A team that withdraws, is disqualified or does not appear loses its open match."""
     facts = Facts("single-knockout", "ab")
     for kind, values in leaving:
         facts.add(kind, **values)
@@ -152,7 +154,7 @@ def test_who_is_not_there_loses(
 
 
 def test_the_first_of_two_results_counts() -> None:
-    """A second result of a game changes nothing and is named; a void game is played again."""
+    """A void game is played again: its first result that is not void counts, the others do not."""
     facts = Facts("single-knockout", "ab")
     facts.add(Played, pairing=FIRST, game=1, teams=("a", "b"), scores=(0, 0), outcome="void")
     assert facts.match().next_game == 1
@@ -162,7 +164,7 @@ def test_the_first_of_two_results_counts() -> None:
 
 
 def test_a_corrected_semi_final_reopens_the_final() -> None:
-    """Results of a pairing count only for the teams that meet there now."""
+    """If a semi-final is corrected, the result of the old final is unused and the final is open."""
     facts = Facts("single-knockout", "abcd")
     facts.play("s:w1.1", 1, "a", "d", 2, 0).play("s:w1.2", 1, "b", "c", 2, 0)
     facts.play("s:w2.1", 1, "a", "b", 2, 0)
@@ -190,12 +192,11 @@ def test_a_corrected_semi_final_reopens_the_final() -> None:
 
 
 def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:
-    """Who comes from the losers' bracket must win twice; places follow."""
+    """A team from the losers' bracket must win two finals; the other team needs one."""
     facts = Facts("double-knockout", "abc")
     facts.play("s:w1.2", 1, "b", "c", 1, 0).play("s:w2.1", 1, "a", "b", 1, 0)
     facts.play("s:l2.1", 1, "b", "c", 1, 0)
-    once = Facts.__new__(Facts)
-    once.extend(facts)
+    once = copy(facts)
     once.play("s:f1.1", 1, "a", "b", 1, 0)
     assert once.contest.stage("s").over
     assert [row.team for row in once.contest.stage("s").tables[0].rows] == ["a", "b", "c"]
@@ -214,7 +215,7 @@ def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:
 @pytest.mark.parametrize("teams", [2, 3, 5, 8, 13, 200])
 @pytest.mark.parametrize("bracket", [single_bracket, double_bracket])
 def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> None:
-    """A bracket has the right number of pairings, and sources come first."""
+    """A bracket has the right number of pairings, and each comes from earlier ones."""
     stage = Stage(
         name="s", settings=Settings(), entries=tuple(f"t{number}" for number in range(teams))
     )
@@ -229,13 +230,13 @@ def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> Non
 
 
 def test_groups_are_dealt_in_snake_order() -> None:
-    """Groups are as strong as each other by seeding."""
+    """Seeds are dealt to the groups a to c, then back from c to a, and so on."""
     stage = Stage(name="s", settings=Settings(groups=3), entries=tuple("abcdefgh"))
     assert groups(stage) == {"a": ("a", "f", "g"), "b": ("b", "e", "h"), "c": ("c", "d")}
 
 
 def test_a_drawn_swiss_round_stays() -> None:
-    """A later correction changes the points, not who met."""
+    """A correction does not change the pairs of Swiss rounds that were drawn."""
     facts = Facts("swiss", "abcd", rounds=2)
     for number in (1, 2):
         pairs = next_round(facts.contest, "s", FORMATS)
@@ -250,12 +251,31 @@ def test_a_drawn_swiss_round_stays() -> None:
         next_round(facts.contest, "s", FORMATS)
 
 
+def test_a_match_is_moved_to_another_court_or_time() -> None:
+    """The newest move of a match counts; the others keep their order."""
+    facts = Facts("round-robin", "abcd")
+    one, other = assign(facts.contest, ["x", "y"], now_ms=0)
+    facts.add(Moved, pairing=other.pairing, before=one.pairing)
+    assert [(a.pairing, a.court) for a in assign(facts.contest, ["x", "y"], 0)] == [
+        (other.pairing, "x"),
+        (one.pairing, "y"),
+    ]
+    facts.add(Moved, pairing=other.pairing, court="y", not_before_ms=500)
+    assert [(a.pairing, a.court) for a in assign(facts.contest, ["x", "y"], 0)] == [
+        (one.pairing, "x")
+    ]
+    assert [(a.pairing, a.court) for a in assign(facts.contest, ["x", "y"], 500)] == [
+        (one.pairing, "x"),
+        (other.pairing, "y"),
+    ]
+    assert not facts.contest.unused
+
+
 def test_schedule() -> None:
     """Games go to free courts in order; teams rest between matches, not between games."""
     facts = Facts("round-robin", "abcd", games=2)
     given = assign(facts.contest, ["x", "y", "z"], now_ms=0)
     assert [one.court for one in given] == ["x", "y"]
-    assert assign(facts.contest, ["x"], 0, first=[given[1].pairing])[0].pairing == given[1].pairing
 
     one = given[0]
     facts.add(Called, pairing=one.pairing, game=1, teams=one.teams, court="x")
@@ -291,13 +311,13 @@ def test_schedule() -> None:
 def test_facts_that_change_nothing(
     kind: type[AnyFact], values: dict[str, object], code: str
 ) -> None:
-    """A fact that does not fit is left out, and named with the reason."""
+    """A fact that does not fit is not used, and is listed with the reason."""
     facts = Facts("swiss", "abcd").add(kind, **values)
     assert [one.why.code for one in facts.contest.unused] == [code]
 
 
 def test_wrong_facts_are_refused() -> None:
-    """Two facts with one id, an unknown format and wrong JSON are refused with what to do."""
+    """Two facts with one id, an unknown format and wrong JSON are refused."""
     facts = Facts("swiss", "ab")
     with pytest.raises(UserError, match="f0"):
         compute([*facts, Entered(id="f0", number=0, team="other")], FORMATS)
@@ -337,7 +357,7 @@ def test_every_team_meets_every_other() -> None:
 
 @pytest.mark.parametrize("teams", [8, 16, 32, 64])
 def test_losers_meet_again_late(teams: int) -> None:
-    """In the first half of the losers' bracket nobody meets again, whoever wins."""
+    """In the first half of the losers' bracket no two teams meet again (30 random contests)."""
     names = tuple(f"t{number}" for number in range(teams))
     stage = Stage(name="s", settings=Settings(), entries=names)
     half = teams.bit_length() - 2  # of the rounds of the losers' bracket

@@ -1,4 +1,4 @@
-"""Ratings find the true strengths, with honest intervals, whatever the order of the games."""
+"""Tests of ratings: intervals contain the true strengths, in any order of the games."""
 
 import math
 from random import Random
@@ -12,7 +12,7 @@ SIDE_ELO = 60.0
 
 
 def league(random: Random, teams: int, times: int) -> tuple[dict[str, float], list[Rated]]:
-    """Play everybody against everybody on both sides, by the model with known strengths."""
+    """Draw true strengths, and random games of all against all on both sides that follow them."""
     true = {f"t{number:02d}": random.gauss(0, 150) for number in range(teams)}
     games = []
     for left in true:
@@ -30,7 +30,7 @@ def _game(random: Random, left: str, right: str, true: dict[str, float]) -> Rate
 
 
 def coverage(leagues: int, teams: int, times: int) -> float:
-    """Return the share of intervals that hold the truth."""
+    """Return the share of intervals that contain the true strength of their team."""
     inside = []
     for seed in range(leagues):
         true, games = league(Random(seed), teams, times)
@@ -44,7 +44,7 @@ def coverage(leagues: int, teams: int, times: int) -> float:
 
 @pytest.mark.parametrize("shuffles", [5, pytest.param(100, marks=pytest.mark.long)])
 def test_order_does_not_matter(shuffles: int) -> None:
-    """Shuffled games give the same bytes."""
+    """The same games in another order give the same ratings, byte for byte."""
     random = Random(3)
     _, games = league(random, 10, 1)
     expected = msgspec.json.encode(ratings(games))
@@ -55,20 +55,20 @@ def test_order_does_not_matter(shuffles: int) -> None:
 
 
 def test_intervals() -> None:
-    """About 95 % of the intervals hold the truth."""
+    """About 95 % (91-99 %) of the intervals contain the true strength."""
     assert 0.91 <= coverage(leagues=25, teams=12, times=1) <= 0.99
 
 
 @pytest.mark.long
 def test_intervals_of_500_leagues() -> None:
-    """93-97 % of the intervals of 500 leagues hold the truth."""
+    """93-97 % of the intervals of 500 leagues contain the true strength."""
     assert 0.93 <= coverage(leagues=500, teams=12, times=1) <= 0.97
 
 
 def test_side_bias() -> None:
-    """What the left side is worth is found within 15 Elo: the mean of leagues of 1,140 games.
+    """The advantage of the left side is found within 15 Elo, as the mean of four leagues.
 
-    One league alone scatters by 15 Elo; that is what so many games can tell.
+    In a single league of 1,140 games it scatters by about 15 Elo.
     """
     found = []
     for seed in range(4):
@@ -89,7 +89,7 @@ def test_side_bias() -> None:
     ],
 )
 def test_few_games(games: list[Rated]) -> None:
-    """Few games, draws alone, and teams that nothing links get finite numbers."""
+    """Ratings are finite for few games, for draws alone, and for teams that no game links."""
     found = ratings(games)
     assert {one.team for one in found.teams} == {team for game in games for team in game[:2]}
     assert all(math.isfinite(one.elo) and one.interval_elo > 0 for one in found.teams)

@@ -1,4 +1,4 @@
-"""Standings count matches and break ties by the published codes, in their order."""
+"""Tests of standings: matches are counted, and ties are broken by codes, in their order."""
 
 import pytest
 
@@ -17,7 +17,7 @@ def drawn(one: str, other: str, each: int = 0) -> Counted:
 
 
 CIRCLE = [won("a", "b", 3), won("b", "c", 2), won("c", "a", 4), *(won(one, "d") for one in "abc")]
-"""a, b and c beat each other in a circle, and d."""
+"""a, b and c beat each other in a circle, and each of them beats d."""
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ CIRCLE = [won("a", "b", 3), won("b", "c", 2), won("c", "a", 4), *(won(one, "d") 
     ],
 )
 def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str) -> None:
-    """Each code orders those whom the earlier ones left equal; the seeding orders the rest."""
+    """Each code orders the teams that the earlier codes left equal; the seeding orders the rest."""
     found = standings(ABCD, matches, order)
 
     assert "".join(row.team for row in found.rows) == ranked
@@ -57,7 +57,7 @@ def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str) -> N
 
 
 def test_bye_counts_as_a_win_and_own_points_as_opponent() -> None:
-    """A bye is worth two points; in Buchholz its opponent has the team's own points."""
+    """A bye is a win of two points; Buchholz uses the team's own points as its opponent's."""
     bye = Counted(("a",), (0,), 0, played=False)
 
     row = standings(ABCD, [bye, won("b", "a")], ("points", "buchholz")).rows[0]
@@ -67,7 +67,7 @@ def test_bye_counts_as_a_win_and_own_points_as_opponent() -> None:
 
 
 def test_disqualified_are_last() -> None:
-    """Who is disqualified is ranked last, whatever it won."""
+    """A disqualified team is ranked last, whatever it has won."""
     found = standings(ABCD, [won("a", "b"), won("a", "c")], ("points",), last=["a"])
 
     assert [row.team for row in found.rows] == ["b", "c", "d", "a"]
@@ -75,6 +75,6 @@ def test_disqualified_are_last() -> None:
 
 
 def test_unknown_code() -> None:
-    """An unknown tie-break is refused by its name."""
+    """An unknown tie-break is refused, and the error names it."""
     with pytest.raises(UserError, match="chance"):
         standings(ABCD, [], ("points", "chance"))

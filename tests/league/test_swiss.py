@@ -1,4 +1,4 @@
-"""Swiss pairings: legal, as others pair them, and without a fault wherever that can be had."""
+"""Tests of Swiss pairings: legal, the same as py4swiss makes, and with the fewest faults."""
 
 import itertools
 from collections.abc import Iterator, Sequence
@@ -59,7 +59,7 @@ def total_faults(pairs: Sequence[Sequence[Player]]) -> tuple[int, ...]:
 
 
 def can_do_without_faults(players: Sequence[Player]) -> bool:
-    """Ask a graph of faultless pairs for a matching of all."""
+    """Return whether all players can be paired without faults: a matching in a graph of pairs."""
     graph = networkx.Graph()
     graph.add_nodes_from(range(len(players)))
     for (one, first), (two, second) in itertools.combinations(enumerate(players), 2):
@@ -89,7 +89,10 @@ def check_round(players: Sequence[Player], round_number: int) -> None:
     seed=st.integers(0, 2**32),
 )
 def test_every_round_is_legal(teams: int, number: int, leaving: float, seed: int) -> None:
-    """Nobody meets twice, has two byes or a third side too many where it can be avoided."""
+    """Each round pairs every player once, and has faults only if they can't be avoided.
+
+    Faults are to meet twice, a second bye, and two more matches on one side than on the other.
+    """
     for round_number, players in enumerate(rounds(Random(seed), teams, number, leaving), 1):
         check_round(players, round_number)
 
@@ -97,9 +100,9 @@ def test_every_round_is_legal(teams: int, number: int, leaving: float, seed: int
 @settings(max_examples=8, deadline=None)
 @given(teams=st.integers(4, 16).map(lambda half: 2 * half), seed=st.integers(0, 2**32))
 def test_sides_differ_by_at_most_one(teams: int, seed: int) -> None:
-    """In a stage with not too many rounds nobody sits on one side twice more than on the other.
+    """In n/4 + 1 rounds of n teams, each team's matches on the two sides differ by at most one.
 
-    Among n teams that all play, rounds up to n/4 + 1 can always be paired so (by Hall's theorem).
+    Pairs for this always exist if n is even and all teams play (Hall's theorem).
     """
     for players in rounds(Random(seed), teams, teams // 4 + 2):
         assert all(abs(player.balance) <= 1 for player in players)
@@ -108,7 +111,7 @@ def test_sides_differ_by_at_most_one(teams: int, seed: int) -> None:
 
 @pytest.mark.parametrize("teams", [LARGEST + 1, pytest.param(200, marks=pytest.mark.long)])
 def test_large_stages(teams: int) -> None:
-    """Stages that are too large for the engine are paired without faults too."""
+    """A stage that is too large for the engine is paired without faults by our own matching."""
     for players in rounds(Random(teams), teams, 5):
         pairs = fewest_faults(players)
         assert total_faults(pairs) == (0, 0, 0)
@@ -135,7 +138,7 @@ def brute_force(players: Sequence[Player]) -> tuple[int, ...]:
 @settings(max_examples=15, deadline=None)
 @given(teams=st.integers(2, 7), seed=st.integers(0, 2**32))
 def test_fewest_faults(teams: int, seed: int) -> None:
-    """The matching has as few faults as the best of all pairings, also when rounds run out."""
+    """`fewest_faults` is as good as the best of all pairings, even if all teams have met."""
     for players in rounds(Random(seed), teams, 10):
         assert total_faults(fewest_faults(players)) == brute_force(players)
 
@@ -143,8 +146,11 @@ def test_fewest_faults(teams: int, seed: int) -> None:
 @pytest.mark.parametrize(
     "least_rounds", [60, pytest.param(1000, marks=pytest.mark.long)], ids=["some", "many"]
 )
-def test_second_source(least_rounds: int) -> None:
-    """py4swiss, a port of the FIDE-endorsed bbpPairings, finds the same pairs in random rounds."""
+def test_py4swiss_makes_the_same_pairs(least_rounds: int) -> None:
+    """py4swiss finds the same pairs in random rounds.
+
+    Rounds are not compared if they need faults, or if the older rules of py4swiss matter.
+    """
     pytest.importorskip("py4swiss", reason="there is no wheel of py4swiss for this machine")
     import second_swiss
 
@@ -167,9 +173,9 @@ def test_second_source(least_rounds: int) -> None:
 def same_bye(
     players: Sequence[Player], found: set[frozenset[int]], theirs: set[frozenset[int]]
 ) -> bool:
-    """Say whether both gave the bye to the same team.
+    """Return whether both gave the bye to the same team; if not, check that ours has fewer points.
 
-    Where they differ, ours has fewer points: since February 2026 the rules want the fewest.
+    The rules have required the fewest points since February 2026; py4swiss has older rules.
     """
     points = {player.number: player.points for player in players}
     ours, others = ({*pair} for pair in (alone(found), alone(theirs)))
@@ -178,5 +184,5 @@ def same_bye(
 
 
 def alone(pairs: set[frozenset[int]]) -> frozenset[int]:
-    """Return the team that has a bye, if there is one."""
+    """Return a set of the team that has a bye; an empty one if there is no bye."""
     return next((pair for pair in pairs if len(pair) == 1), frozenset())

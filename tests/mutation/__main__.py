@@ -64,7 +64,7 @@ AREAS = (
             "lacoc_server/match/state.py",
             "lacoc_server/match/contestant.py",
             "lacoc_server/match/referee.py",
-            "lacoc_server/match/history.py",
+            "lacoc_server/match/kept/history.py",
             "lacoc_server/match/seat.py",
             "lacoc_server/match/staging.py",
         ),

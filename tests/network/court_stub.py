@@ -222,11 +222,3 @@ class CourtStub:
 
     def _change(self, seat: int, **changes: int) -> None:
         self._seats[seat] = msgspec.structs.replace(self._seats[seat], **changes)
-
-
-def until(condition: Callable[[], object], timeout_s: float = 30.0) -> None:
-    """Wait until a condition is true."""
-    deadline_s = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < deadline_s, "it did not happen in time"
-        time.sleep(0.002)

@@ -4,13 +4,13 @@ import json
 import subprocess
 import threading
 import time
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
 from lacoc_process import Lacoc
 from slow_link import SlowLink
+from waiting import until
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
@@ -131,12 +131,12 @@ def play(
         view = players[0].controller.view
         time.sleep(warm_s)
         RefereeClient(session, COURT, _TOKENS["the referee"]).decide(Start(), "", "the pair")
-        _until(lambda: view.frame and view.frame.phase == Phase.PLAYING)
+        until(lambda: view.frame and view.frame.phase == Phase.PLAYING)
         end = view.frame.beat + seconds * BEATS_PER_S if view.frame else 0
-        _until(lambda: view.frame and view.frame.beat > end, seconds * 4)
+        until(lambda: view.frame and view.frame.beat > end, seconds * 4)
         health = view.health
         assert health is not None
-    _until(lambda: list(folder.glob("*.mcap")))
+    until(lambda: list(folder.glob("*.mcap")))
     paths = sorted(folder.glob("*.mcap"))
     record = Record.read(record_paths(paths[-1]) if ".live" in paths[-1].name else paths[-1])
     return _played(record, health, int(end) - BEATS_PER_S)
@@ -154,10 +154,3 @@ def _played(record: Record, health: Health, end: int) -> Played:
         for seen in sorted(fast.keys() & slow.keys())
     ]
     return Played(pairs, len(fast.keys() ^ slow.keys()), health, record)
-
-
-def _until(true: Callable[[], object], timeout_s: float = _WAIT_S) -> None:
-    deadline_s = time.monotonic() + timeout_s
-    while not true():
-        assert time.monotonic() < deadline_s, "it did not happen in time"
-        time.sleep(0.05)

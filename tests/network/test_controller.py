@@ -6,8 +6,9 @@ from typing import Any
 
 import msgspec
 import pytest
-from court_stub import BOOK, KEYS, SLOW, TOKENS, WRONG, CourtStub, until
+from court_stub import BOOK, KEYS, SLOW, TOKENS, WRONG, CourtStub
 from slow_link import SlowLink
+from waiting import until
 
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller, Hold
@@ -78,7 +79,7 @@ HELD = JoinSeat(0, "Blue", SentFile("r.toml", b""), SentFile("mine.txt", b"20"),
 
 
 def test_refused_files_are_not_sent_again(court: CourtStub, session: Session) -> None:
-    """A controller whose files were refused in a match comes back later without files."""
+    """If a controller's files were refused in a match, its next join has no files."""
     court.held[0] = HELD
     one = controller(session, postures=WRONG)
     assert one.join()[0].code == FILES_REFUSED
@@ -89,8 +90,8 @@ def test_refused_files_are_not_sent_again(court: CourtStub, session: Session) ->
 
 
 @pytest.mark.parametrize("is_on", [True, False])
-def test_a_page_comes_back_with_a_broken_workbook(court: CourtStub, is_on: bool) -> None:
-    """A workbook's own mistakes reach the page: as notes in a match, else as a refusal."""
+def test_a_page_joins_with_a_broken_workbook(court: CourtStub, is_on: bool) -> None:
+    """A broken workbook's mistake reaches the page: as a note in a match, else as a refusal."""
     court.held[0] = HELD if is_on else None
     answers: list[tuple[Any, Exception | None]] = []
     thread = SeatThread(
@@ -115,7 +116,7 @@ def test_a_page_comes_back_with_a_broken_workbook(court: CourtStub, is_on: bool)
         assert [one.file for one in error.mistakes] == ["mine.xlsx"]
 
 
-def test_a_wrong_token_is_said_and_disturbs_nobody(
+def test_a_wrong_token_is_refused_and_disturbs_nobody(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
     """A join with a wrong token is refused and counted, and the seat's holder plays on."""
@@ -277,7 +278,7 @@ def test_forged_commands_are_refused_and_counted(
 def test_a_flood_on_one_seat_does_not_touch_the_other(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """A flood on one seat delays no key of the other seat."""
+    """During a flood on one seat, all keys of the other take effect, half of them in 200 ms."""
     one = held(session, "right")
     flood = other_session.publisher(KEYS.command("left"))
     trips = []
@@ -306,13 +307,13 @@ def test_a_controller_that_stops_is_silent_and_heard_again(
 
 
 @pytest.mark.slow
-def test_no_seat_is_lost_for_what_its_program_did_not_hear(
+def test_a_controller_repeats_its_command_while_it_waits(
     court: CourtStub, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A controller repeats its command while it waits for missed events and sheets.
+    """A controller repeats its command at least 8 times a second while it asks what it missed.
 
-    An answer takes nearly a second here: a controller that repeated nothing while it waits would
-    be heard less often than twice a second.
+    It asks for events and the sheet again and again, and an answer takes nearly a second here. If
+    it repeated nothing while it waits, it would be heard less than twice a second.
     """
     with SlowLink(court.address, delay_s=0.45) as link, open_client([link.address]) as session:
         one = held(session)

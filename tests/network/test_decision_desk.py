@@ -63,8 +63,8 @@ def test_a_request_is_refused_with_its_reason(
     assert desk.refused == {why: 1}
 
 
-def test_a_decision_that_is_not_read_is_told_all_there_are() -> None:
-    """The refusal of an unreadable decision lists all decisions with their arguments."""
+def test_the_refusal_of_a_wrong_decision_lists_all_decisions() -> None:
+    """A decision that does not fit its key is refused with a list of the decisions there are."""
     refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
     assert isinstance(refusal, Refusal)
     words = render(refusal.why)

@@ -165,11 +165,13 @@ def test_without_the_setting_nothing_is_held() -> None:
         clock.key(LEFT, 1)
         clock.key(RIGHT, 12)
         clock.end()
-    assert all(one.beat == one.arrived and one.late == 0 for one in clock.effects[RIGHT])
-    assert clock.links.late(RIGHT) == 0
+    for seat in (LEFT, RIGHT):
+        assert len(clock.effects[seat]) == 40
+        assert all(one.beat == one.arrived and one.late == 0 for one in clock.effects[seat])
+        assert clock.links.late(seat) == 0
 
 
-def test_the_delay_is_capped_and_who_is_slower_is_late() -> None:
+def test_the_delay_is_capped_and_a_slower_link_is_late() -> None:
     """The common delay has a maximum, and each key over a slower link is counted as late."""
     clock = warm(1, 30)
     assert clock.links.delay_ms == MOST_MS

@@ -55,7 +55,7 @@ class Desk(OfficeDesk[str]):
         return lambda: self._refusal or assign.call if next(left, None) is None else None
 
     def later(self, what: str, payload: bytes) -> Callable[[], Done | Refusal | None]:
-        """Judge a request that is not answered at once."""
+        """Judge a request that is not answered at once; return what gives its answer later."""
         answer = self.judge(what, payload)
         assert not isinstance(answer, Done | Refusal)
         return answer
@@ -81,7 +81,7 @@ def test_an_assignment_is_answered_when_its_match_is_open() -> None:
 
 
 def test_a_call_that_comes_twice_is_prepared_once() -> None:
-    """The same call is answered at once in every phase of its match, and refused after it."""
+    """A call that the court has is accepted again at once; after another call it is refused."""
     desk = Desk()
     desk.hold("c1", Phase.LOBBY)
     for phase in (Phase.READY, Phase.PLAYING, Phase.OFFICIAL, Phase.VOID):
@@ -107,7 +107,7 @@ def test_a_match_that_is_played_is_kept() -> None:
 
 
 def test_a_match_is_withdrawn() -> None:
-    """A match that is not played is withdrawn, which is answered when the court waits."""
+    """A match that has not begun is withdrawn; the answer comes when the court has no match."""
     desk = Desk()
     desk.hold("c1", Phase.READY)
     answer = desk.later("withdraw", withdraw())
@@ -120,7 +120,7 @@ def test_a_match_is_withdrawn() -> None:
 
 
 def test_an_official_match_is_not_withdrawn() -> None:
-    """An official result stays at the court until the next assignment."""
+    """A match with an official result can't be withdrawn, but another match can be assigned."""
     desk = Desk()
     desk.hold("c1", Phase.OFFICIAL)
     assert desk.refusal("withdraw", withdraw()) == say("refused.call-is-over", call="c1")
@@ -128,7 +128,7 @@ def test_an_official_match_is_not_withdrawn() -> None:
 
 
 def test_files_with_mistakes_are_refused() -> None:
-    """What the preparation refuses is the answer, and the desk wants nothing."""
+    """If the files of a match are refused, the office gets this refusal, and it is counted."""
     refusal = Refusal(say("refused.assigned-files", team="Ants", count=1))
     desk = Desk(takes=0, refusal=refusal)
     answer = desk.later("assign", assign())
@@ -175,7 +175,7 @@ def test_a_wrong_assignment_is_refused_and_counted(payload: bytes, code: str) ->
 
 
 def test_a_wrong_token_withdraws_nothing() -> None:
-    """Only the office withdraws a match, and there are no other requests."""
+    """A wrong token withdraws nothing, and an unknown request is refused."""
     desk = Desk()
     desk.hold("c1", Phase.READY)
     assert desk.refusal("withdraw", withdraw(token="a guess")) == say("refused.no-office-token")

@@ -54,7 +54,10 @@ def stranger(court: Session) -> Iterator[zenoh.Session]:
 
 
 def ask(stranger: zenoh.Session, payload: bytes, timeout_s: float = 10.0) -> list[bytes | None]:
-    """Ask to join; return the payload of each error reply, and None for each other reply."""
+    """Ask to join; return the payload of each error reply, and None for each other reply.
+
+    Zenoh may report "Timeout" twice: on the stranger's side and on the court's.
+    """
     replies = stranger.get(JOIN, payload=payload, timeout=timeout_s)
     return [reply.err and reply.err.payload.to_bytes() for reply in replies]
 
@@ -81,7 +84,7 @@ def is_not_answered(stranger: zenoh.Session, payload: bytes) -> None:
     end_s = time.monotonic() + 30
     while not (replies := ask(stranger, payload, 0.3)):
         assert time.monotonic() < end_s, "the desk did not become known"
-    assert replies == [b"Timeout"]
+    assert set(replies) == {b"Timeout"}
 
 
 def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
@@ -105,5 +108,5 @@ def test_a_join_that_is_too_long_is_dropped(court: Session, stranger: zenoh.Sess
     is_not_answered(stranger, bytes(JOIN_MAX_BYTES))
     assert desk.take() is not None
     assert ask(stranger, bytes(JOIN_MAX_BYTES + 1)) == []
-    assert ask(stranger, bytes(JOIN_MAX_BYTES + 5000), 0.3) == [b"Timeout"]
+    assert set(ask(stranger, bytes(JOIN_MAX_BYTES + 5000), 0.3)) == {b"Timeout"}
     assert desk.take() is None

@@ -5,8 +5,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from court_stub import KEYS, TOKENS, WHISTLE, until
+from court_stub import KEYS, TOKENS, WHISTLE
 from keyed import KeyedCourt, keyed_file
+from waiting import until
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
@@ -146,7 +147,7 @@ def test_nobody_speaks_for_the_court(
 def test_nobody_hears_what_is_said_to_the_court(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """No user receives other users' commands, whatever key expression it subscribes to."""
+    """No user receives commands of other users, not even with a subscription to all keys."""
     boxes = [sessions[who].mailbox(key, 64) for key in (f"{KEYS.root}/seat/**", "lacoc/**", "**")]
     sender = next(one for one in TOKENS if one != who)
     controller = Controller(sessions[sender], "main", sender, TOKENS[sender], "Ants")

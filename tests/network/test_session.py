@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 
 import pytest
-from court_stub import until
+from waiting import until
 
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES
 from lacoc_shared.mistakes import UserError
@@ -74,15 +74,15 @@ def test_where_nobody_listens_is_said() -> None:
 
 
 def test_another_program_at_the_address_is_said() -> None:
-    """A client is told if another program than a court has the address."""
+    """A client gets a message if another program than a court listens at the address."""
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         with pytest.raises(UserError, match="it refuses the connection"):
             open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
 
 
-def test_an_unknown_name_is_said_at_once() -> None:
-    """A host name that can't be resolved is reported at once, before any attempt to connect."""
+def test_an_unknown_host_is_said() -> None:
+    """A client gets a message that the name of a host is not known."""
     with pytest.raises(UserError, match=r"court\.invalid.* is not known"):
         open_client(["court.invalid:7447"], timeout_s=30)
 

@@ -4,7 +4,8 @@ import threading
 from contextlib import ExitStack
 
 import pytest
-from court_stub import KEYS, WHISTLE, CourtStub, make_event, make_scene, until
+from court_stub import KEYS, WHISTLE, CourtStub, make_event, make_scene
+from waiting import until
 
 from lacoc_client.asking import understand
 from lacoc_client.referee import RefereeClient
@@ -37,7 +38,7 @@ def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) ->
 
 
 @pytest.mark.slow
-def test_who_comes_while_events_are_sent_gets_them_all(court: CourtStub) -> None:
+def test_a_spectator_that_comes_while_events_are_sent_gets_them_all(court: CourtStub) -> None:
     """Spectators that connect while events are being published get each event once."""
 
     def send() -> None:

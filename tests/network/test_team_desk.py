@@ -21,7 +21,7 @@ def waits(team: str) -> Whereabouts:
 
 @pytest.fixture
 def desk() -> TeamDesk:
-    """Give a desk that the office has told of three teams."""
+    """Give a desk that knows from the office where three teams are."""
     desk = TeamDesk()
     desk.tell({seal.hash_token(token, SALT): waits(team) for team, token in TOKENS.items()})
     return desk
@@ -32,14 +32,14 @@ def ask(desk: TeamDesk, token: str) -> Whereabouts | Refusal:
 
 
 def test_each_team_hears_of_itself(desk: TeamDesk) -> None:
-    """A team's token opens its own part of what the office told, and no other."""
+    """A team's token gives what the office told about this team, and about no other."""
     for team, token in TOKENS.items():
         assert ask(desk, token) == waits(team)
     assert not desk.refused
 
 
 def test_a_guess_opens_nothing(desk: TeamDesk) -> None:
-    """10,000 guesses are refused and counted; a hash is no token."""
+    """10,001 guesses are refused and counted, among them hashes and tokens that miss a letter."""
     for _ in range(9_990):
         assert isinstance(ask(desk, new_token()), Refusal)
     for token in ("", "Ants", *[seal.hash_token(token, SALT) for token in TOKENS.values()] * 2):
@@ -63,14 +63,14 @@ def test_what_is_no_question_is_refused(desk: TeamDesk, payload: bytes) -> None:
 
 
 def test_before_the_office_has_told_anything() -> None:
-    """Until then nobody knows; the same question may be answered a moment later."""
+    """Before the office has told anything, a question is refused with `again`."""
     found = ask(TeamDesk(), TOKENS["Ants"])
     assert isinstance(found, Refusal)
     assert (found.why, found.again) == (say("refused.office-is-silent"), True)
 
 
 def test_the_newest_word_counts(desk: TeamDesk) -> None:
-    """What the office tells replaces what it told before, with another salt too."""
+    """What the office tells replaces what it told before, also if its hashes have another salt."""
     salt = bytes(range(16))
     desk.tell({seal.hash_token(TOKENS["Ants"], salt): waits("Ants")})
     assert ask(desk, TOKENS["Ants"]) == waits("Ants")

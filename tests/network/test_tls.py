@@ -15,8 +15,9 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from court_stub import CourtStub, until
+from court_stub import CourtStub
 from keyed import KeyedCourt, keyed_file
+from waiting import until
 
 from lacoc_client.controller import Controller, Hold
 from lacoc_server.doors.keys.certificates import LIFE, Authority, utc_now
@@ -104,7 +105,7 @@ def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: st
 
 
 def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
-    """If only the court or only the client uses keys, the message says which one."""
+    """If only the court or only the client uses keys, the message says what is wrong."""
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")
@@ -151,9 +152,8 @@ def test_passwords_are_on_disk_only_while_a_court_opens(
     file = keyed_file(tmp_path)
     monkeypatch.setattr(os, "open", noted)
     with KeyedCourt(file) as court, court.enter("left"):
-        pass
+        assert list((tmp_path / "t").iterdir()) == []
     assert [mode for path, mode in seen if path.endswith("users")] == [0o600]
-    assert list((tmp_path / "t").iterdir()) == []
 
 
 def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> None:

@@ -12,26 +12,18 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
+from lacoc_client.film.chromium import FLAGS, SHELL, on_path
+
 WEB = Path(__file__).parents[2] / "client" / "web"
 PAGES = WEB.parent / "lacoc_client" / "pages"
 
-FLAGS = (
-    "--no-sandbox",  # tests may run as root, in a container
-    "--enable-unsafe-swiftshader",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",  # draws without a graphics card, the same on every machine
-    "--ignore-gpu-blocklist",
-    # Chromium composes the page in plain software, not with software OpenGL: half the time.
-    "--disable-gpu-compositing",
-    "--disable-background-networking",
-)
+__all__ = ["FLAGS", "NoBrowser", "OpenPage", "build_pages", "find_chromium"]
 
 OpenPage = Callable[..., Page]
 """A function that opens a page in its own browser context, with `Browser.new_context` options."""
 
-_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 _HOW = (
-    "The tests of the pages need Chromium: install it (Debian: apt-get install chromium), or name "
+    f"The tests of the pages need Chromium: install it (Debian: apt-get install {SHELL}), or name "
     "the program in the environment variable CHROMIUM."
 )
 _SOURCES = ("src", "public", "index.html", "package-lock.json", "vite.config.ts")
@@ -55,10 +47,10 @@ def find_chromium() -> str:
             raise NoBrowser(f"CHROMIUM is {named!r}, which is no program. {_HOW}")
         return found
     with locked("chromium"):
-        found = _on_path()
+        found = on_path()
         if found is None and os.name == "posix" and os.geteuid() == 0 and shutil.which("apt-get"):
             _install()
-            found = _on_path()
+            found = on_path()
     if found is None:
         raise NoBrowser(_HOW)
     return found
@@ -123,18 +115,17 @@ def locked(name: str) -> Iterator[None]:
         yield
 
 
-def _on_path() -> str | None:
-    return next((found for name in _NAMES if (found := shutil.which(name))), None)
-
-
 def _install() -> None:
     """Try to install Debian's Chromium; the caller checks whether that worked."""
     quiet = {
         "stdout": subprocess.DEVNULL,
         "env": {**os.environ, "DEBIAN_FRONTEND": "noninteractive"},
     }
-    for words in (["update"], ["install", "--yes", "--no-install-recommends", "chromium"]):
+    install = ("install", "--yes", "--no-install-recommends")
+    for words in (("update",), (*install, SHELL), (*install, "chromium")):
         subprocess.run(["apt-get", "-qq", *words], check=False, timeout=600, **quiet)  # type: ignore[call-overload]
+        if on_path():
+            return
 
 
 def _newest() -> float:

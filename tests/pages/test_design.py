@@ -269,6 +269,21 @@ def test_other_gaits_are_watched_and_taken(
     page.sees(".variants", "Round 1")  # they are of this table
 
 
+def test_a_table_goes_to_the_page_on_which_teams_enter(
+    open_page: OpenPage, address: tuple[str, str]
+) -> None:
+    """Its files are in the fragment of the address that was typed, which no server gets to see."""
+    page = designer(open_page, address)
+    page.page.click(".bar .name")
+    page.page.get_by_label("Address of the contest's pages").fill(address[0])
+    with page.page.context.expect_page() as coming:
+        page.page.get_by_role("button", name="Enter a contest").click()
+    tab = coming.value
+    tab.wait_for_url("**/enter#files=*", wait_until="commit")
+    assert tab.url.startswith(f"{address[0]}/enter#")
+    assert "Loco-data.txt" in tab.url
+
+
 def test_a_table_goes_to_practice(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:

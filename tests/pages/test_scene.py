@@ -112,7 +112,7 @@ def test_the_page_has_every_body_where_mujoco_has_it(
     stand.open(name, frames=0, camera="map")
     rng = np.random.default_rng(7)
     for _ in range(8):
-        for robot in world._robots:
+        for robot in world.robots:
             at = robot.root_qpos
             quat = rng.normal(size=4)
             world.data.qpos[at : at + 3] = rng.uniform(-1.2, 1.2, 3)

@@ -20,12 +20,17 @@ _LIMIT_S = 300  # longer than any command needs, unless it hangs
 SAMPLE = "import lacoc_robots.samples.hexapod as robot; print(robot.__path__[0])"
 IMPORT_ALL = """
 import importlib, pkgutil
+EXTRAS = "lacoc_client.film", "lacoc_server.simulate.environments"
+def failed(name):
+    if not name.startswith(EXTRAS):
+        raise
 for name in {packages}:
     package = importlib.import_module(name)
-    for module in pkgutil.walk_packages(package.__path__, name + "."):
-        if not module.name.endswith("__main__"):
+    for module in pkgutil.walk_packages(package.__path__, name + ".", failed):
+        if not module.name.endswith("__main__") and not module.name.startswith(EXTRAS):
             importlib.import_module(module.name)
 """
+"""Imports all modules but those of extras that are not installed."""
 
 
 class Environment:
@@ -98,6 +103,8 @@ def try_contestant(env: Environment) -> None:
     error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr
     assert error.count("\n") == 1, error
     assert 'pip install "lacoc[server]"' in error, error
+    error = env.run("lacoc", "film", "a.mcap", "a.mp4", code=2).stderr
+    assert 'pip install "lacoc[film]"' in error, error
     error = env.run("lacoc", "contest", "keys", "--host", "localhost", code=2).stderr
     assert re.search(r"Needs cryptography.*lacoc\[server\]", error), error
 

@@ -175,7 +175,7 @@ def test_events_as_csv_open_in_excel_in_their_language(record: Record) -> None:
 def test_the_result_as_json(record: Record, result: Result) -> None:
     """The result as JSON can be read as a Result; a match without a result is refused."""
     assert msgspec.json.decode(export.result_json(record), type=Result) == result
-    record.result = None
+    record.results = []
     with pytest.raises(UserError, match="has no result: it was never finished"):
         export.result_json(record)
 

@@ -498,7 +498,7 @@ def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
         path.write_bytes(data)
         record = Record.read(path)
         assert record.lost, opcode
-        assert "not the file's index" in words_of(record)
+        assert "has a damaged index" in words_of(record)
         assert len(record.frames) == 40
     path.write_bytes(whole[:-1])
     assert Record.read(path).lost

@@ -16,7 +16,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_client.bot_player import BotPlayer
 from lacoc_client.controller import Controller
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.contest.live.court_link import CourtLink, CourtResult, NoAnswer
+from lacoc_server.contest.live.court_link import Asked, CourtLink, CourtResult, NoAnswer
 from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import AssignedSeat
@@ -78,12 +78,23 @@ class Office:
 
     def asks(
         self, left: str | AssignedSeat, right: str | AssignedSeat, call: str = "", **changes: Any
-    ) -> Done | Refusal | NoAnswer:
+    ) -> Done | Refusal:
         """Ask the court to play a match, and return its answer."""
         sides = zip(SEATS, (left, right), strict=True)
         seats = [entry(seat, one) if isinstance(one, str) else one for seat, one in sides]
-        changes = {"arena_settings": QUICK} | changes
-        return self.link.assign(call or new_call(), FIXTURE, seats, **changes).wait()
+        changes, call = {"arena_settings": QUICK} | changes, call or new_call()
+        return self.answer(lambda: self.link.assign(call, FIXTURE, seats, **changes))
+
+    def withdraw(self, call: str) -> Done | Refusal:
+        """Ask the court to take a match back, and return its answer."""
+        return self.answer(lambda: self.link.withdraw(call))
+
+    def answer(self, ask: Callable[[], Asked]) -> Done | Refusal:
+        """Ask a court until it answers, as an office does: a busy machine may be late."""
+        end_s = time.monotonic() + WAIT_S
+        while isinstance(answer := ask().wait(), NoAnswer):
+            assert time.monotonic() < end_s, "the court does not answer"
+        return answer
 
     def refusal(self, *sides: str | AssignedSeat, **changes: Any) -> Refusal:
         """Assign a match that the court must refuse, and return the refusal."""

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
+
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
@@ -120,7 +122,14 @@ class ScriptedPhysics:
         return None
 
     def save(self) -> bytes:
-        return self.digest + self.poses()
+        kept = (self.steps, self.ticks, self._places, self._angles)
+        return self.digest + msgspec.msgpack.encode(kept)
+
+    def load(self, saved: bytes) -> None:
+        self.digest = saved[:8]
+        kind = tuple[int, int, list[tuple[float, float]], list[Posture]]
+        kept = msgspec.msgpack.decode(saved[8:], type=kind)
+        self.steps, self.ticks, self._places, self._angles = kept
 
     def poses(self) -> bytes:
         return b"".join(

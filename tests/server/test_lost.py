@@ -37,9 +37,9 @@ pytestmark = pytest.mark.slow
 LINK_S = 3.0
 """Zenoh may close a connection after this long without a message [s]."""
 WATCHED_BEATS = 600
-"""12 s: longer than a silent connection could stop all others (docs/facts.md 5)."""
+"""12 s. A frozen watcher could stop the court's traffic for ten seconds (docs/facts.md 5)."""
 WAITED_MS = 2000.0
-"""A court that waits for a frozen watcher is at least this late; a merely busy one is not."""
+"""A court that waits for a frozen watcher is at least this late [ms]; a busy one is not."""
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
     with open_client([hall.court.address()]) as session:
 
         def lose_and_guess(bot: subprocess.Popen[bytes]) -> None:
-            """Kill the left seat's program; then try to take its seat with four wrong tokens."""
+            """Kill the left seat's program; check that no wrong token takes its seat."""
             hall.loses(bot.kill)
             for token in (hall.court.seat["right"].token, hall.court.referee.token, "guess", ""):
                 thief = Controller(session, "main", "left", token, "Thieves")
@@ -130,7 +130,7 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
 def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall: Hall, answer_s: float
 ) -> None:
-    """A decision whose answer is lost is made at most once, and the client gets an error."""
+    """Without an answer in time, the client gets an error; the decision is made at most once."""
     hall.bot("left")
     hall.bot("right")
     hall.play()
@@ -174,7 +174,7 @@ def test_a_pulled_cable(hall: Hall) -> None:
 
 
 @pytest.mark.long
-def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
+def test_loss_and_jitter_make_no_seat_silent(hall: Hall) -> None:
     """On a link with delay, jitter and loss, keys take effect and the seat is never silent."""
     with SlowLink(hall.court.address(), delay_s=0.05, jitter_s=0.04, loss=0.03) as link:
         hall.bot("left", link.address)
@@ -207,7 +207,7 @@ def frames_of(hall: Hall) -> int:
 
 @pytest.mark.long
 def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
-    """A frozen spectator, gateway or referee's program delays neither the court nor others."""
+    """Frozen watchers (spectator, gateway, referee) delay neither the court nor other clients."""
     hall.bot("left")
     hall.bot("right")
     where = ("--contest", str(hall.contest), "--court", "main")

@@ -11,24 +11,14 @@ from typing import Any
 
 import psutil
 import pytest
+from handed_in import players_of
 from lacoc_process import run_lacoc, started
 
-from lacoc_robots.library import sample_gait_files
 from lacoc_server.commands.simulate import simulate_command
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.reader import Record
 
 BROKEN = b"1\n1\n5"
-
-
-def handed_in(folder: Path, *names: str, locomotion: bytes | None = None) -> list[str]:
-    """Make a folder with a gait for each name, and return the players that steer them."""
-    sample = sample_gait_files("hexapod").locomotion
-    assert sample is not None
-    for name in names:
-        (folder / name).mkdir()
-        (folder / name / "LocoTra-data.txt").write_bytes(locomotion or sample.data)
-    return [f"straight@{folder / name}" for name in names]
 
 
 def in_json(*words: str) -> list[dict[str, Any]]:
@@ -44,8 +34,8 @@ def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
 
     One line names the match's record, the other one has the standings.
     """
-    anna, ben, dai = handed_in(tmp_path, "anna", "ben", "大")
-    (chie,) = handed_in(tmp_path, "chie", locomotion=BROKEN)
+    anna, ben, dai = players_of(tmp_path, "anna", "ben", "大")
+    (chie,) = players_of(tmp_path, "chie", locomotion=BROKEN)
     emi = f"straight@{tmp_path / 'emi'}"
     records = tmp_path / "records"
     out, nobody, begin, *rest = in_json(
@@ -83,9 +73,9 @@ def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
 
 
 def test_without_two_players_left_nothing_begins(tmp_path: Path) -> None:
-    """If fewer players are left than play a match, the command ends with all mistakes."""
-    (anna,) = handed_in(tmp_path, "anna")
-    wrong = handed_in(tmp_path, "ben", "chie", locomotion=BROKEN)
+    """If fewer than two players can play, the command fails and says why the others can't."""
+    (anna,) = players_of(tmp_path, "anna")
+    wrong = players_of(tmp_path, "ben", "chie", locomotion=BROKEN)
     with pytest.raises(FileRefused) as refused:
         simulate_command([anna, *wrong], seconds=1.0, leave_out=True)
     assert {mistake.file for mistake in refused.value.mistakes} == {
@@ -96,8 +86,8 @@ def test_without_two_players_left_nothing_begins(tmp_path: Path) -> None:
 
 
 def test_a_robot_that_falls_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A robot that does not stand is left out, and its player is named beside the mistakes."""
-    anna, ben, chie = handed_in(tmp_path, "anna", "ben", "chie")
+    """A robot that does not stand is left out; the command names its player and the mistake."""
+    anna, ben, chie = players_of(tmp_path, "anna", "ben", "chie")
     gait = tmp_path / "chie" / "LocoTra-data.txt"
     leaning = gait.read_bytes().replace(b"20\t20\t20\t20\t20\t20", b"-50\t-50\t-50\t80\t80\t80", 1)
     gait.write_bytes(leaning)
@@ -146,7 +136,7 @@ def test_a_request_to_end_leaves_nothing_half_done(
 
 @pytest.mark.slow
 def test_a_worker_that_dies_is_told(many: "subprocess.Popen[str]", tmp_path: Path) -> None:
-    """If a worker process is killed, the command says whose match it played, and ends."""
+    """If a worker process is killed, the command names its match, ends, and leaves no record."""
     for child in psutil.Process(many.pid).children(recursive=True):
         if "spawn_main" in " ".join(child.cmdline()):
             child.kill()

@@ -126,11 +126,11 @@ def test_x_comes_before_the_digit_of_its_tick() -> None:
     assert (seat.key, seat.applied_seq, seat.refused_seq) == (STAND, 1, 2)
 
 
-def test_x_also_when_it_lies_on_its_back() -> None:
+def test_x_works_for_a_robot_on_its_back() -> None:
     """Rules 3: [x] also works when the robot lies on its back."""
     stage = Stage.real(overrides=QUICK).to(P.PLAYING)
     world = stage.match.physics
-    robot = world._robots[LEFT]
+    robot = world.robots[LEFT]
     world.data.qpos[robot.root_qpos + 2] = 0.2
     world.data.qpos[robot.root_qpos + 3 : robot.root_qpos + 7] = 0.0, 1.0, 0.0, 0.0
     stage.run(50)
@@ -166,7 +166,6 @@ def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
 
 def test_a_wide_robot_needs_more_room() -> None:
     """[x] skips a start place nearer to the other robot than the radii of both robots together."""
-    stage = Stage("flag-strike", QUICK)
     radii = {}
     for robot in ("hexapod", "long-legs"):
         stage = Stage("flag-strike", QUICK)
@@ -195,7 +194,7 @@ def test_both_restart_at_once() -> None:
 
 
 @pytest.mark.parametrize(("other_y_m", "roomiest_y_m"), [(-0.05, 0.1), (0.15, 0.0)])
-def test_where_no_place_is_free_the_roomiest_is_used(other_y_m: float, roomiest_y_m: float) -> None:
+def test_if_no_place_is_free_the_farthest_is_used(other_y_m: float, roomiest_y_m: float) -> None:
     """If no start place is free, [x] takes the one that is farthest from the other robot."""
     one = {"game": {"starts": [[-0.6, 0.0], [-0.6, 0.1]]}, "match": {"countdown_s": 0.02}}
     script = Script(poses={1: {RIGHT: (-0.6, other_y_m)}})
@@ -206,7 +205,7 @@ def test_where_no_place_is_free_the_roomiest_is_used(other_y_m: float, roomiest_
 
 
 def test_being_put_back_claims_nothing() -> None:
-    """Rules 5: the disc on which [x] puts a robot is its last disc, and nothing flips."""
+    """Rules 5: the disc on which [x] puts a robot becomes its last disc, and nothing flips."""
     own = (-0.75, -0.15)
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 2: {LEFT: own}})
     stage = playing(script=script, ticks=3)
@@ -233,13 +232,13 @@ def _postures(stage: Stage, ticks: int) -> list[int]:
 
 
 @pytest.mark.parametrize("repeat", [True, False])
-def test_whether_sequences_repeat_is_the_arenas_to_say(repeat: bool) -> None:
+def test_the_arena_says_whether_sequences_repeat(repeat: bool) -> None:
     """The arena's setting `repeat` says whether a sequence repeats or runs once."""
     walked = _postures(playing(match={"repeat": repeat, "countdown_s": 0.02}), 600)
     assert (max(walked) > 0, 0 in walked[-300:]) == (True, repeat)
 
 
-def test_how_a_sequence_goes_on_is_the_robots_to_say() -> None:
+def test_the_robot_file_says_how_a_sequence_goes_on() -> None:
     """Rules 3: with advance = "time" in the robot file, each posture lasts hold_s."""
     _, data = find_robot("hexapod")
     by_time = data.replace(b'advance = "reached"', b'advance = "time"')
@@ -270,7 +269,7 @@ def test_a_silent_seat_stands_until_a_new_command() -> None:
     assert stage.frame.seats[LEFT].key == TURN_LEFT
 
 
-def test_leaving_a_match_is_standing_and_the_seat_stays_ones_own() -> None:
+def test_a_team_that_leaves_in_play_keeps_its_seat() -> None:
     """A team that leaves during play can come back to its seat; meanwhile its robot stands."""
     stage = playing(ticks=1)
     stage.beat(key(LEFT, FORWARD))

@@ -135,7 +135,7 @@ def test_a_team_that_comes_back_without_files_keeps_its_own(room: Room) -> None:
     assert [seat.robot for seat in sheet(again, 2).seats] == ["Quadruped", "Hexapod"]
 
 
-def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
+def test_a_team_that_joins_after_the_end_has_a_seat_in_the_next_match(room: Room) -> None:
     """A team that joins after a match has ended has a seat in the next one."""
     left, right = room.controller(0), room.controller(1)
     left.join()
@@ -146,8 +146,8 @@ def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
     right.ready()
 
 
-def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
-    """A controller that is silent when a match ends is silent in the next match too."""
+def test_a_silent_seat_stays_silent_in_the_next_match(room: Room) -> None:
+    """A seat that is silent when a match ends is silent in the next one, until it is heard."""
     left, right = room.controller(0), room.controller(1)
     left.join()
     right.join()  # and is not heard from then on
@@ -160,7 +160,7 @@ def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
     assert not seat_of(left, 0).flags & SeatFlag.SILENT
 
 
-def test_who_left_in_play_and_came_back_is_heard(room: Room) -> None:
+def test_a_contestant_who_comes_back_is_heard(room: Room) -> None:
     """A contestant who leaves in play and joins again is no longer silent."""
     players = playing(room)
     players[0].leave()

@@ -1,4 +1,4 @@
-"""A court plays what the office of its contest assigns, and nothing else."""
+"""Tests that a court plays what the office of its contest assigns, and nothing else."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -61,7 +61,7 @@ def waiting(office: Office) -> Office:
     if office.link.result is not None and office.link.result.outcome != "void":
         call = office.assign("Wasps", "Moths")
     if call:
-        assert office.link.withdraw(call).wait() == Done()
+        assert office.withdraw(call) == Done()
     office.until(lambda: office.link.call == "")
     return office
 
@@ -98,8 +98,8 @@ def test_a_court_waits_for_the_office(waiting: Office) -> None:
 def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
     """Two teams play an assigned match without a referee; the office gets the result.
 
-    The sheet has call, fixture and teams before anybody joins. The record is proven, and the court
-    then waits for another assignment, which may have another arena.
+    The sheet has call, fixture and teams before anybody joins, and the record is proven. The court
+    shows the result until the next assignment, which may have another arena.
     """
     call = waiting.assign("Ants", "Bees")
     sheet = waiting.link.sheet
@@ -130,7 +130,7 @@ def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
 
 
 def test_only_the_tokens_of_the_match_open_its_seats(waiting: Office) -> None:
-    """A stranger's token is wrong; a team at the wrong seat is told which seat it has."""
+    """Strangers and the referee open no seat; a team at the wrong seat is told which one it has."""
     waiting.assign("Ants", "Bees")
     assert why_not(waiting.controller("left", "strangers")) == "refused.wrong-token"
     left = Controller(waiting.session, "main", "left", WHISTLE, "Ants")
@@ -155,7 +155,7 @@ def test_frozen_files_win(waiting: Office) -> None:
 
 
 def test_the_same_call_twice_opens_one_match(waiting: Office) -> None:
-    """The same call is accepted again and changes nothing; after its match it is refused."""
+    """The same call is accepted again and changes nothing; after another call it is refused."""
     call = waiting.assign("Ants", "Bees")
     left = waiting.controller("left", "Ants")
     left.join()
@@ -167,13 +167,13 @@ def test_the_same_call_twice_opens_one_match(waiting: Office) -> None:
 
 
 def test_a_match_that_has_not_begun_is_withdrawn(waiting: Office, folder: Path) -> None:
-    """The office takes a match back until its countdown begins; its record says so."""
+    """The office withdraws a match that has not begun; its record says that it is void."""
     call = waiting.assign("Ants", "Bees", arena_settings=REFEREED)
     assert waiting.link.sheet is not None
     match_id = waiting.link.sheet.match_id
-    assert waiting.link.withdraw(new_call()).wait() == Done()
-    assert waiting.link.call == call
-    assert waiting.link.withdraw(call).wait() == Done()
+    assert waiting.withdraw(new_call()) == Done()
+    waiting.until(lambda: waiting.link.call == call)
+    assert waiting.withdraw(call) == Done()
     waiting.until(lambda: waiting.link.call == "")
     withdrawn = record(folder, match_id).result
     assert withdrawn is not None
@@ -192,7 +192,7 @@ def test_a_match_that_is_played_goes_on(waiting: Office) -> None:
     waiting.phase(Phase.PLAYING)
     refusal = waiting.refusal("Cats", "Dogs")
     assert (refusal.why.code, refusal.again) == ("refused.match-is-played", True)
-    answer = waiting.link.withdraw(call).wait()
+    answer = waiting.withdraw(call)
     assert isinstance(answer, Refusal)
     assert answer.why.code == "refused.match-is-played"
     judge.decide(Halt(), "", "Kubota")
@@ -206,7 +206,7 @@ def test_a_match_that_is_played_goes_on(waiting: Office) -> None:
 
 
 def test_a_void_match_has_a_result_too(waiting: Office) -> None:
-    """A referee's abort makes the match void; the court keeps it until the next assignment."""
+    """If a referee aborts a match, the office gets the result "void" with the call and teams."""
     call = waiting.assign("Ants", "Bees", arena_settings=REFEREED)
     referee(waiting).decide(Abort(), "nobody came", "Kubota")
     waiting.until(lambda: waiting.link.result is not None)
@@ -215,7 +215,7 @@ def test_a_void_match_has_a_result_too(waiting: Office) -> None:
 
 
 def test_a_team_that_plays_again_in_its_seat_keeps_it(waiting: Office) -> None:
-    """A team with the same seat and token goes on with its session; the other one must leave."""
+    """A team that is assigned its seat again keeps its session; a replaced team's session ends."""
     waiting.assign("Ants", "Bees")
     players = waiting.plays("Ants", "Bees")
     call = waiting.assign("Ants", "Cats", arena_settings=REFEREED)
@@ -228,7 +228,7 @@ def test_a_team_that_plays_again_in_its_seat_keeps_it(waiting: Office) -> None:
     right.join()
     right.ready()
     waiting.go_on([players[0], right], until=lambda: waiting.link.phase is Phase.READY)
-    assert waiting.link.call == call
+    waiting.until(lambda: waiting.link.call == call)
 
 
 @pytest.mark.parametrize(
@@ -245,13 +245,13 @@ def test_a_team_that_plays_again_in_its_seat_keeps_it(waiting: Office) -> None:
 def test_what_can_not_be_played_is_refused(
     waiting: Office, changes: dict[str, object], code: str
 ) -> None:
-    """The court refuses arenas that it does not have, and files that do not pass the weigh-in."""
+    """The court refuses an unfit arena, wrong settings and limits, and files that break a limit."""
     assert waiting.refusal("Ants", "Bees", **changes).why.code == code
-    assert waiting.link.call == ""
+    waiting.until(lambda: waiting.link.call == "")
 
 
 def test_mistakes_in_frozen_files_are_told(waiting: Office) -> None:
-    """The refusal names the team, and every mistake in its files."""
+    """A refusal of frozen files names the team, and the file of each mistake."""
     wrong = entry("right", "Bees", postures=SentFile("bees.txt", b"Num of Posture\t1\n0 Key\t1"))
     refusal = waiting.refusal("Ants", wrong)
     assert refusal.why.code == "refused.assigned-files"
@@ -260,7 +260,7 @@ def test_mistakes_in_frozen_files_are_told(waiting: Office) -> None:
 
 
 def test_strangers_are_refused_and_counted(waiting: Office) -> None:
-    """A wrong token is refused and counted, and no message disturbs the court."""
+    """A wrong token is refused and counted; a message that is too large gets no answer."""
     stranger = CourtLink(waiting.session, "main", "the token of nobody")
     before = waiting.link.health
     assert before is not None
@@ -281,11 +281,11 @@ def test_strangers_are_refused_and_counted(waiting: Office) -> None:
         return health is not None and health.dropped.get("wrong-token", 0) == counted
 
     waiting.until(told)
-    assert waiting.link.call == ""
+    waiting.until(lambda: waiting.link.call == "")
 
 
 def test_a_link_without_a_court_says_that_there_is_no_answer(office: Office) -> None:
-    """A request that reaches no court gives `NoAnswer`, and nothing is known of such a court."""
+    """A request to a court that does not exist gives `NoAnswer`; the link has no call or result."""
     link = CourtLink(office.session, "nowhere", "any token of an office")
     assert link.withdraw("a-call").wait() is NoAnswer.NO_ANSWER
     link.poll()
@@ -293,7 +293,7 @@ def test_a_link_without_a_court_says_that_there_is_no_answer(office: Office) -> 
 
 
 def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
-    """After kill -9 in play, a court has its call, teams, tokens and files from the record alone.
+    """After kill -9 in play, a court reads its call, teams, tokens and files from the record.
 
     The match is played to its end, and its record is proven.
     """
@@ -349,9 +349,9 @@ def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
 
 
 def test_a_team_asks_where_it_plays(waiting: Office) -> None:
-    """A court answers a team with what the office told; nobody else can answer in its name.
+    """A court tells a team what the office said about it; nobody else can answer for the court.
 
-    A client that declares that it answers such questions gets none, so it collects no token.
+    A client that offers to answer these questions receives none, so it collects no token.
     """
     keys = Keys("main")
     there = Whereabouts(team="Ants", state="waits", said=say("team.awaits-draw"))

@@ -27,7 +27,7 @@ def test_speed() -> None:
 
 
 def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
-    """The offset, less whole beats, says when a court's beats come, whenever it was started."""
+    """Beats come at the offset modulo 20 ms of the clock, whenever the court was started."""
     for now_s in (0.0, 7.0, 7.011):
         phases = [
             (now_s + Pace(now_s, offset_s=offset_s).wait_s(now_s)) % 0.02

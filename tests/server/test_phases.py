@@ -109,10 +109,9 @@ def test_ready_needs_every_seat_joined_and_ready() -> None:
     assert stage.beats[-1].sheet_changed, "it names the scene with the robots"
 
 
-@pytest.mark.parametrize("phase", [P.LOBBY, P.READY])
 @pytest.mark.parametrize("item", [LeaveSeat(LEFT), ReadySeat(LEFT, False)])
-def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
-    """If a team leaves or takes ready back, the match returns to LOBBY and its field is empty."""
+def test_back_to_lobby(item: LeaveSeat | ReadySeat) -> None:
+    """If a team leaves or takes ready back, READY ends: the match is in LOBBY, without robots."""
     stage = Stage().to_ready()
     stage.beat(item)
     assert stage.phase is P.LOBBY
@@ -122,7 +121,7 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
     assert stage.phase is P.READY
 
 
-def test_an_empty_seat_is_nothing_but_empty() -> None:
+def test_a_seat_that_a_team_left_is_empty() -> None:
     """A team that leaves in LOBBY leaves an empty seat: no name, not ready, not silent."""
     stage = Stage().to(P.LOBBY)
     stage.beat(ReadySeat(LEFT, True), SilentSeat(LEFT))
@@ -335,8 +334,11 @@ def test_on_resume_each_drive_goes_on_where_it_stopped() -> None:
         straight.beat()
 
 
-def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
-    """A joined team that sends another robot during play gets it only in the next match."""
+def test_seats_stay_as_they_are_in_play() -> None:
+    """In play a team can't change its robot or take ready back, and it keeps a seat that it leaves.
+
+    Another robot that it sends is for the next match.
+    """
     stage = Stage().to(P.PLAYING)
     assert stage.send(join(LEFT)) == Done()
     changed = stage.send(join(LEFT, robot="quadruped"))
@@ -350,7 +352,7 @@ def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
     assert stage.match.sheet().seats[LEFT].team == "Ants"
 
 
-def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
+def test_a_team_that_joins_after_the_end_plays_in_the_next_match() -> None:
     """A team that joins after the end gets a seat in the next match, not in this one."""
     stage = Stage().to(P.LOBBY)
     stage.beat(LeaveSeat(RIGHT))
@@ -363,7 +365,7 @@ def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
 
 
 @pytest.mark.parametrize("change", [LeaveSeat(RIGHT), ReadySeat(RIGHT, False)])
-def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change: Input) -> None:
+def test_start_is_refused_if_a_team_changes_its_mind_in_its_beat(change: Input) -> None:
     """`start` is refused if a team leaves or takes ready back in the same beat."""
     stage = Stage().to(P.READY)
     *_, started = stage.beat(change, decide(d.Start())).outcomes
@@ -391,11 +393,11 @@ def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
 
 
 READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
-"""Settings of a match without a referee that ends when nobody was heard for 150 beats."""
+"""Settings of a match without a referee; it ends when nobody was heard for 3 s (150 beats)."""
 
 
 @pytest.mark.parametrize("others", [[], [LeaveSeat(RIGHT)]])
-def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
+def test_a_team_may_leave_in_the_countdown(others: list[LeaveSeat]) -> None:
     """Rules 7: a team may leave in the countdown; when all teams have left, the match ends."""
     stage = Stage(overrides=READY).to(P.READY)
     stage.beat()
@@ -426,7 +428,7 @@ def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> N
     assert stage.match.result().reason == say("over.nobody-heard", minutes=0.05)
 
 
-def test_who_comes_back_is_heard() -> None:
+def test_a_match_goes_on_if_a_team_comes_back() -> None:
     """A match without a referee goes on if a team comes back after all were silent."""
     stage = Stage(overrides=READY).to_ready()
     stage.until(P.PLAYING)
@@ -448,7 +450,7 @@ def test_a_match_may_wait_for_ever(match: dict[str, object]) -> None:
     assert stage.phase is P.PLAYING
 
 
-def test_a_practice_outlives_a_coffee_break() -> None:
+def test_practice_ends_after_15_minutes_of_silence() -> None:
     """Rules 7: practice ends after 15 minutes of silence, and not after 14."""
     stage = Stage("practice").to_playing()
     stage.beat(SilentSeat(LEFT))
@@ -485,7 +487,7 @@ def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
 
 
 def test_silence_and_hearing_are_only_told_once() -> None:
-    """A silence that is reported again is logged only once, and so is its end."""
+    """A silence that is reported twice is logged once; the end of a silence is too."""
     stage = Stage().to(P.PLAYING)
     for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
         stage.beat(item)

@@ -4,16 +4,15 @@ import json
 import struct
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
 from benchmarks.played import elsewhere, play
 from benchmarks.proof import Prover, forge
 from msgspec import structs
 from typer.testing import CliRunner
+from verdicts import verdict
 
-from lacoc_server.commands.verify import app as verify_app
-from lacoc_server.journal.replay import verify
+from lacoc_server.commands.replay.verify import app as verify_app
 from lacoc_server.journal.section import Difference, Finding
 from lacoc_server.journal.verdict import Kind, Verdict, conclude, other_arithmetic
 from lacoc_server.world import arithmetic
@@ -49,12 +48,6 @@ def paths(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Give the records of two matches of each game, between hexapods that push each other."""
     folder = tmp_path_factory.mktemp("proof")
     return [play(folder, number, SECONDS) for number in (0, 30, 1, 31)]
-
-
-def verdict(record: Record, **options: Any) -> Verdict:
-    *_, last = verify(record, **options)
-    assert isinstance(last, Verdict)
-    return last
 
 
 def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
@@ -206,7 +199,7 @@ def test_a_model_may_have_other_last_bits(
             data = {**event.data, "model": "f" * 16}
             record.events[at] = structs.replace(event, data=data)
     assert record.result is not None
-    record.result = structs.replace(record.result, model="f" * 16)
+    record.results = [structs.replace(record.result, model="f" * 16)]
     found = Prover().verdict(record)
     assert isinstance(found, Verdict)
     assert found.kind is kind, render(found.said)

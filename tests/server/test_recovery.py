@@ -1,7 +1,5 @@
 """Tests that a killed court goes on with its match when it is started again."""
 
-import os
-import signal
 import subprocess
 import time
 from contextlib import ExitStack
@@ -10,14 +8,15 @@ from pathlib import Path
 import pytest
 from benchmarks.played import OTHER_ARITHMETIC
 from running import WAIT_S, party, served, write_contest
+from verdicts import verdict
+from waiting import until
 
 from lacoc_arenas import arena as arenas
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Kind
 from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Declare, Halt, Next, Official, Resume, Start
 from lacoc_shared.gait.tables import Level
@@ -67,12 +66,12 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
         those.decide(Resume(), Phase.PLAYING)
         seq = those.left.press(Level.LOCOMOTION, 1)
         those.until(lambda: those.frame.seats[0].applied_seq == seq)
-    assert_same(packed(folder))
+    assert verdict(packed(folder)).kind is Kind.SAME
 
 
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: Path) -> None:
-    """On a machine with another arithmetic, a killed match goes on, and an event says so.
+    """A killed match goes on under another arithmetic, and an event says that this has changed.
 
     The parts of the record before and after the kill both verify.
     """
@@ -98,12 +97,11 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
     record = packed(folder)
     made_by = [header.arithmetic["functions"] for header in record.headers]
     assert len(set(made_by)) == 2
-    *_, verdict = verify(record)
-    assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.OTHER_ARITHMETIC, render(verdict.said)
+    found = verdict(record)
+    assert found.kind is Kind.OTHER_ARITHMETIC, render(found.said)
 
 
-def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:
+def test_changed_settings_count_from_the_next_match(contest: Path, folder: Path) -> None:
     """A resumed match keeps its settings; a changed contest file applies to the next match."""
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
@@ -128,8 +126,8 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
         assert those.view.sheet.seats[0].colour == "#009e73"
 
 
-def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """The health verdict includes the time before a kill; too many restarts advise a rematch."""
+def test_the_health_verdict_outlives_a_kill(contest: Path, folder: Path) -> None:
+    """The health verdict counts the time before a kill; many restarts make it advise a rematch."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:
@@ -154,11 +152,11 @@ def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> 
     assert record.health.resumptions == 1
     assert record.health.played_beats > 150
     assert all(seat.expected >= 20 for seat in record.health.seats)
-    assert_same(record)
+    assert verdict(record).kind is Kind.SAME
 
 
 def kill(court: subprocess.Popen[str]) -> None:
-    os.kill(court.pid, signal.SIGKILL)
+    court.kill()
     court.wait()
 
 
@@ -170,17 +168,8 @@ def lasts(contest: Path, seconds: int) -> None:
 
 def packed(folder: Path) -> Record:
     """Wait until the first match's record is packed; return it."""
-    end_s = time.monotonic() + WAIT_S
-    while not (found := list(folder.glob("*main-001.mcap"))):
-        assert time.monotonic() < end_s, "the record was not packed"
-        time.sleep(0.05)
-    return Record.read(found[0])
-
-
-def assert_same(record: Record) -> None:
-    *_, verdict = verify(record)
-    assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    until(lambda: list(folder.glob("*main-001.mcap")))
+    return Record.read(next(folder.glob("*main-001.mcap")))
 
 
 def played(controller: Controller) -> int:
@@ -198,8 +187,7 @@ def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -
         view = Spectator(session, name)
         referee = RefereeClient(session, name, court.referee.token)
         for _ in range(3):
-            process.kill()
-            process.wait()
+            kill(process)
             while view.wait_frame(0.2) is not None:
                 pass
             process = stack.enter_context(served(contest, folder))
@@ -211,8 +199,7 @@ def test_a_running_court_is_not_taken_over(contest: Path, folder: Path) -> None:
     """Another court can't resume the match of a running court; after a kill it can."""
     with served(contest, folder) as process:
         assert unfinished(folder, "main", arenas.load("othello")) is None
-        process.kill()
-        process.wait()
+        kill(process)
         left = unfinished(folder, "main", arenas.load("othello"))
     assert left is not None
     assert left.match.phase in (Phase.CREATED, Phase.LOBBY)  # killed before or after beat 0

@@ -55,12 +55,12 @@ def stage_in(phase: Phase, script: Script | None = None) -> Stage:
 
 
 def refused(stage: Stage, decision: d.Decision, reason: str = "agreed") -> Phrase:
-    """Return why a decision is refused, after a check that the refusal changed nothing."""
-    before = encode(stage.match.result()), stage.match.history.state
+    """Check that a decision is refused, not logged and does not change the game; return why."""
+    before = stage.match.history.state
     outcome = stage.decide(decision, reason)
     assert isinstance(outcome, Refusal), outcome
     assert not any(event.kind == "decision" for event in stage.beats[-1].events)
-    assert stage.match.history.state is before[1]
+    assert stage.match.history.state is before
     assert not faults(outcome.why)
     assert outcome.why.code == "refused.decision"
     why = outcome.why.values["why"]
@@ -97,8 +97,8 @@ def test_what_is_legal_is_published(phase: Phase) -> None:
 
 @pytest.mark.parametrize("name", LEGAL)
 @pytest.mark.parametrize("phase", PHASES, ids=lambda phase: phase.name)
-def test_an_illegal_decision_is_refused_and_changes_nothing(phase: Phase, name: str) -> None:
-    """An illegal decision is refused, the reply says why, and nothing visible changes."""
+def test_only_a_legal_decision_is_made(phase: Phase, name: str) -> None:
+    """A legal decision is made; an illegal one is refused with the reason and changes nothing."""
     decision, phases = LEGAL[name]
     stage, twin = stage_in(phase), stage_in(phase)
     if phase in phases:
@@ -129,7 +129,7 @@ def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(LEGAL))
-def test_which_need_a_reason(name: str) -> None:
+def test_some_decisions_need_a_reason(name: str) -> None:
     """A decision that needs a reason is refused if the reason is blank; others need none."""
     decision, phases = LEGAL[name]
     if name in ("take-back", "unfreeze"):
@@ -181,7 +181,7 @@ def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
     assert seen(stage) == seen(twin)
 
 
-def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
+def test_a_decision_is_an_event_with_beat_referee_and_reason() -> None:
     """Rules 4.1: the log has a decision's beat, referee and reason; the reply has the scores."""
     stage = stage_in(P.PLAYING)
     beat = stage.beat(decide(d.Adjust("right", -2), "pushed the table", by="Takeda"))
@@ -203,7 +203,7 @@ def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
 
 
 def test_the_court_is_no_referee() -> None:
-    """A decision of the court itself is told as the court's, with its reason."""
+    """The log names the court, not a referee, for a decision of the court itself."""
     stage = Stage().to(Phase.PLAYING)
     stage.send(decide(d.Halt(), say("reason.court-restarted"), THE_COURT))
     (event,) = [event for event in stage.beats[-1].events if event.kind == "decision"]
@@ -278,7 +278,7 @@ def test_unfreeze() -> None:
     assert stage.send(key(RIGHT, FORWARD)) == Done()
 
 
-def test_unfreeze_where_nothing_is_frozen_any_more() -> None:
+def test_unfreeze_after_the_end_of_a_freeze() -> None:
     """`unfreeze` is refused after a freeze has ended, but can end a freeze set before play."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Freeze("left", 0.04))
@@ -358,7 +358,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """An old record's `clock` with positive `seconds` shortens the match, and is logged as then."""
+    """An old record's `clock` with positive `seconds` shortens the match; its event keeps them."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
@@ -383,7 +383,7 @@ def test_clock_past_the_end() -> None:
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, ticks)
 
 
-def test_what_changes_the_winner_is_told() -> None:
+def test_a_new_winner_is_an_event() -> None:
     """Each decision that changes the computed winner adds one event with the new result."""
     stage = stage_in(P.FINISHED)
 
@@ -437,7 +437,7 @@ def test_declare_keeps_both_results(phase: Phase, winner: str) -> None:
     assert (result.computed, result.official, result.scores) == ("right", winner, (18, 22))
 
 
-def test_official_without_a_word_is_what_was_computed() -> None:
+def test_official_without_declare_is_what_was_computed() -> None:
     """`official` without `declare` makes the computed result official."""
     stage = stage_in(P.FINISHED)
     reply = done(stage, d.Official())

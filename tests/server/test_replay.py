@@ -7,11 +7,12 @@ from pathlib import Path
 import msgspec
 import pytest
 from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, TURN_RIGHT, X, decide, join, key, setup
+from verdicts import verdict
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.journal.journal import SNAPSHOT_TICKS, Journal
 from lacoc_server.journal.replay import resume, verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Kind
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate import player, simulate
 from lacoc_server.world.world import World
@@ -47,7 +48,7 @@ BEATS = 420
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, list[Beat]]]:
-    """Give the path of a segment whose match is still on, and the match's beats."""
+    """Give the path of the record of a match that is still on, and the match's beats."""
     journal = Journal(Match(setup("flag-strike", QUICK), World), tmp_path_factory.mktemp("live"))
     assert journal.writer is not None
     beats = [journal.beat(INPUTS.get(number, ()))[0] for number in range(BEATS)]
@@ -60,13 +61,6 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, list[
     }
     yield journal.writer.path, beats
     journal.close()
-
-
-def verdict(record: Record) -> Verdict:
-    *beats, last = verify(record)
-    assert beats == sorted(set(beats))
-    assert isinstance(last, Verdict)
-    return last
 
 
 def boundaries(data: bytes) -> list[int]:
@@ -151,10 +145,10 @@ def test_one_flipped_bit_of_a_pose_is_named(
         ("snapshot", "the snapshot"),
     ],
 )
-def test_nothing_of_a_record_can_be_changed_unseen(
+def test_a_changed_event_touch_or_snapshot_is_named(
     what: str, words: str, live: tuple[Path, list[Beat]]
 ) -> None:
-    """Verify also finds a changed event, a missing touch or a changed snapshot."""
+    """If an event or a snapshot is changed, or a touch is missing, verify names it and its beat."""
     record = Record.read(live[0])
     if what == "event":
         event = record.events[-1]
@@ -204,18 +198,18 @@ def test_a_record_of_protocol_1_is_read_and_verified(
 
 @pytest.mark.slow
 def test_a_changed_result_is_named(tmp_path: Path) -> None:
-    """If the recorded result is changed, verify says so."""
+    """If the recorded result is changed, verify names the last beat and the result."""
     made = setup("othello", {"match": {"duration_s": 0.5}})
     ground = arenas.load("othello")
     simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)
     record = Record.read(tmp_path / "m.mcap")
     assert record.result is not None
-    record.result = msgspec.structs.replace(record.result, scores=(36, 0))
+    record.results = [msgspec.structs.replace(record.result, scores=(36, 0))]
     assert render(verdict(record).said) == f"beat {record.last_beat} differs: the result"
 
 
 def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
-    """A record of another version of MuJoCo is refused; the message says which one to install."""
+    """A record of another MuJoCo is not verified or resumed; the error says what to install."""
     record = Record.read(live[0])
     versions = {**record.header.versions, "mujoco": "3.9.9"}
     record.headers[0] = msgspec.structs.replace(record.header, versions=versions)
@@ -322,7 +316,7 @@ def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_p
         assert journal.writer is not None
         if number == 1:  # killed in the middle of beat 346
             journal.writer.input(346, key(LEFT, TURN_LEFT, 9))
-            _abandon(journal.writer)
+            journal.leave()
         else:
             journal.close()
     record = Record.read(segment)
@@ -331,11 +325,3 @@ def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_p
     events: list[Event] = [e for beat in beats[:401] for e in beat.events]
     assert encode(record.events) == encode(events)
     assert decode(record.frames[-1][1], Frame) == beats[400].frame
-
-
-def _abandon(writer: RecordWriter) -> None:
-    """Leave a record as a kill does: write nothing more."""
-    writer._file.flush()
-    writer._closing.set()
-    writer._syncer.join()
-    writer._file.close()

@@ -21,7 +21,7 @@ ROBOTS = ("hexapod", "long-legs", "quadruped", "octopod")
 def turned_about(it: World, seed: int) -> None:
     """Give every robot a random pose and random joint angles."""
     rng = np.random.default_rng(seed)
-    for robot in it._robots:
+    for robot in it.robots:
         at = robot.root_qpos
         quat = rng.normal(size=4)
         it.data.qpos[at : at + 3] = rng.uniform(-1.2, 1.2, 3)
@@ -89,12 +89,12 @@ def test_the_hash_is_of_what_is_drawn() -> None:
     assert World(ground, [entry()] * 2).scene_hash == worlds[1].scene_hash
 
 
-@pytest.mark.parametrize("kind", ["slide", "offset", "mesh"])
+@pytest.mark.parametrize("kind", ["slide", "offset", "hill"])
 def test_what_pages_cannot_draw_is_said(kind: str) -> None:
-    """A field with a joint or shape that pages can't draw is refused, and the error says so."""
+    """A field with a joint or shape that pages can't draw is refused with this reason."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body(name="gate")
-    if kind == "mesh":
+    if kind == "hill":
         spec.worldbody.add_geom(
             name="hill", type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname="h", rgba=[1, 1, 1, 1]
         )

@@ -4,10 +4,11 @@ import os
 from pathlib import Path
 
 import pytest
+from handed_in import handed_in, players_of, sample
 from stage import join, setup
 
 from lacoc_arenas import arena as arenas
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import find_robot
 from lacoc_server.commands.simulate import simulate_command
 from lacoc_server.match.match import Match
 from lacoc_server.simulate import SETTLE_BEATS, Player, player, simulate
@@ -27,12 +28,12 @@ OTHELLO = arenas.load("othello")
 def play(
     folder: Path | None = None, bots: tuple[str, str] = ("nearest", "straight"), late: int = 0
 ) -> Result:
-    players = [player(OTHELLO, 0, bots[0]), player(OTHELLO, 1, bots[1], late_ticks=late)]
-    return simulate(setup("othello", SHORT), players, folder)
+    both = [player(OTHELLO, 0, bots[0]), player(OTHELLO, 1, bots[1], late_ticks=late)]
+    return simulate(setup("othello", SHORT), both, folder)
 
 
 def test_a_match_to_its_end(tmp_path: Path) -> None:
-    """A simulated match has a result and a record, and goes through all phases in order."""
+    """A simulated match has a result and a record, and its phases come in their order."""
     result = play(tmp_path)
     assert (result.reason, result.clock_s, sum(result.scores)) == (say("over.time"), 4.0, 36)
     assert result.official == result.computed != ""
@@ -60,8 +61,8 @@ def test_it_can_be_watched() -> None:
     seen: list[int] = []
     ground = setup("othello", SHORT)
     players = [player(OTHELLO, seat, "straight") for seat in (0, 1)]
-    simulate(ground, players, watch=lambda frame: seen.append(frame.beat))
-    assert seen == list(range(len(seen)))
+    result = simulate(ground, players, watch=lambda frame: seen.append(frame.beat))
+    assert seen == list(range(result.beats))
 
 
 def test_ghosts_of_both_seats_play_their_match_again(tmp_path: Path) -> None:
@@ -83,7 +84,7 @@ def test_a_match_without_end_is_refused() -> None:
 
 
 def test_practice_with_an_end() -> None:
-    """A simulated practice has one seat and starts by itself."""
+    """A simulated practice of one second starts by itself and ends in time."""
     made = setup("practice", {"match": {"duration_s": 1.0}})
     ground = arenas.load("practice")
     result = simulate(made, [player(ground, 0, next(iter(ground.bots)))])
@@ -99,8 +100,8 @@ def test_files_with_mistakes_are_refused() -> None:
     assert len(refused.value.mistakes) > 1
 
 
-def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """`Match` computes its length from its setup, without knowing that the match is headless."""
+def test_the_length_of_a_match_comes_from_its_setup() -> None:
+    """`Match` takes its length from its setup: 4 s are 200 ticks."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 
@@ -114,20 +115,6 @@ def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
         play(tmp_path)
     assert there.read_bytes() == b"yesterday's match"
     assert list(tmp_path.iterdir()) == [there]
-
-
-def handed_in(folder: Path, locomotion: bytes | None) -> Path:
-    """Make a folder with a student's files, and return it."""
-    folder.mkdir()
-    if locomotion is not None:
-        (folder / "LocoTra-data.txt").write_bytes(locomotion)
-    return folder
-
-
-def sample() -> bytes:
-    files = sample_gait_files("hexapod")
-    assert files.locomotion is not None
-    return files.locomotion.data
 
 
 def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
@@ -155,10 +142,9 @@ def test_where_a_gait_is_looked_for_is_said(tmp_path: Path) -> None:
         player(OTHELLO, 0, "straight@nobody")
 
 
-def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) -> None:
+def test_the_mistakes_of_all_are_listed_before_any_match(tmp_path: Path) -> None:
     """The mistakes of all folders are listed before any match, each file with its folder's name."""
-    wrong = b"1\n1\n5"
-    names = [f"straight@{handed_in(tmp_path / name, wrong)}" for name in ("anna", "ben", "chie")]
+    names = players_of(tmp_path, "anna", "ben", "chie", locomotion=b"1\n1\n5")
     with pytest.raises(FileRefused) as refused:
         simulate_command(names, seconds=1.0)
     assert {mistake.file for mistake in refused.value.mistakes} == {
@@ -167,7 +153,7 @@ def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) 
 
 
 def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
-    """Bytes of a folder's name that are no text stand in the team's name as hexadecimal numbers."""
+    """Bytes of a folder's name that are no text are in the team's name as hexadecimal numbers."""
     folder = tmp_path / os.fsdecode(b"team\x98\x8b")
     handed_in(folder, sample())
     players = [player(OTHELLO, 0, f"straight@{folder}"), player(OTHELLO, 1, "straight")]

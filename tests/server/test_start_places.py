@@ -31,7 +31,7 @@ def strayed(stage: Stage) -> list[Event]:
     return [event for event in stage.events if event.kind == "strayed"]
 
 
-def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
+def test_a_robot_that_leaves_its_start_place_is_put_back() -> None:
     """A robot that leaves its start place in READY is put back in the next beat, with an event."""
     stage = straying(3).to_ready()
     stage.run(2)
@@ -51,7 +51,7 @@ def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
     assert stage.match.legality()["start"] is None
 
 
-def test_a_step_within_the_place_is_none() -> None:
+def test_a_robot_that_moves_little_is_not_put_back() -> None:
     """A robot that moves by less than 0.05 m in READY is not put back."""
     stage = straying(3, by_m=0.049, seat=RIGHT).to_ready()
     stage.run(10)
@@ -59,8 +59,11 @@ def test_a_step_within_the_place_is_none() -> None:
     assert 0.048 < from_start_m(stage, RIGHT) < 0.05
 
 
-def test_who_leaves_again_and_again_is_not_ready() -> None:
-    """If a robot leaves its place three times, its team is no longer ready; the count restarts."""
+def test_a_robot_that_leaves_three_times_is_not_ready() -> None:
+    """If a robot leaves its place three times, its team is not ready any more.
+
+    When the team says ready again, the count begins again at one.
+    """
     assert MOST_STRAYS == 3
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)
@@ -76,7 +79,7 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
     assert [event.data["times"] for event in strayed(stage)] == [1, 2, 3, 1]
 
 
-def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
+def test_play_begins_with_each_robot_at_its_place() -> None:
     """If the referee starts while a robot is away, the robot begins play at its start place."""
     stage = straying(3).to_ready()
     stage.run(2)
@@ -86,10 +89,10 @@ def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
     assert from_start_m(stage) < 1e-6
 
 
-def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None:
-    """A team that gives its seat up, or joins anew, ends READY while its robot is put back.
+def test_a_team_may_leave_or_change_its_robot_before_it_is_put_back() -> None:
+    """READY ends if a team leaves, or joins with another robot, before its robot is put back.
 
-    The match is in the lobby then, and its frames have no robots.
+    The match is then in the lobby, and its frames have no robots.
     """
     for item in (LeaveSeat(LEFT), join(LEFT, robot="octopod")):
         stage = straying(3).to_ready()
@@ -100,7 +103,7 @@ def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None
         assert stage.frame.poses == b""
 
 
-def test_play_puts_nobody_back() -> None:
+def test_no_robot_is_put_back_in_play() -> None:
     """In PLAYING a robot that is away from its start is not put back."""
     stage = straying(3).to_playing()
     stage.run(10)

@@ -5,10 +5,7 @@ import os
 import signal
 import subprocess
 import threading
-import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future
-from typing import Any, cast
+from collections.abc import Iterator
 
 import msgspec
 import numpy as np
@@ -16,6 +13,7 @@ import psutil
 import pytest
 from benchmarks.trials import entry_of
 from lacoc_process import started
+from waiting import until
 
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.studio.answers import answer, read_files, try_gait
@@ -25,6 +23,7 @@ from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.trials import Trials
 from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.course import LONGEST_TICKS
+from lacoc_server.trial.support import margins_m
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.gait.tables import Level, LocomotionTable
@@ -85,7 +84,7 @@ class Asker:
         return decode(refused.value.payload, Refusal)
 
     def workers(self) -> list[psutil.Process]:
-        """List the child processes of the studio that run trials."""
+        """Return the child processes of the studio that run trials."""
         children = psutil.Process(self.process.pid).children()
         return [one for one in children if "spawn_main" in " ".join(one.cmdline())]
 
@@ -108,14 +107,6 @@ def asker() -> Iterator[Asker]:
         assert psutil.wait_procs(children, WAIT_S)[1] == []
 
 
-def until(true: Callable[[], bool]) -> None:
-    """Wait until a condition is true."""
-    end_s = time.monotonic() + WAIT_S
-    while not true():
-        assert time.monotonic() < end_s, "it did not come true"
-        time.sleep(0.01)
-
-
 def files_of(robot: str) -> GaitFiles:
     """Return the files of a sample robot."""
     postures, locomotion = sample_gait_files(robot)
@@ -132,25 +123,27 @@ def test_a_trial_is_that_of_the_command(asker: Asker) -> None:
     assert (reply.level, reply.key) == (Level.LOCOMOTION, 2)
     assert list(reply.explained) == trial.explained
     assert {one.leg for one in reply.explained} - {-1}
-    ticks, joints, legs = reply.ticks, entry.robot.joints, len(entry.robot.legs)
-    assert (reply.first, reply.end) == trial.walk.span[:2]
-    shapes = {
-        "poses": 7 + joints,
-        "commanded_rad": joints,
-        "contact_w_m": 2 * legs,
-        "centre_w_m": 2,
-        "margin_m": 1,
-        "slip_m_s": legs,
-        "tip_m": legs,
+    walk = trial.walk
+    assert (reply.first, reply.end) == walk.span[:2]
+    assert reply.ticks == len(walk.down)
+    arrays = {
+        "poses": np.hstack([walk.body_w, walk.angles_rad]),
+        "commanded_rad": walk.commanded_rad,
+        "contact_w_m": walk.contact_w_m,
+        "centre_w_m": walk.centre_w_m,
+        "margin_m": margins_m(walk.down, walk.contact_w_m, walk.centre_w_m),
+        "slip_m_s": walk.slip_m_s,
+        "tip_m": walk.tip_m,
     }
-    for name, width in shapes.items():
-        assert len(getattr(reply, name)) == 4 * ticks * width, name
+    for name, values in arrays.items():
+        assert getattr(reply, name) == values.astype("<f4").tobytes(), name
+    legs = len(entry.robot.legs)
     down = np.frombuffer(reply.down, np.uint8)[:, None] >> np.arange(legs) & 1
-    assert (down == trial.walk.down).all()
-    assert (np.frombuffer(reply.posture, np.uint8) == trial.walk.posture).all()
+    assert (down == walk.down).all()
+    assert (np.frombuffer(reply.posture, np.uint8) == walk.posture).all()
 
 
-def test_a_sentence_has_its_place(asker: Asker) -> None:
+def test_a_sentence_names_its_cell_and_leg(asker: Asker) -> None:
     """A sentence that explains a trial has the cell of the table and the leg that it is about."""
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
@@ -229,8 +222,8 @@ def test_mistakes_in_files_are_listed(asker: Asker) -> None:
     assert refusal.mistakes[0].file == postures.name
 
 
-def test_a_worker_that_dies_is_replaced(asker: Asker) -> None:
-    """The request of a killed process is refused with `again`; the other one is answered."""
+def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
+    """If a process is killed, only its own request is refused, with `again`; it is replaced."""
     asker.trial(GaitFiles(), seconds=0.1)
     until(lambda: len(asker.workers()) == 2)
     before = {one.pid for one in asker.workers()}
@@ -271,18 +264,6 @@ def coach_request(job: str, **more: object) -> CoachRequest:
     return msgspec.structs.replace(request, **more)
 
 
-class Here:
-    """Runs jobs in this process, in the place of `Workers`."""
-
-    count = 1
-
-    def submit(self, function: Callable[..., Any], *arguments: object) -> Future[Any]:
-        """Run a job at once."""
-        done: Future[Any] = Future()
-        done.set_result(function(*arguments))
-        return done
-
-
 def test_a_search_can_be_repeated(asker: Asker) -> None:
     """A search of one round has the same result in another process, and sends its progress."""
     progress = asker.session.mailbox(KEYS.progress("one"), 1000)
@@ -290,8 +271,9 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
     reply = decode(asker.begin("coach", request).wait(), CoachReply)
     files = read_files(request.files)
     task = task_of(files.robot, files.gait, 2, Goal.FORWARD, files.sequences)
-    trials = Trials(task, cast(Workers, Here()), threading.Event())
-    again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
+    with Workers(2) as workers:
+        trials = Trials(task, workers, threading.Event())
+        again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
     assert reply == reply_of(task, 2, again)
     assert len(reply.changes) == 1
     assert reply.score_after > reply.score_before
@@ -303,8 +285,8 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
     assert told
     assert {one.stage for one in told} <= {"matters", "search", "undo"}
     assert all(0 <= one.done <= 1 for one in told)
-    trials = [one.trials for one in told]
-    assert trials == sorted(trials)
+    counts = [one.trials for one in told]
+    assert counts == sorted(counts)
 
 
 def test_a_search_can_be_cancelled(asker: Asker) -> None:
@@ -352,9 +334,9 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
 
 
 def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
-    """A studio fills a map of gaits, and breeds new variants from the tables that a user keeps.
+    """A studio fills a map of gaits, and makes new variants of the tables that a user keeps.
 
-    It refuses wrong tables and negative numbers.
+    It refuses a request for variants with wrong tables or negative numbers.
     """
     files = files_of("quadruped")
     asked = MapRequest(protocol=PROTOCOL, job="map", files=files, seconds=0)
@@ -380,7 +362,7 @@ def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
 
 
 def test_a_map_can_be_cancelled(asker: Asker) -> None:
-    """A cancelled map replies with the gaits that it has found; it tells how many cells it has."""
+    """Progress counts the cells of a map; a cancelled map replies with the gaits in them."""
     progress = asker.session.mailbox(KEYS.progress("atlas"), 1000)
     asked = MapRequest(protocol=PROTOCOL, job="atlas", files=files_of("quadruped"), seconds=100)
     question = asker.begin("map", asked)
@@ -417,7 +399,7 @@ def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
     assert reply.ticks == LONGEST_TICKS
 
 
-def test_physics_that_stop_are_a_reply() -> None:
+def test_a_trial_whose_physics_stops_has_a_reply() -> None:
     """If physics stops, the reply to a trial has a fault, and the explanation says so first."""
     course = make_course(entry_of("hexapod").robot)
     course._world.data.qvel[:] = 1e9  # type: ignore[attr-defined]

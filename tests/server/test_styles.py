@@ -1,11 +1,11 @@
 """Tests of other ways of walking: styles of a table, the map of gaits, and variants."""
 
 import threading
-from concurrent.futures import Future
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,27 +27,22 @@ from lacoc_server.trial.figures import Figures
 GRID = Grid(20.0, 6.0)
 
 
-class Here:
-    """Runs jobs in this process, in the place of `Workers`."""
-
-    count = 1
-
-    def submit(self, function: Any, *arguments: object) -> Future[Any]:
-        """Run a job at once."""
-        done: Future[Any] = Future()
-        done.set_result(function(*arguments))
-        return done
+@pytest.fixture(scope="module")
+def workers() -> Iterator[Workers]:
+    """Give two processes in which all tests of this module try tables."""
+    with Workers(2) as workers:
+        yield workers
 
 
 @cache
 def task_for(robot: str) -> Task:
-    """Make the task of a sample robot's key for forward."""
+    """Return the task of a search: a sample robot and its key 2 (forward)."""
     entry = entry_of(robot)
     return task_of(entry.robot, entry.gait, 2, Goal.FORWARD, None)
 
 
 def styles_of(robot: str) -> Styles:
-    """Make the styles of a sample robot's key for forward."""
+    """Return the styles of a sample robot's key 2 (forward)."""
     task = task_for(robot)
     return Styles(task.robot, task.table)
 
@@ -67,8 +62,8 @@ def walk(speed_mm_s: float, lift_mm: float, **more: Any) -> Figures:
 
 @pytest.mark.parametrize("robot", ["hexapod", "quadruped", "octopod"])
 @pytest.mark.parametrize("way", WAYS)
-def test_a_step_of_a_way_is_seen_as_one(robot: str, way: Way) -> None:
-    """A step of a way changes the table's look by about one step of that way, in its direction."""
+def test_a_step_in_a_way_is_measured_as_one(robot: str, way: Way) -> None:
+    """If `turned` makes one step of a way, `look` measures about one step of that way."""
     styles, own = styles_of(robot), task_for(robot).table.angles_deg
     index = WAYS.index(way)
     for step in (-1.0, 1.0):
@@ -113,7 +108,7 @@ def test_the_choice_is_far_apart(points: list[tuple[float, ...]], count: int) ->
 
 
 def test_the_choice_is_far_from_what_is_taken() -> None:
-    """What is like a taken one is chosen last."""
+    """The vector that is nearest to one that is already taken is chosen last."""
     looks = [np.array([x]) for x in (0.0, 5.0, 10.0)]
     assert far_apart(looks, 3, [np.array([9.0])]) == [0, 1, 2]
 
@@ -140,7 +135,7 @@ def test_a_map_keeps_the_best_of_each_cell(walks: list[Any]) -> None:
 
 
 def test_a_map_prefers_the_smaller_change() -> None:
-    """Of two gaits that are as good, the map keeps the one with fewer degrees changed."""
+    """Of two gaits that score nearly the same, the map keeps the one with fewer degrees changed."""
     archive = Archive((0, 0), GRID)
     archive.add((30, 30), walk(52.0, 20.0))
     assert archive.add((5, 0), walk(51.0, 20.0))
@@ -165,7 +160,7 @@ def test_only_sound_gaits_are_in_a_map() -> None:
 
 
 def test_arousal_is_height_over_period() -> None:
-    """High and quick steps are more excited; the last cells of a map have no end."""
+    """Arousal is step height over period; the last cells of a map have no upper end."""
     assert arousal_mm_s(replace(walk(50.0, 30.0), cycle_s=2.0)) == 15.0
     assert GRID.place(walk(50.0, 13.0)) == Place(2, 1)
     for value in range(1, 200):
@@ -178,13 +173,13 @@ def test_arousal_is_height_over_period() -> None:
 
 
 @pytest.mark.slow
-def test_a_small_map() -> None:
-    """Two rounds of a real search find gaits for more cells, and the same again with its seed."""
+def test_a_small_map(workers: Workers) -> None:
+    """Two rounds of a search fill more than one cell; the same seed finds the same gaits."""
     task = task_for("quadruped")
     own = task.table.angles_deg
     found = []
     for _ in range(2):
-        trials = Trials(task, cast(Workers, Here()), threading.Event())
+        trials = Trials(task, workers, threading.Event())
         archive = Archive(own, grid_of(task.robot, own_figures()))
         archive.add(own, own_figures())
         for _, _ in zip(
@@ -208,11 +203,11 @@ def test_a_small_map() -> None:
 
 
 @pytest.mark.slow
-def test_variants_of_two_rounds() -> None:
-    """Six variants walk upright and differ; those of the next round are not the same as before."""
+def test_variants_of_two_rounds(workers: Workers) -> None:
+    """Six variants walk upright and differ; the next round has none of the tables before it."""
     task = task_for("quadruped")
     own, styles = task.table.angles_deg, styles_of("quadruped")
-    trials = Trials(task, cast(Workers, Here()), threading.Event())
+    trials = Trials(task, workers, threading.Event())
     first = vary(trials, [own], [own], 3, 0, lambda _: None)
     tables = [one.angles_deg for one in first.variants]
     second = vary(trials, tables[:2], [own, *tables], 3, 1, lambda _: None)

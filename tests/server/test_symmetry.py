@@ -85,7 +85,10 @@ their turned path by more than the bound of the test.
     ],
 )
 def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contacts: int) -> None:
-    """Poses in the turned match differ by less than 1e-6 (m, rad), also when the robots collide."""
+    """In the turned match poses differ by less than 1e-6 (m, rad), also when the robots collide.
+
+    Claims and scores are those of the other seat.
+    """
     one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
     mirrored = swapped(COLLIDING)
     worst, contacts = 0.0, 0
@@ -138,7 +141,7 @@ def _turned_claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], i
 
 
 def wander(arena: str, seed: int) -> Script:
-    """Return a script of two robots that walk about in straight lines and touch flags."""
+    """Return a script of two robots that walk straight; in Flag-Strike they also touch flags."""
     rng = np.random.default_rng(seed)
     script = Script()
     at = np.array([[-0.6, 0.0], [0.6, 0.0]])

@@ -10,7 +10,7 @@ from stage import LEFT, QUICK, RIGHT, Script, Stage, X, key, seen
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.game import GameEvent, Observation, Place, RobotView
-from lacoc_server.match.history import History
+from lacoc_server.match.kept.history import History
 from lacoc_shared import decisions as d
 from lacoc_shared.messages import DecisionReply, Event, Refusal
 from lacoc_shared.seat import Phase
@@ -187,7 +187,7 @@ def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
 
 
 def test_what_is_gone_cannot_be_taken_back() -> None:
-    """An event that was taken back, or has vanished, can't be taken back again."""
+    """Events that are gone, take-backs, joins and changes of phase can't be taken back."""
     stage = othello(CHAIN)
     gone = [event(stage, "flip", name).number for name in ("c3r2", "c4r2")]
     gone += [stage.decide(d.Adjust("left", 1)).event, stage.decide(d.Set("c0r0", "right")).event]
@@ -247,7 +247,7 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
     assert reply.scores == (15, 5)
 
 
-def test_what_turned_out_to_be_over_stays_over() -> None:
+def test_a_match_that_a_take_back_ended_stays_finished() -> None:
     """A match that a take-back has finished stays finished after another take-back."""
     stage = flag_strike({**ALL_FOUR, 35: {RIGHT: CORNERS[0]}})
     put = stage.decide(d.Set("flag0", "right")).event
@@ -258,7 +258,7 @@ def test_what_turned_out_to_be_over_stays_over() -> None:
     assert stage.match.history.over == stage.match.ended == say("over.all-corners", seat="left")
 
 
-def test_time_is_up_stays_up() -> None:
+def test_a_match_whose_time_is_up_stays_finished() -> None:
     """If the time is up, a take-back can change the winner, but does not change the clock."""
     short = {"match": {"duration_s": 1.0, "countdown_s": 0.02}}
     poses = {10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}}
@@ -336,7 +336,7 @@ def test_both_orders_give_the_same() -> None:
     assert len(ends) == 1
 
 
-# Folding: to judge a history again without an event.
+# Folding: judging a history again without an event.
 
 NO_TOUCH: tuple[int, ...] = ()
 
@@ -437,7 +437,7 @@ def test_a_tick_is_20_ms_in_play_and_in_a_fold() -> None:
 
 @pytest.mark.parametrize("arena", list(GAMES))
 @given(data=st.data())
-def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.DataObject) -> None:
+def test_taking_back_a_set_without_effect_changes_nothing(arena: str, data: st.DataObject) -> None:
     """If a `set` that changed nothing is taken back, the match stays the same."""
     game = GAMES[arena]
     history = History(game)

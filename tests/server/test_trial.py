@@ -251,7 +251,7 @@ def test_foot_bars() -> None:
 
 
 def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
-    """`lacoc trial` prints the figures; it refuses a gait for another robot."""
+    """`lacoc trial` prints figures, even for less than a cycle; it refuses another robot's gait."""
 
     def run(*words: str) -> int:
         try:
@@ -266,8 +266,7 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--keys", "1:1, 2", "--seconds", "2") == 0
     said = capsys.readouterr()
     assert "speed forward" in said.out
-    assert (
-        "The feet slide over the floor at" not in said.out
-    )  # nothing is explained without a whole cycle
+    # Without a whole cycle nothing is explained.
+    assert "The feet slide over the floor at" not in said.out
     assert "repeated too few times" in said.err
     assert run("--robot", "quadruped") == 2

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from stage import LEFT, RIGHT, Script, ScriptedPhysics, decide, join, key
+from verdicts import verdict
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.court import court as court_module
@@ -13,8 +14,7 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.inbox import Door
 from lacoc_server.doors.network import Arrival
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Kind
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
@@ -34,7 +34,7 @@ TROUBLE = say("record.disk-trouble", file="m.mcap", why="Input/output error")
 
 
 class Quiet:
-    """A network that delivers only what the test puts into `said`."""
+    """Stands in for a court's network: it delivers what the test puts into `said`."""
 
     locators = ("tcp/127.0.0.1:1",)
     input_delay_ms = newest_event = 0
@@ -134,9 +134,7 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
     assert held.network.outcomes[-1] == Done()
     assert held.decided == ["halt", "resume"]
     held.kill()
-    *_, verdict = verify(Record.read(sorted(tmp_path.iterdir())))
-    assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict(Record.read(sorted(tmp_path.iterdir()))).kind is Kind.SAME
 
 
 def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:
@@ -153,8 +151,11 @@ def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> 
     held.kill()
 
 
-def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
-    """Rules 7: while all are silent a halted match waits; after `unattended_s` the next opens."""
+def test_a_halted_match_waits_in_silence_and_a_long_silence_ends_it() -> None:
+    """Rules 7: a halted match waits while its seat is silent, and goes on when it is heard.
+
+    After `unattended_s` of silence the match ends, and the next one opens.
+    """
     held = Held("practice", None, {"match": {"unattended_s": 10.0}})
     held.begin()
     held.beat(SilentSeat(LEFT))
@@ -170,7 +171,7 @@ def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
     assert reasons == [say("event.finished", why=say("over.nobody-heard", minutes=minutes))]
 
 
-def test_two_have_time_to_read_who_has_won() -> None:
+def test_the_result_of_two_teams_is_shown_for_10_s() -> None:
     """After a match of two teams without a referee, the court shows the result for 10 s."""
     rules = {"start": "ready", "countdown_s": 0.02, "duration_s": 0.2}
     held = Held("othello", None, {"match": rules})
@@ -221,7 +222,7 @@ def test_a_fault_that_comes_back_at_once_fills_no_log(monkeypatch: pytest.Monkey
 
 
 def test_after_a_full_disk_play_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """When the disk has room again, the court halts the match and resumes it by itself."""
+    """After a time with a full disk, the court halts the match and resumes it by itself."""
     held = Held("practice", tmp_path)
     held.begin()
 

@@ -2,6 +2,7 @@
 
 import time
 
+import msgspec
 import pytest
 from stage import join as sample
 
@@ -41,14 +42,7 @@ def known(weighing: Weighing, join: Join, patience_s: float = 60.0) -> Join:
 def changed(old: bytes, new: bytes) -> Join:
     data = HEXAPOD.robot.data.replace(old, new)
     assert data != HEXAPOD.robot.data
-    return Join(
-        protocol=PROTOCOL,
-        token="",
-        name="Ants",
-        robot=SentFile("mine.toml", data),
-        postures=HEXAPOD.postures,
-        locomotion=HEXAPOD.locomotion,
-    )
+    return msgspec.structs.replace(WHOLE, robot=SentFile("mine.toml", data))
 
 
 def test_a_robot_is_tried_once() -> None:

@@ -8,6 +8,7 @@ from concurrent.futures import CancelledError
 
 import psutil
 import pytest
+from waiting import until
 
 from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
 
@@ -43,8 +44,7 @@ def test_a_process_that_died_at_rest_costs_no_job(workers: Workers) -> None:
     """If a process is killed between two jobs, a new process runs the second job."""
     first = workers.submit(os.getpid).result()
     os.kill(first, signal.SIGKILL)
-    while not _has_ended(first):
-        time.sleep(0.01)
+    until(lambda: _has_ended(first))
     assert workers.submit(os.getpid).result() != first
 
 
@@ -74,16 +74,17 @@ def test_jobs_that_wait_can_be_cancelled(workers: Workers) -> None:
     assert slow.done()
 
 
-def test_the_end_ends_all() -> None:
+def test_close_ends_all_processes() -> None:
     """`close` cancels waiting jobs, lets running jobs fail, and leaves no process."""
     workers = Workers(2, background=True)
     pids = {workers.submit(os.getpid).result() for _ in range(4)}
     jobs = [workers.submit(time.sleep, 60) for _ in range(4)]
     children = [psutil.Process(pid) for pid in workers.processes]
     assert pids <= {one.pid for one in children}
-    time.sleep(0.2)
+    until(lambda: all(job.running() for job in jobs[:2]))
     workers.close()
-    for job in jobs:
-        with pytest.raises((WorkerDied, CancelledError)):
+    ends = (WorkerDied, WorkerDied, CancelledError, CancelledError)
+    for job, end in zip(jobs, ends, strict=True):
+        with pytest.raises(end):
             job.result(timeout=10)
     assert psutil.wait_procs(children, 10)[1] == []

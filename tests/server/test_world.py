@@ -161,7 +161,7 @@ def test_place(seat: int) -> None:
     run(it, 40)
     before = it.data.qpos.copy(), it.data.qvel.copy()
     it.place(seat, Place(0.1, -0.7, math.radians(30)))
-    mine, other = it._robots[seat], it._robots[1 - seat]
+    mine, other = it.robots[seat], it.robots[1 - seat]
     x_m, y_m, z_m, qw, _, _, qz = it.data.qpos[mine.root_qpos : mine.root_qpos + 7]
     assert (x_m, y_m, z_m) == (0.1, -0.7, HEXAPOD.robot.start_z_m)
     assert 2 * math.atan2(qz, qw) == pytest.approx(math.radians(30 - 90))  # forward is +y
@@ -190,7 +190,7 @@ def test_a_place_is_a_part_of_the_state() -> None:
 
 def _spoil(name: str, value: float, seat: int, offset: int) -> Callable[[World], None]:
     def spoil(it: World) -> None:
-        robot = it._robots[seat]
+        robot = it.robots[seat]
         start = robot.root_qpos if name == "qpos" else robot.root_dof
         getattr(it.data, name)[start + offset] = value
 
@@ -269,7 +269,7 @@ def gaps_m(it: World, seat: int, poles: Sequence[tuple[float, float]]) -> np.nda
 
     A negative gap is an overlap. Gaps are true if all parts of the robot are lower than the poles.
     """
-    robot = it._robots[seat]
+    robot = it.robots[seat]
     at = robot.root_qpos
     here, (w, *v) = it.data.qpos[at : at + 3], it.data.qpos[at + 3 : at + 7]
 
@@ -353,7 +353,7 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
     markers = arenas.load("flag-strike").game.markers
     flag = markers[22]
     it.place(RIGHT, Place(-0.9, -0.9, 0.0))
-    at = it._robots[LEFT].root_qpos
+    at = it.robots[LEFT].root_qpos
     rng = np.random.default_rng(2)
     seen = [0, 0]
     for _ in range(300):
@@ -372,7 +372,7 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
 
 def _lower_than_a_pole(it: World) -> bool:
     it.touched()  # updates the positions of the geoms
-    geoms = it._robots[LEFT].geoms
+    geoms = it.robots[LEFT].geoms
     heights = it.data.geom_xpos[geoms, 2]
     reach = it.model.geom_rbound[geoms]
     return bool((heights + reach).max() < REACH_M and (heights - reach).min() > -0.05)
@@ -394,7 +394,7 @@ def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
     rng = np.random.default_rng(3)
     touching = 0
     for _ in range(150):
-        for own in it._robots:
+        for own in it.robots:
             at = own.root_qpos
             flag = markers[rng.choice(list(probes))]
             turn = rng.normal(size=4) * (1.0, 0.3, 0.3, 1.0)
@@ -414,7 +414,7 @@ def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
                     for geom in own.geoms.tolist()
                 )
             )
-            for own in it._robots
+            for own in it.robots
         ]
         touching += sum(map(len, found))
     assert touching > 50

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from lacoc_client.classroom.admission import Guesses, new_code, read_code, read_name, same_name
+from lacoc_client.classroom.admission import read_name, same_name
 from lacoc_client.classroom.class_student import ClassStudent
 from lacoc_client.classroom.state import NOBODY, ClassState, Handed, fresh_state, read_state
 from lacoc_client.classroom.tournament import Tournament
@@ -26,6 +26,7 @@ from lacoc_client.design.playing import Playing
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway import wire
+from lacoc_client.gateway.guesses import Guesses
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.phases.class_file import Document, Kept
@@ -33,6 +34,7 @@ from lacoc_client.phases.evidence import Hand, Joined
 from lacoc_client.phases.store import ClassStore
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_shared import seal
+from lacoc_shared.contest.codes import new_code, read_code
 from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError

@@ -24,7 +24,10 @@ def student_files(kept: Iterable[Document]) -> list[Document]:
             continue
         try:
             files = draft.files()
-        except FileRefused:  # a cell without an angle: pages send no such table
+        except (
+            FileRefused,
+            UserError,
+        ):  # no angle in a cell, or no such key: no page of ours sends it
             continue
         found += [
             Document(one.student, name, one.version, one.at_s, file.data)

@@ -4,11 +4,11 @@ import time
 
 import msgspec
 
-from lacoc_client.classroom.admission import new_code
 from lacoc_client.design.learning.rules import FREE, Rules
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway.home import new_key
 from lacoc_client.phases.class_file import Document
+from lacoc_shared.contest.codes import new_code
 
 NAME, NOBODY = "class", ""
 """Name under which it is kept, and the student whose it is: nobody's."""

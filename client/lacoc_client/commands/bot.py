@@ -79,9 +79,10 @@ def bot_command(
     With the token of a team and without --seat it goes from court to court, wherever the office of
     the contest calls the team, until the contest is over for it.
 
-    The bot ends with Ctrl-C, or when the court has been gone for two minutes (or for the time of
-    --wait, if that is longer). Your own bot is a Python file with a function bot(sheet, seat). This
-    function returns another function, which takes a frame and returns a key.
+    The bot ends with Ctrl-C. At a single seat it also ends when it loses the seat, or when the
+    court has been gone for two minutes (or for the time of --wait, if that is longer). Your own bot
+    is a Python file with a function bot(sheet, seat). This function returns another function, which
+    takes a frame and returns a key.
     """
     if (any_seat := entrance.team(invitation, contest, court, connect, seat, token)) is not None:
         _follow(name, any_seat, court is None, arena, wait)
@@ -158,14 +159,7 @@ def _play_match(
         player = BotPlayer(controller, _ground(controller, arena), name)
         controller.join()
         while not stopping() and not is_over(controller.view, there.call):
-            frame = controller.wait_frame(0.1)
-            if frame is not None:
-                player.see(frame)
-            for refused in controller.take_refused():
-                screen.show(say("bot.refused", key=refused.name, why=refused.why))
-            for event in controller.view.take_events():
-                if event.kind in ("phase", "result"):
-                    screen.show(event.said)
+            _look(controller, player)
             if controller.hold is Hold.REPLACED:
                 raise UserError(say("play.lost", why=controller.why_not_held))
             if controller.hold is Hold.REFUSED or is_gone(controller.view):
@@ -197,14 +191,7 @@ def _play(
 ) -> None:
     well = True
     while not stopping():
-        frame = controller.wait_frame(0.1)
-        if frame is not None:
-            player.see(frame)
-        for refused in controller.take_refused():
-            screen.show(say("bot.refused", key=refused.name, why=refused.why))
-        for event in controller.view.take_events():
-            if event.kind in ("phase", "result"):
-                screen.show(event.said)
+        _look(controller, player)
         if controller.hold in (Hold.REPLACED, Hold.REFUSED):
             raise UserError(say("play.lost", why=controller.why_not_held))
         now_s = time.monotonic()
@@ -214,6 +201,18 @@ def _play(
             screen.note(say("bot.court-back") if link is None else say("bot.no-court", why=link))
         if controller.view.silent_s(now_s) > gone_s:
             raise UserError(say("play.silent", seconds=gone_s))
+
+
+def _look(controller: Controller, player: BotPlayer) -> None:
+    """Show the bot the newest frame; tell refused keys, phases and the result."""
+    frame = controller.wait_frame(0.1)
+    if frame is not None:
+        player.see(frame)
+    for refused in controller.take_refused():
+        screen.show(say("bot.refused", key=refused.name, why=refused.why))
+    for event in controller.view.take_events():
+        if event.kind in ("phase", "result"):
+            screen.show(event.said)
 
 
 def _leave(controller: Controller) -> None:

@@ -12,6 +12,8 @@ from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home, new_key
 from lacoc_client.gateway.site import site
+from lacoc_client.gateway.wire import JOIN_BYTES
+from lacoc_client.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
@@ -79,6 +81,14 @@ def web_command(
             "--open/--no-open", help="Open /watch in the browser; with an office, /contest."
         ),
     ] = False,
+    office: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Address of the desk of a contest's office, which 'lacoc contest run' gives; with "
+            "it there are the pages /office and /enter.",
+        ),
+    ] = None,
     metrics: options.Metrics = None,
     json: options.Json = False,
 ) -> None:
@@ -95,6 +105,7 @@ def web_command(
         contest=plan.given_name if plan else "",
         sheet=contests.sheet_path(contest) if contest else None,
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
+        desk=office is not None,
         names=frozenset(host or ()),
         viewers_most=viewers,
         exporter=exporter,
@@ -120,7 +131,8 @@ def web_command(
         log.start(json)
 
     with exporter or nullcontext():
-        server.run(site(home, PageFiles()), port, ready)
+        desk = None if office is None else DeskSite(office, home.key, address)
+        server.run(site(home, PageFiles(), desk), port, ready, DESK_BYTES if desk else JOIN_BYTES)
 
 
 def _courts(

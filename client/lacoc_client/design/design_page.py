@@ -20,6 +20,7 @@ from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.evidence import Hand, Moved, Named
 from lacoc_client.phases.facts import TrialFacts
+from lacoc_client.seat_files import SeatFiles
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -117,6 +118,8 @@ class DesignPage:
                 answers.later(asked.id, self._studio.variants(asked))
             case requests.CancelAsk():
                 answers.later(asked.id, self._studio.cancel(asked.job))
+            case requests.HandOnAsk():  # a kind of `PlayAsk`
+                answers.later(asked.id, self._hand_on(asked, learner))
             case requests.PlayAsk():
                 answers.later(asked.id, self._play(asked, learner))
             case (
@@ -166,15 +169,30 @@ class DesignPage:
         """
         if self._host.playing is None:
             raise UserError(say("class.no-court"))
+        files = await self._checked_files(asked, learner)
+        return {"url": await asyncio.to_thread(self._host.playing.open, files)}
+
+    async def _hand_on(self, asked: requests.HandOnAsk, learner: Learner) -> dict[str, Any]:
+        """Make the files of a table without mistakes, with which a team enters a contest.
+
+        Raises:
+            FileRefused: with every mistake of the table or of the robot.
+        """
+        return (await self._checked_files(asked, learner))._asdict()
+
+    async def _checked_files(self, asked: requests.PlayAsk, learner: Learner) -> SeatFiles:
+        """Check a table, and make its files.
+
+        Raises:
+            FileRefused: with every mistake of the table or of the robot.
+        """
         check = requests.CheckAsk(
             id=0, table=asked.table, robot=asked.robot, sequences=asked.sequences
         )
         if mistakes := (await learner.checked(check)).mistakes:
             raise FileRefused(list(mistakes))
-        draft = Draft(
-            table=asked.table, sequences=asked.sequences, robot=asked.robot or self._host.robot
-        )
-        return {"url": await asyncio.to_thread(self._host.playing.open, draft.files())}
+        robot = asked.robot or self._host.robot
+        return Draft(table=asked.table, sequences=asked.sequences, robot=robot).files()
 
     async def _learn(self, asked: requests.Asked, learner: Learner) -> Any:
         """Answer a request about the phases."""

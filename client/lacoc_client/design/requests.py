@@ -157,6 +157,10 @@ class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
     sequences: Sequences | None = None
 
 
+class HandOnAsk(PlayAsk, frozen=True, kw_only=True, tag="hand_on"):
+    """Check the table, and make the files with which a team enters a contest."""
+
+
 class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
     """Go to a phase, forward or back."""
 
@@ -251,6 +255,7 @@ Asked = (
     | EditAsk
     | CheckAsk
     | PlayAsk
+    | HandOnAsk
     | PhaseAsk
     | NameAsk
     | VoteAsk

@@ -1,6 +1,21 @@
 """The pages that watch one court."""
 
+from typing import Protocol
+
 from lacoc_client.gateway.viewer import Frames, Viewer
+
+
+class Listener(Protocol):
+    """What receives all that a court sends, as a page does, but is no page."""
+
+    def send(self, framed: bytes) -> None:
+        """Take a message that must arrive."""
+
+    def send_if_fast(self, framed: bytes) -> None:
+        """Take a message that may be missed."""
+
+    def offer(self, framed: bytes, now_s: float) -> None:
+        """Take a frame that came at a time [s]."""
 
 
 class Audience:
@@ -8,6 +23,7 @@ class Audience:
 
     def __init__(self) -> None:
         self._viewers: dict[Viewer, None] = {}
+        self._listeners: list[Listener] = []
         self._gone = Frames()
         """Frame counts of pages that have gone."""
 
@@ -17,6 +33,10 @@ class Audience:
     def add(self, viewer: Viewer) -> None:
         """Add a page, which gets everything from now on."""
         self._viewers[viewer] = None
+
+    def tap(self, listener: Listener) -> None:
+        """Let a listener have everything from now on, beside the pages; it counts as no page."""
+        self._listeners.append(listener)
 
     def remove(self, viewer: Viewer) -> None:
         """Remove a page, and keep its frame counts."""
@@ -36,9 +56,9 @@ class Audience:
 
     def send(self, *messages: bytes) -> None:
         """Send messages that must arrive, in order."""
-        for viewer in self._viewers:
+        for one in (*self._viewers, *self._listeners):
             for framed in messages:
-                viewer.send(framed)
+                one.send(framed)
 
     def send_acting(self, framed: bytes) -> None:
         """Send a message that must arrive, to the pages that may act."""
@@ -48,10 +68,10 @@ class Audience:
 
     def send_if_fast(self, framed: bytes) -> None:
         """Send a message to the pages that keep up; a slow page misses it and gets a later one."""
-        for viewer in self._viewers:
-            viewer.send_if_fast(framed)
+        for one in (*self._viewers, *self._listeners):
+            one.send_if_fast(framed)
 
     def offer(self, framed: bytes, now_s: float) -> None:
         """Send a frame to the pages for which one is due."""
-        for viewer in self._viewers:
-            viewer.offer(framed, now_s)
+        for one in (*self._viewers, *self._listeners):
+            one.offer(framed, now_s)

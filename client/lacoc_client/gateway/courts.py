@@ -3,8 +3,10 @@
 import asyncio
 
 from lacoc_client.gateway import wire
+from lacoc_client.gateway.audience import Audience
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.home import ACTING_MOST, Home
+from lacoc_client.gateway.programme import Programme
 from lacoc_client.gateway.referees import Referees
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
@@ -34,6 +36,8 @@ class Courts:
         self.strangers = Threads(_STRANGERS)
         """Threads that try tokens that no court has accepted yet."""
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
+        self.programme = Programme(self._all)
+        """What the director puts on air."""
         self.sent_away = 0
         """Number of pages that were refused because there were too many."""
 
@@ -53,10 +57,19 @@ class Courts:
             feed.start()
         return self._feeds[name]
 
+    def _all(self) -> list[CourtFeed]:
+        """Return the feeds of all courts of this gateway, started."""
+        return [self.find(name)[0] for name in list(self.home.courts)]
+
     @property
     def feeds(self) -> list[CourtFeed]:
         """The feeds of all courts that were asked for; may be read from any thread."""
         return [feed for feed, _ in list(self._feeds.values())]
+
+    def audiences(self, feed: CourtFeed) -> list[Audience]:
+        """Return all pages to which a court is shown; any thread may call it."""
+        followers = self.programme.audience(feed.court)
+        return [feed.audience] if followers is None else [feed.audience, followers]
 
     def over(self) -> list[str]:
         """List the matches that are over but still open at their courts; any thread may call it."""
@@ -72,7 +85,8 @@ class Courts:
         """
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
-        if sum(feed.audience.others(viewer) for feed in self.feeds) < most:
+        others = sum(feed.audience.others(viewer) for feed in self.feeds)
+        if others + self.programme.others(viewer) < most:
             return None
         if acts:
             return say("gateway.full-with-key", most=most)
@@ -89,6 +103,7 @@ class Courts:
 
     async def close(self) -> None:
         """Close all connections."""
+        self.programme.stop()
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
         self.threads.close()
         self.strangers.close()

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from lacoc_client.asking import fetch, no_answer
 from lacoc_client.gateway import wire
-from lacoc_client.gateway.audience import Audience
+from lacoc_client.gateway.audience import Audience, Listener
 from lacoc_client.gateway.picture import CourtPicture
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
@@ -91,6 +91,12 @@ class CourtFeed:
         for framed in (self._link(), *self._all()):
             viewer.send(framed)
         self.audience.add(viewer)
+
+    def tap(self, listener: Listener) -> None:
+        """Let a listener have everything that pages get; send it everything that is known."""
+        for framed in (self._link(), *self._all()):
+            listener.send(framed)
+        self.audience.tap(listener)
 
     def _all(self) -> tuple[bytes, ...]:
         frame = self.picture.frame

@@ -21,7 +21,7 @@ class PageFile(NamedTuple):
 
     data: bytes
     packed: bytes | None
-    """The data compressed with gzip, if that is shorter."""
+    """The data compressed with gzip; None: it is short, or no text."""
     media_type: str
     hash: str
     """Changes with the data."""

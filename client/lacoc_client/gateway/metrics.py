@@ -39,10 +39,11 @@ class GatewayMetrics(Collector):
         for feed in self._courts.feeds:
             court = [feed.court]
             connected.add_metric(court, feed.connected)
-            viewers.add_metric(court, len(feed.audience))
-            frames = feed.audience.frames()
-            sent.add_metric(court, frames.sent)
-            dropped.add_metric(court, frames.dropped)
+            audiences = self._courts.audiences(feed)
+            viewers.add_metric(court, sum(len(one) for one in audiences))
+            frames = [one.frames() for one in audiences]
+            sent.add_metric(court, sum(one.sent for one in frames))
+            dropped.add_metric(court, sum(one.dropped for one in frames))
         yield from (connected, viewers, sent, dropped)
         full = CounterMetricFamily("lacoc_gateway_sent_away", "Pages that were too many.")
         full.add_metric([], self._courts.sent_away)

@@ -14,6 +14,7 @@ from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.page_requests import serve_requests
 from lacoc_client.gateway.page_seat import PageSeat
+from lacoc_client.gateway.programme import Programme
 from lacoc_client.gateway.referees import Referees, as_referee
 from lacoc_client.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
@@ -49,6 +50,8 @@ class Page:
         self._viewer = Viewer(websocket.state.socket)
         self._feed: CourtFeed | None = None
         self._referees: Referees | None = None
+        self._follows: Programme | None = None
+        """What the director shows, if the page follows it; then it is at no court of its own."""
         self._answers = answers = Answers(self._viewer, self._log)
         self._seat = PageSeat(self._viewer, answers, self._home.prefill, self._log)
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
@@ -99,8 +102,12 @@ class Page:
     async def _watch(self, asked: wire.Watch) -> bool:
         _spend(self._greetings)  # a few bytes ask for a whole match
         viewer = self._viewer
-        viewer.can_act = asked.key is not None and hmac.compare_digest(
-            asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
+        viewer.can_act = (
+            not asked.director
+            and asked.key is not None
+            and hmac.compare_digest(
+                asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
+            )
         )
         viewer.rate(USUAL_HZ if asked.hz is None else asked.hz)
         if (why := self._courts.why_full(viewer)) is not None:
@@ -109,6 +116,12 @@ class Page:
             await self._websocket.close(TRY_LATER, "full")
             return False
         self._leave_court()
+        if asked.director:
+            self._follows = programme = self._courts.programme
+            viewer.send(self._welcome(None))
+            programme.add(viewer)
+            self._answers.reply(asked.id, {})
+            return True
         try:
             self._feed, self._referees = self._courts.find(asked.court)
         except UserError:
@@ -141,6 +154,7 @@ class Page:
             "can_act": self._viewer.can_act,
             "home": home.kind,
             "contest": home.contest,
+            "desk": home.desk,
             "prefill": filled,
         }
         return wire.map_message(Kind.WELCOME, body)
@@ -215,7 +229,9 @@ class Page:
             self._referees.leave(self._viewer)
         if self._feed is not None:
             self._feed.audience.remove(self._viewer)
-        self._feed = self._referees = None
+        if self._follows is not None:
+            self._follows.remove(self._viewer)
+        self._feed = self._referees = self._follows = None
 
     def _gone(self) -> None:
         self._leave_court()

@@ -5,8 +5,43 @@ import msgspec
 from lacoc_client.court_view import MAX_BYTES, CourtView, Told
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.wire import Kind
-from lacoc_shared.codec import decode, message_hash
+from lacoc_shared.codec import BadMessage, decode, message_hash
 from lacoc_shared.messages import Event
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase
+
+
+class _Score(msgspec.Struct, array_like=True):
+    """The fields of a `SeatFrame` up to its score."""
+
+    flags: int
+    score: int
+
+
+class SeatPart(msgspec.Struct):
+    """The fields of a `SheetSeat` that say who plays."""
+
+    team: str = ""
+
+
+class SheetPart(msgspec.Struct):
+    """The fields of a `Sheet` that say what is played."""
+
+    match: int
+    title: str
+    duration_s: float
+    seats: tuple[SeatPart, ...]
+    call: str = ""
+    fixture: Phrase | None = None
+
+
+class FramePart(msgspec.Struct):
+    """How a match stands: what the newest frame says of it."""
+
+    match: int
+    phase: Phase
+    clock_ticks: int
+    scores: tuple[int, ...]
 
 
 class _Frame(msgspec.Struct, array_like=True):
@@ -37,6 +72,9 @@ class CourtPicture:
         """Phase in the newest frame."""
         self.frame: bytes | None = None
         """The newest frame."""
+        self._newest: _Frame | None = None
+        self._sheet: tuple[bytes, SheetPart] | None = None
+        """The newest sheet that `played` has read."""
         self._health: bytes | None = None
 
     @property
@@ -52,11 +90,38 @@ class CourtPicture:
         health = [] if self._health is None else [self._health]
         return (*sheet, *scene, *view.log, *health)
 
+    def stands(self) -> FramePart | None:
+        """Read how the match stands; None if there is no frame, or it can't be read."""
+        frame = self._newest
+        if frame is None:
+            return None
+        try:
+            seats = decode(bytes(frame.seats), tuple[_Score, ...], MAX_BYTES)
+            phase = Phase(frame.phase)
+        except (BadMessage, ValueError):
+            return None
+        scores = tuple(seat.score for seat in seats)
+        return FramePart(frame.match, phase, frame.clock_ticks, scores)
+
+    def played(self) -> SheetPart | None:
+        """Read what is played; None if there is no sheet of the newest frame, or it is damaged."""
+        sheet, frame = self.view.sheet, self._newest
+        if sheet is None or frame is None:
+            return None
+        if self._sheet is None or self._sheet[0] is not sheet:
+            try:
+                self._sheet = sheet, decode(sheet, SheetPart, MAX_BYTES)
+            except BadMessage:
+                return None
+        played = self._sheet[1]
+        return played if played.match == frame.match else None  # else a newer one is on its way
+
     def take_frame(self, payload: bytes) -> bytes:
         """Take a frame in."""
         frame = decode(payload, _Frame, MAX_BYTES)
         self.view.see_frame(frame.scene)
         self.phase = frame.phase
+        self._newest = frame
         self.frame = framed = wire.message(Kind.FRAME, payload)
         return framed
 

@@ -21,6 +21,8 @@ from lacoc_shared.record.summary import Summary, summary
 _RECORDING = ".mcap"
 _SEGMENT = ".live.mcap"  # a match that is still being recorded
 _KEPT = 2000
+_ODDS_BYTES = 1 << 20
+"""A larger file of odds is not served; one of 50 moments has 10 kB."""
 
 
 class Listed(msgspec.Struct, frozen=True):
@@ -72,6 +74,16 @@ class Recordings:
     def find(self, name: str) -> Path | None:
         """Return a recording's path by its name; None if there is none."""
         return self._paths().get(name)
+
+    def odds(self, name: str) -> bytes | None:
+        """Read the odds of a recording; None if they were not computed."""
+        if self._folder is None or self.find(name) is None:
+            return None
+        path = files.odds_path(self._folder / name, name.removesuffix(_RECORDING))
+        with contextlib.suppress(OSError):
+            data = path.read_bytes()
+            return data if len(data) <= _ODDS_BYTES else None
+        return None
 
     def close(self) -> None:
         """Delete the copies."""

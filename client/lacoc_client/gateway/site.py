@@ -1,9 +1,10 @@
 """The gateway's paths: one page for all of them, its files, recordings, the WebSocket."""
 
 import asyncio
-from collections.abc import AsyncIterator, Iterable
+from collections.abc import AsyncIterator, Iterable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Protocol
 
 import msgspec
 from starlette.applications import Starlette
@@ -20,6 +21,7 @@ from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
 from lacoc_client.gateway.recordings import Recordings
+from lacoc_client.gateway.scores import scores_route
 from lacoc_shared.words import say
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest")
@@ -29,12 +31,27 @@ _FOR_EVER = "public, max-age=31536000, immutable"  # names of assets contain the
 _MCAP = "application/octet-stream"
 
 
-def site(home: Home, files: PageFiles) -> ASGIApp:
+class More(Protocol):
+    """Pages that a gateway has besides its own."""
+
+    paths: Sequence[str]
+    """Paths of the pages."""
+
+    @property
+    def routes(self) -> Sequence[BaseRoute]:
+        """Routes besides those of the pages."""
+
+    async def close(self) -> None:
+        """Close what the pages need."""
+
+
+def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     """Make the application of a gateway.
 
     Args:
         home: the gateway's settings.
         files: the built pages.
+        more: further pages.
     """
     courts = Courts(home)
     shelf = Recordings(home.recordings, courts.over)
@@ -48,18 +65,26 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         yield
         watching.cancel()
         await courts.close()
+        if more is not None:
+            await more.close()
         await asyncio.to_thread(shelf.close)
 
     async def page(websocket: WebSocket) -> None:
         await Page(websocket, courts).serve()
 
-    others = [*recording_routes(shelf), sheet_route(home.sheet), WebSocketRoute("/ws", page)]
-    routes = page_routes(files, PATHS, others)
+    others = [
+        *recording_routes(shelf),
+        sheet_route(home.sheet),
+        scores_route(courts),
+        WebSocketRoute("/ws", page),
+    ]
+    paths = PATHS if more is None else (*PATHS, *more.paths)
+    routes = page_routes(files, paths, [*others, *(more.routes if more is not None else ())])
     return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
 
 
 def recording_routes(shelf: Recordings) -> list[BaseRoute]:
-    """Return the routes of recordings: their list, and each of them."""
+    """Return the routes of recordings: their list, each of them, and its odds."""
 
     async def recordings(_: Request) -> Response:
         found = await asyncio.to_thread(shelf.listed)
@@ -70,7 +95,16 @@ def recording_routes(shelf: Recordings) -> list[BaseRoute]:
         path = await asyncio.to_thread(shelf.find, name)
         return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
 
-    return [Route("/recordings", recordings), Route("/recordings/{name}", one_recording)]
+    async def odds(request: Request) -> Response:
+        found = await asyncio.to_thread(shelf.odds, request.path_params["name"])
+        # Most recordings have none, so that is no error.
+        return Response(found or b"null", media_type="application/json")
+
+    return [
+        Route("/recordings", recordings),
+        Route("/recordings/{name}", one_recording),
+        Route("/recordings/{name}/odds", odds),
+    ]
 
 
 def sheet_route(path: Path | None) -> BaseRoute:

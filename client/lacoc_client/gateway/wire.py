@@ -59,6 +59,7 @@ class Kind(IntEnum):
     CARD = 19
     GONE = 20
     TOURNAMENT = 21
+    PROGRAMME = 22
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
@@ -78,6 +79,8 @@ class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
     """The first message: which court, how many frames a second, and the page key."""
 
     court: _Short | None = None
+    director: bool = False
+    """Whether the page follows the director, and not one court; it can't act then."""
     hz: float | None = None
     key: _Token | None = None
 
@@ -221,6 +224,12 @@ def message(kind: Kind, payload: bytes) -> bytes:
     return head + payload
 
 
+def opened(framed: bytes) -> tuple[Kind, bytes]:
+    """Return the kind and the payload of a message that `message` made."""
+    head = {126: 4, 127: 10}.get(framed[1], 2)
+    return Kind(framed[head]), framed[head + 1 :]
+
+
 def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
     """Make a message of the gateway's own, as a WebSocket frame."""
     return message(kind, encode(value))
@@ -231,7 +240,7 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
     Args:
         own: the files.
-        used: version of the files with which the page has just joined a seat; None: it has not.
+        used: version of the files with which the page now asks for a seat; None: it does not.
     """
     names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
     refused = own.refused

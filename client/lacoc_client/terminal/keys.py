@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-from lacoc_client.terminal.key_script import PipeKeys
+from lacoc_client.terminal.pipe_keys import PipeKeys
 from lacoc_shared.gait.cells import narrow
 from lacoc_shared.words import Phrase
 

@@ -17,6 +17,7 @@ from lacoc_client.terminal.keys import Keys
 from lacoc_client.terminal.line_view import event_columns, status_line
 from lacoc_shared.command import screen
 from lacoc_shared.command.keep import save
+from lacoc_shared.gait.key_script import ARROWS
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
@@ -27,7 +28,6 @@ from lacoc_shared.words import Phrase, render, say
 
 POS_DATA = "Pos-data.txt"
 
-_ARROWS = {"up": 2, "left": 1, "right": 3, "down": 0}
 _LOOK_S = 0.01
 _DRAW_S = 0.1
 _SAID_S = 5.0
@@ -131,7 +131,7 @@ class TerminalPlay:
         try:
             if key.isdecimal() and len(key) == 1:
                 self._controller.press(self._level, int(key))
-            elif key in _ARROWS:
+            elif key in ARROWS:
                 self._press_arrow(key)
             elif key == "x":
                 self._controller.press(self._level, RESTART_KEY)
@@ -150,7 +150,7 @@ class TerminalPlay:
 
     def _press_arrow(self, key: str) -> None:
         if self._level is Level.LOCOMOTION:
-            self._controller.press(self._level, _ARROWS[key])
+            self._controller.press(self._level, ARROWS[key])
         else:
             self._say(say("terminal.arrows"))
 

@@ -18,7 +18,10 @@ const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
   "/design": () => import("./pages/design"),
   "/class": () => import("./pages/class"),
   "/contest": () => import("./pages/contest"),
+  "/office": () => import("./pages/office"),
+  "/enter": () => import("./pages/enter"),
   "/replay": () => import("./pages/replay"),
+  "/film": () => import("./pages/film"),
 };
 
 effect(() => {

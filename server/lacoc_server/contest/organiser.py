@@ -9,13 +9,13 @@ from pathlib import Path
 from lacoc_server.contest import publish
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.headless.play import Engine, play
-from lacoc_server.contest.kept.entries import gather, weigh
+from lacoc_server.contest.kept.entries import Entry, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
-from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Closed,
@@ -48,35 +48,63 @@ def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> 
         FileRefused: with every mistake of every file.
         UserError: if the team can't enter, or a file can't be read.
     """
-    team = unicodedata.normalize("NFC", team.strip())
-    if not 0 < len(team) <= NAME_MAX or not team.isprintable():
-        raise UserError(say("contest.team-name", most=NAME_MAX))
+    team = team_name(team)
     where = ContestFolder(file)
     entry = gather(folder, bot, where.contest.robot)
     weigh(entry, where.games, where.contest.limits)
     with FactStore(where.facts) as store:
-        _close_in_time(where, store)
-        said = say("contest.entered-same", team=team)
+        return enter_weighed(where, store, team, entry, reason)
 
-        def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
-            nonlocal said
-            contest = compute(facts, FORMATS)
-            known = {one.name: one for one in contest.teams}
-            if team in known and known[team].files == entry.hash:
-                return
-            if contest.closed and team not in known:
-                raise UserError(say("league.closed", team=team))
-            if contest.closed and not reason.strip():
-                raise UserError(say("contest.needs-reason", team=team))
-            files = where.entries.save(entry)
-            if team in known:
-                said = say("contest.entered-again", team=team, hash=files)
-                yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
-            else:
-                said = say("contest.entered", team=team, hash=files)
-                yield new(Entered, team=team, files=files, bot=entry.bot)
 
-        store.decide(decision)
+def team_name(text: str) -> str:
+    """Return a team's name as it is kept.
+
+    Raises:
+        UserError: if it is empty, too long, or has signs that can't be printed.
+    """
+    team = unicodedata.normalize("NFC", text.strip())
+    if not 0 < len(team) <= NAME_MAX or not team.isprintable():
+        raise UserError(say("contest.team-name", most=NAME_MAX))
+    return team
+
+
+def enter_weighed(
+    where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str
+) -> Phrase:
+    """Enter a team with an entry that was weighed in, or change its files; return what was done.
+
+    Args:
+        where: the contest.
+        store: its facts.
+        team: name of the team, from `team_name`.
+        entry: its files and its bot.
+        reason: why its files change after entries were closed.
+
+    Raises:
+        UserError: if the team can't enter, or the files can't be written.
+    """
+    close_in_time(where, store)
+    said = say("contest.entered-same", team=team)
+
+    def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+        nonlocal said
+        contest = compute(facts, FORMATS)
+        known = {one.name: one for one in contest.teams}
+        if team in known and known[team].files == entry.hash:
+            return
+        if contest.closed and team not in known:
+            raise UserError(say("league.closed", team=team))
+        if contest.closed and not reason.strip():
+            raise UserError(say("contest.needs-reason", team=team))
+        files = where.entries.save(entry)
+        if team in known:
+            said = say("contest.entered-again", team=team, hash=files)
+            yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
+        else:
+            said = say("contest.entered", team=team, hash=files)
+            yield new(Entered, team=team, files=files, bot=entry.bot)
+
+    store.decide(decision)
     return said
 
 
@@ -92,19 +120,24 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
     Raises:
         UserError: if the team has not entered.
     """
-
-    def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
-        teams = {one.name: one for one in compute(facts, FORMATS).teams}
-        if team not in teams:
-            raise UserError(say("contest.not-in", team=team, teams=[*teams] or None))
-        if disqualified and not teams[team].disqualified:
-            yield new(Disqualified, team=team, reason=reason)
-        elif not teams[team].gone:
-            yield new(Withdrawn, team=team, reason=reason)
-
     with FactStore(ContestFolder(file).facts) as store:
-        store.decide(decision)
+        store.decide(
+            lambda facts: leaving(compute(facts, FORMATS), team, reason, disqualified=disqualified)
+        )
     return say("contest.left", team=team)
+
+
+def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> list[AnyFact]:
+    """Return the facts with which a team leaves; none if it has left already.
+
+    Arguments and errors are those of `take_out`.
+    """
+    teams = {one.name: one for one in contest.teams}
+    if team not in teams:
+        raise UserError(say("contest.not-in", team=team, teams=[*teams] or None))
+    if disqualified and not teams[team].disqualified:
+        return [new(Disqualified, team=team, reason=reason)]
+    return [] if teams[team].gone else [new(Withdrawn, team=team, reason=reason)]
 
 
 def tokens(file: Path, team: str | None) -> dict[str, str]:
@@ -172,19 +205,43 @@ def publish_to(file: Path, folder: Path) -> None:
         publish.publish(where, store.facts(), folder)
 
 
-def prepare(where: ContestFolder, store: FactStore) -> None:
-    """Append the plans of the contest file, and check that a contest can be played."""
+def prepare(where: ContestFolder, store: FactStore, *, entering: bool = False) -> None:
+    """Append the plans of the contest file, and check that a contest can be played.
+
+    Args:
+        where: the contest.
+        store: its facts.
+        entering: whether teams may still come.
+
+    Raises:
+        UserError: if the file has no stage, a stage that is drawn has changed there, or there are
+            too few teams.
+    """
     if not where.plans:
         raise UserError(say("contest.no-stages", file=str(where.file)))
     note_plans(store, where.plans)
     contest = compute(store.facts(), FORMATS)
+    if not (entering and not contest.closed):
+        check_teams(where, contest)
+
+
+def check_teams(where: ContestFolder, contest: Contest) -> None:
+    """Check that there are enough teams for a draw.
+
+    Raises:
+        UserError: if there are fewer than two, and nothing is drawn yet.
+    """
     here = sum(not team.gone for team in contest.teams)
     if here < 2 and not contest.stages:
         raise UserError(say("contest.few-teams", teams=here, file=str(where.file)))
 
 
-def _close_in_time(where: ContestFolder, store: FactStore) -> None:
-    """Close entries if their time is over."""
+def close_in_time(where: ContestFolder, store: FactStore) -> None:
+    """Close entries if their time is over.
+
+    Raises:
+        UserError: if that can't be written.
+    """
     end = where.contest.entries_close
     if end is not None and end.astimezone(UTC) <= datetime.now(UTC):
         store.decide(lambda facts: [] if compute(facts, FORMATS).closed else [new(Closed)])

@@ -89,7 +89,7 @@ class Step:
 
 @dataclass
 class Section:
-    """The beats after a snapshot, or after robots were built, up to the next snapshot."""
+    """The beats from a snapshot, or from a building of robots, to the next one or to the end."""
 
     build: Build
     start: bytes | None

@@ -16,9 +16,12 @@ import msgspec
 
 from lacoc_robots.standing import FARTHEST_M
 from lacoc_server.match import contestant, referee
+from lacoc_server.match.drive import DriveState
+from lacoc_server.match.kept import saved
 from lacoc_server.match.physics import Fault, MakePhysics
 from lacoc_server.match.state import MatchState
 from lacoc_shared.codec import pack_states
+from lacoc_shared.gait.tables import Posture
 from lacoc_shared.inputs import (
     Advice,
     Decide,
@@ -63,12 +66,39 @@ class Match(MatchState):
     def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
         super().__init__(setup, make_physics, folder)
         self._touch: Touch | None = None
+        self._outcomes: tuple[Outcome, ...] = ()
+        self._moved: list[DriveState] | None = None
+        """The drives' states after the tick of this beat; None: it has no tick."""
         self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
         """The last game state that was packed, its board as in frames, and each seat's points."""
 
     def legality(self) -> dict[str, Phrase | None]:
         """List every decision by name: None if it is legal now, else why not."""
         return referee.legality(self)
+
+    def save(self, take_backs: bool = True) -> bytes:
+        """Return all that the match is between two beats, its physics too.
+
+        Args:
+            take_backs: False: leave out the ticks that were judged so far. That makes a match of
+                three minutes 10 kB instead of 1 MB. After `load`, the referee can then not take
+                back events from before; all else is the same.
+        """
+        return saved.save(self, take_backs)
+
+    def load(self, data: bytes) -> None:
+        """Go on from a saved match: the same inputs then give the same beats, bit for bit.
+
+        The match may be a new one. Robots are built only if other ones, or none, are on the field.
+
+        Args:
+            data: bytes of `save`, from a match with the same arena, settings and limits. The id of
+                the match, and what an office assigned, may differ.
+
+        Raises:
+            ValueError: if they are not, or the field has the poses of a record instead of physics.
+        """
+        saved.load(self, data)
 
     def beat(self, inputs: Sequence[Input] = ()) -> Beat:
         """Let one beat pass.
@@ -79,6 +109,21 @@ class Match(MatchState):
         Returns:
             The results of the beat, with an outcome for each input.
         """
+        angles = self.open_beat(inputs)
+        fault = None if angles is None else self.physics.step(angles)
+        return self.close_beat(fault)
+
+    def open_beat(self, inputs: Sequence[Input] = ()) -> list[Posture] | None:
+        """Let the first half of a beat pass, up to its tick of physics.
+
+        `beat` calls both halves. Others call them to step the physics of many matches at once.
+
+        Args:
+            inputs: inputs of the beat, as in `beat`.
+
+        Returns:
+            The commanded angles of each seat [rad] for the tick; None: no tick passes.
+        """
         self.beats += 1
         self._events = []
         self._touch = None
@@ -87,15 +132,32 @@ class Match(MatchState):
             self.enter(Phase.LOBBY)
         if self.phase is Phase.COUNTDOWN:
             self.countdown_beats -= 1
-        outcomes = self._take_all(inputs) if inputs else ()
+        self._outcomes = self._take_all(inputs) if inputs else ()
         self.staging.put_back(self.seats)
         self._move_on()
-        ticked = self.phase in PHYSICS_RUNS and self._tick()
-        sheet_changed, self._sheet_changed = self._sheet_changed, False
+        self._moved = None
+        if self.phase not in PHYSICS_RUNS:
+            return None
+        self._moved = [
+            seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state
+        ]
+        return [state.angles for state in self._moved]
+
+    def close_beat(self, fault: Fault | None = None) -> Beat:
+        """Let the second half of a beat pass, after its tick of physics.
+
+        Args:
+            fault: why the tick did not pass; None if it passed, or if there is none in this beat.
+
+        Returns:
+            The results of the beat, as in `beat`.
+        """
+        ticked = self._moved is not None and self._ticked(self._moved, fault)
+        sheet_changed, self.sheet_is_new = self.sheet_is_new, False
         return Beat(
-            self._frame(),
+            self.frame(),
             tuple(self._events),
-            outcomes,
+            self._outcomes,
             ticked,
             self._touch,
             self.result() if self._result_changed else None,
@@ -164,16 +226,19 @@ class Match(MatchState):
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
 
-    def _tick(self) -> bool:
-        """Run one tick of physics; in PLAYING, let the rules judge it.
+    def _ticked(self, states: list[DriveState], fault: Fault | None) -> bool:
+        """Take over a tick of physics; in PLAYING, let the rules judge it.
+
+        Args:
+            states: the drives' states after the tick.
+            fault: why the tick did not pass; None: it passed.
 
         Returns:
-            Whether the tick passed: False after a fault.
+            Whether the tick passed.
         """
-        states = [seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state]
-        self.fault = self.physics.step([state.angles for state in states])
-        if self.fault is not None:
-            self._fail(self.fault)
+        self.fault = fault
+        if fault is not None:
+            self._fail(fault)
             return False
         for seat, state in zip(self.seats, states, strict=True):
             seat.state = state
@@ -220,7 +285,8 @@ class Match(MatchState):
             for seat in self.seats:
                 seat.ready = False
 
-    def _frame(self) -> Frame:
+    def frame(self) -> Frame:
+        """Return the frame of the newest beat."""
         game, state = self.game, self.history.state
         if state is not self._shown[0]:  # the state changes seldom, and there are many frames
             self._shown = (state, pack_states(game.board(state)), game.score(state))

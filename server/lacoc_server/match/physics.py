@@ -6,7 +6,7 @@ without physics.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
@@ -71,6 +71,18 @@ class Physics(Protocol):
         """Return for each seat the markers whose probes its robot touches after the newest tick.
 
         A marker is its index in the game's board. The indices are in ascending order.
+        """
+
+
+@runtime_checkable
+class Restorable(Physics, Protocol):
+    """Physics that can go on from a saved state; that of a record can't."""
+
+    def load(self, saved: bytes) -> None:
+        """Go on from a state that `save` of the same model returned.
+
+        Raises:
+            ValueError: if it is of another model.
         """
 
 

@@ -13,7 +13,7 @@ import msgspec
 
 from lacoc_arenas.game import NoSuchState
 from lacoc_server.match import contestant
-from lacoc_server.match.history import Fold
+from lacoc_server.match.kept.history import Fold
 from lacoc_server.match.seat import Seat
 from lacoc_server.match.state import MatchState
 from lacoc_shared import decisions as d

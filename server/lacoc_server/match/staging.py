@@ -3,11 +3,11 @@
 import math
 import struct
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Observation, Place, RobotView
-from lacoc_server.match.physics import MakePhysics, Physics
+from lacoc_server.match.physics import MakePhysics, Physics, Restorable
 from lacoc_server.match.seat import Seat
 from lacoc_shared.record.schema import Touch
 
@@ -17,6 +17,15 @@ if that is larger.
 """
 
 _BODY = struct.Struct("<7f")
+
+
+class Places(NamedTuple):
+    """Where the robots of a match were put."""
+
+    placed: tuple[Place | None, ...]
+    """By seat: where its robot was put since the rules last saw it; None: it was not put."""
+    starts: tuple[Place, ...]
+    """By seat: where its robot was last put."""
 
 
 class Staging:
@@ -79,6 +88,22 @@ class Staging:
             for body, place, touch in zip(self._bodies, placed, touched, strict=True)
         )
         return seen, Touch(tuple(touched), tuple(placed))
+
+    def save(self) -> Places:
+        """Return what has to be kept besides the physics."""
+        return Places(tuple(self._placed), tuple(self._starts))
+
+    def load(self, places: Places, physics: bytes) -> None:
+        """Go on from saved places and the saved state of the same robots.
+
+        Raises:
+            ValueError: if the state is not of this model.
+        """
+        if not isinstance(self.physics, Restorable):
+            raise ValueError("the poses of a record take the place of physics; they can't change")
+        self.physics.load(physics)
+        self._placed, self._starts = list(places.placed), list(places.starts)
+        self.look()
 
     def put_back(self, seats: Sequence[Seat]) -> None:
         """Put each robot whose seat is marked as restarting at a start place."""

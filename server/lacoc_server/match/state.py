@@ -10,7 +10,7 @@ from typing import Any
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.game import GameEvent
 from lacoc_robots.limits import Limits
-from lacoc_server.match.history import History
+from lacoc_server.match.kept.history import History
 from lacoc_server.match.physics import Fault, MakePhysics, Physics
 from lacoc_server.match.seat import Seat
 from lacoc_server.match.staging import Staging
@@ -103,13 +103,15 @@ class MatchState:
         self.fault: Fault | None = None
         """The fault that stopped physics in the newest tick; None: none did."""
         self.staging = Staging(self.arena, make_physics)
-        self._event_count = 0
+        self.event_count = 0
+        """Number of the newest event in the log; the first is 1."""
+        self.sheet_is_new = True
+        """True if the sheet changed since the last beat."""
+        self.told_result: tuple[str, tuple[int, ...]] | None = None
+        """Winner by the rules and scores, as last logged; None: not logged since play ended."""
         # Results of this beat so far.
         self._events: list[Event] = []
         self._result_changed = False
-        self._sheet_changed = True
-        self._told_result: tuple[str, tuple[int, ...]] | None = None
-        """Winner by the rules and scores, as last logged; None: not logged since play ended."""
 
     # Questions.
 
@@ -149,7 +151,7 @@ class MatchState:
     @property
     def next_number(self) -> int:
         """The number that the next event will get."""
-        return self._event_count + 1
+        return self.event_count + 1
 
     def scores(
         self, state: Any = None, adjustments: Mapping[int, tuple[int, int]] | None = None
@@ -255,10 +257,14 @@ class MatchState:
     def build(self) -> None:
         """Put the robots of all seats on the field, with their drives."""
         self.staging.build(self.seats)
+        self.begin_drives()
+        self.sheet_changed()
+
+    def begin_drives(self) -> None:
+        """Give each seat its drive, with which its robot stands."""
         level = self.rules.open_levels[0]
         for seat in self.seats:
             seat.begin(self.rules.repeat, level)
-        self.sheet_changed()
 
     def back_to_lobby(self) -> None:
         """Go from READY back to the lobby and empty the field; in other phases do nothing."""
@@ -284,7 +290,7 @@ class MatchState:
         """
         self.ended = why
         self.enter(Phase.FINISHED)
-        self._told_result = None
+        self.told_result = None
         self.tell_result()
 
     def take_up(self, physics: Physics, make_physics: MakePhysics) -> None:
@@ -301,10 +307,10 @@ class MatchState:
 
     def tell(self, kind: str, said: Phrase, seat: int = NOBODY, **data: Any) -> int:
         """Log an event and return its number."""
-        self._event_count += 1
+        self.event_count += 1
         self._events.append(
             Event(
-                number=self._event_count,
+                number=self.event_count,
                 match=self.setup.match,
                 beat=self.beats,
                 clock_ticks=self.clock_ticks,
@@ -314,7 +320,7 @@ class MatchState:
                 data=data,
             )
         )
-        return self._event_count
+        return self.event_count
 
     def tell_judged(self, event: GameEvent, again: bool = False) -> None:
         """Log an event that the rules decided.
@@ -338,9 +344,9 @@ class MatchState:
         if self.phase is not Phase.FINISHED:
             return
         result = winner, scores = self.winner(), self.scores()
-        if result == self._told_result:
+        if result == self.told_result:
             return
-        self._told_result = result
+        self.told_result = result
         if winner == "draw":
             said = say("event.draw", scores=scores)
         else:
@@ -353,4 +359,4 @@ class MatchState:
 
     def sheet_changed(self) -> None:
         """Mark the sheet as changed: the beat then says so."""
-        self._sheet_changed = True
+        self.sheet_is_new = True

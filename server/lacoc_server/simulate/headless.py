@@ -8,7 +8,7 @@ import msgspec
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
-from lacoc_arenas.bot import BotFactory
+from lacoc_arenas.bot import BotFactory, Brain
 from lacoc_robots.library import (
     GAIT_NAMES,
     find_robot,
@@ -33,6 +33,8 @@ _BROUGHT = "@"
 _Files = tuple[SentFile, SentFile | None, SentFile | None]
 """Robot, postures (level A), locomotion (level B)."""
 
+AUTHOR = "simulate"
+"""Author of the decisions in a match without a referee."""
 SETTLE_BEATS = BEATS_PER_S
 """Robots stand in READY until this beat of the match; then the match is started."""
 
@@ -192,36 +194,60 @@ def simulate(
 
 
 def _play(match: Match, journal: Journal, players: Sequence[Player]) -> Iterator[Beat]:
-    beat = _beat(journal, [player.join for player in players])
-    for outcome in beat.outcomes:
-        if isinstance(outcome, Refusal):
-            raise FileRefused(list(outcome.mistakes))
-    yield beat
-    yield _beat(journal, [ReadySeat(player.join.seat, True) for player in players])
-    sheet = match.sheet()
-    minds = [player.bot(sheet, player.join.seat) for player in players]
-    seqs = [0] * len(players)
-    while match.phase is Phase.READY and match.beats < SETTLE_BEATS:
-        yield _beat(journal)
-    if match.phase is Phase.READY:
-        yield _beat(journal, [Decide("simulate", "", Start())])
-    keys: list[Input] = []
-    while match.phase not in (Phase.FINISHED, Phase.HALTED):
-        beat = _beat(journal, keys)
+    def pass_beat(inputs: Sequence[Input]) -> Beat:
+        return journal.beat(inputs)[0]
+
+    minds: list[Brain] = []
+    for beat in to_play(match, [player.join for player in players], pass_beat):
         yield beat
-        keys = []
-        if match.phase is not Phase.PLAYING:
-            continue
+        if match.phase is Phase.READY and not minds:
+            sheet = match.sheet()
+            minds = [player.bot(sheet, player.join.seat) for player in players]
+    seqs = [0] * len(players)
+    while match.phase is Phase.PLAYING:
+        keys: list[Input] = []
         for index, (player, mind) in enumerate(zip(players, minds, strict=True)):
             key = mind(beat.frame) if match.ticks > player.late_ticks else None
             if key is not None:
                 seqs[index] += 1
                 keys.append(KeySeat(player.join.seat, seqs[index], int(key.level), key.key))
+        beat = pass_beat(keys)
+        yield beat
+    yield pass_beat([closing(match)])
+
+
+def to_play(
+    match: Match, joins: Sequence[JoinSeat], pass_beat: Callable[[Sequence[Input]], Beat]
+) -> Iterator[Beat]:
+    """Lead a new match to its first beat of PLAYING: teams sit down, robots settle, it is started.
+
+    Args:
+        match: the match.
+        joins: a join for each seat.
+        pass_beat: lets a beat of the match pass.
+
+    Yields:
+        Each beat. If physics stops, the match is not in PLAYING at the end.
+
+    Raises:
+        FileRefused: if a file has mistakes.
+    """
+    beat = pass_beat(joins)
+    for outcome in beat.outcomes:
+        if isinstance(outcome, Refusal):
+            raise FileRefused(list(outcome.mistakes))
+    yield beat
+    yield pass_beat([ReadySeat(join.seat, True) for join in joins])
+    while match.phase is Phase.READY and match.beats < SETTLE_BEATS:
+        yield pass_beat(())
+    if match.phase is Phase.READY:
+        yield pass_beat([Decide(AUTHOR, "", Start())])
+    while match.phase is Phase.COUNTDOWN:
+        yield pass_beat(())
+
+
+def closing(match: Match) -> Decide:
+    """Return the decision that ends a match: official after its end, void before it."""
     if match.phase is Phase.FINISHED:
-        yield _beat(journal, [Decide("simulate", "", Official())])
-    else:
-        yield _beat(journal, [Decide("simulate", say("reason.physics-stopped"), Abort())])
-
-
-def _beat(journal: Journal, inputs: Sequence[Input] = ()) -> Beat:
-    return journal.beat(inputs)[0]
+        return Decide(AUTHOR, "", Official())
+    return Decide(AUTHOR, say("reason.physics-stopped"), Abort())

@@ -36,7 +36,7 @@ class Robot:
         Args:
             model: the `MjModel`.
             entry: entry that the robot was built from.
-            seat: id of its seat; all its names begin with it and a slash.
+            seat: id of the robot's seat; names of the robot's parts begin with this id and a slash.
         """
         joints = [model.joint(f"{seat}/j{joint}") for joint in range(entry.robot.joints)]
         root = model.joint(f"{seat}/root")

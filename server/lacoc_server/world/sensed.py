@@ -69,6 +69,12 @@ class SensedWorld(World):
         """Return the body's position [m] and quaternion, and joint angles [rad]: (7 + joints,)."""
         return self._qpos[self._pose_qpos]
 
+    def velocity(self) -> Floats:
+        """Return the velocity of the body's origin in the world frame [m/s]: (3,)."""
+        first = self.robots[0].root_dof
+        velocity: Floats = self.data.qvel[first : first + 3].copy()
+        return velocity
+
     def sensed(self) -> Sensed:
         """Return what was measured in the last tick."""
         data, legs = self.data, self._legs

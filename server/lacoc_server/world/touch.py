@@ -68,9 +68,11 @@ class TouchTest:
         self._model, self._data = model, data
         mujoco.mj_kinematics(model, data)
         probes = list(_probes(model, data, markers))
-        self._no_probes = not probes
+        self.can_touch = bool(probes)
+        """False if no marker has a probe: then robots touch nothing."""
         self._robots = [_Outline(model, data, robot, probes) for robot in robots]
-        self._none: list[tuple[int, ...]] = [()] * len(robots)
+        self.none: list[tuple[int, ...]] = [()] * len(robots)
+        """The answer when no robot touches anything."""
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """Return for each seat the markers that it touches, in ascending order.
@@ -78,11 +80,11 @@ class TouchTest:
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
-        if self._no_probes:
-            return self._none
+        if not self.can_touch:
+            return self.none
         near = [robot.probes_near(gap_m) for robot in self._robots]
         if not any(near):
-            return self._none
+            return self.none
         # After mj_step the geoms are still where the last step began.
         mujoco.mj_kinematics(self._model, self._data)
         return [

@@ -30,7 +30,7 @@ SUBSTEPS = 10
 MUJOCO_VERSION = mujoco.mj_versionString()
 """MuJoCo's version; a replay is exact only with the same one."""
 
-_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
+STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 """All that the next step depends on; mjSTATE_FULLPHYSICS lacks a part of it (docs/facts.md 1)."""
 
 _FLOAT32 = np.dtype("<f4")
@@ -83,18 +83,18 @@ class World:
         mujoco.mj_saveModel(self.model, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
         self.digest = bytes(8)
-        self._robots = [Robot.find(self.model, entry, seats[i]) for i, entry in enumerate(entries)]
-        pose_qpos = [index for robot in self._robots for index in robot.pose_qpos]
+        self.robots = [Robot.find(self.model, entry, seats[i]) for i, entry in enumerate(entries)]
+        pose_qpos = [index for robot in self.robots for index in robot.pose_qpos]
         self._pose_qpos = np.array(pose_qpos, np.intp)
-        self._touch = TouchTest(self.model, self.data, self._robots, arena.game.markers)
+        self._touch = TouchTest(self.model, self.data, self.robots, arena.game.markers)
         # Views into MuJoCo's own arrays: they always show the present values.
         self._qpos: npt.NDArray[np.float64] = self.data.qpos
         self._control = self.data.ctrl
         self._write_control = struct.Struct(f"{self.model.nu}d").pack_into
         self._warned = self.data.warning.number
-        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        self._state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         self._weights = _weights(self.model)
-        for seat, robot in enumerate(self._robots):
+        for seat, robot in enumerate(self.robots):
             robot.put(self.data, arena.game.starts[seat][0])
         self._keep()
 
@@ -105,7 +105,7 @@ class World:
 
         `digest` changes only with the next tick.
         """
-        self._robots[seat].put(self.data, place)
+        self.robots[seat].put(self.data, place)
         self._keep()
 
     def step(self, angles: Sequence[Posture]) -> Fault | None:
@@ -121,13 +121,17 @@ class World:
         self._advance()
         if any(self._warned.tobytes()):
             return self._undo()
-        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        self.digest = _chained(self.digest, self._state.data)
+        mujoco.mj_getState(self.model, self.data, self._state, STATE)
+        self.digest = chained(self.digest, self._state.data)
         return None
 
     def poses(self) -> bytes:
         """Return the poses of the robots, in the form of `Frame.poses`."""
-        return self._qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
+        return self.poses_of(self._qpos)
+
+    def poses_of(self, qpos: npt.NDArray[np.float64]) -> bytes:
+        """Return the poses in other positions of this model, in the form of `Frame.poses`."""
+        return qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """Return for each seat the indices of the markers that its robot touches, ascending.
@@ -140,6 +144,16 @@ class World:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
         return self._touch(gap_m)
+
+    def touched_in(self, state: npt.NDArray[np.float64]) -> Sequence[tuple[int, ...]]:
+        """Return what `touched` returns in another state of this model.
+
+        The world itself is then in another state: load one before it goes on.
+        """
+        if not self._touch.can_touch:
+            return self._touch.none
+        mujoco.mj_setState(self.model, self.data, state, STATE)
+        return self._touch()
 
     # Snapshots
 
@@ -158,7 +172,7 @@ class World:
             raise ValueError(f"a state of {state.size} numbers; this model has {self._state.size}")
         self.digest = saved[:8]
         self._state[:] = state
-        mujoco.mj_setState(self.model, self.data, self._state, _STATE)
+        mujoco.mj_setState(self.model, self.data, self._state, STATE)
 
     def apart(self, saved: bytes) -> float:
         """Measure how far this state is from a saved one.
@@ -179,7 +193,7 @@ class World:
     @staticmethod
     def follows(saved: bytes, digest: bytes) -> bool:
         """Return whether a saved state's digest follows from `digest`, that of the tick before."""
-        return _chained(digest, saved[8:]) == saved[:8]
+        return chained(digest, saved[8:]) == saved[:8]
 
     # Private
 
@@ -191,7 +205,7 @@ class World:
         mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
 
     def _keep(self) -> None:
-        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
+        mujoco.mj_getState(self.model, self.data, self._state, STATE)
 
     def _undo(self) -> Fault:
         """Restore the state before the tick, and return the fault that MuJoCo warned of.
@@ -203,7 +217,7 @@ class World:
         where = int(self.data.warning[kind].lastinfo)
         why = _WARNINGS.get(mujoco.mjtWarning(kind), say("fault.other", number=kind))
         numbers[:] = 0
-        mujoco.mj_setState(self.model, self.data, self._state, _STATE)
+        mujoco.mj_setState(self.model, self.data, self._state, STATE)
         return Fault(self._seat_of(mujoco.mjtWarning(kind), where), why)
 
     def _seat_of(self, kind: mujoco.mjtWarning, where: int) -> int:
@@ -213,7 +227,7 @@ class World:
             kind: the warning.
             where: index that MuJoCo gives with it.
         """
-        for seat, robot in enumerate(self._robots):
+        for seat, robot in enumerate(self.robots):
             match kind:
                 case mujoco.mjtWarning.mjWARN_BADQPOS:
                     first, count = robot.root_qpos, 7 + len(robot.joint_qpos)
@@ -228,7 +242,7 @@ class World:
         return NOBODY
 
 
-def _chained(digest: bytes, state: bytes | memoryview) -> bytes:
+def chained(digest: bytes, state: bytes | memoryview) -> bytes:
     """Return the digest of a state, chained to the digest of the tick before it."""
     following = hashlib.sha256(digest)
     following.update(state)
@@ -246,7 +260,7 @@ def _weights(model: Any) -> npt.NDArray[np.float64]:
         int(mujoco.mjtState.mjSTATE_QVEL): tick_s,
         int(mujoco.mjtState.mjSTATE_WARMSTART): tick_s**2,
     }
-    parts = [1 << bit for bit in range(_STATE.bit_length()) if _STATE & 1 << bit]
+    parts = [1 << bit for bit in range(STATE.bit_length()) if STATE & 1 << bit]
     return np.concatenate(
         [np.full(mujoco.mj_stateSize(model, part), weight.get(part, 0.0)) for part in parts]
     )

@@ -39,10 +39,16 @@ _PANELS: Panels = {
     "Play": ("demo", "practice", "play", "watch"),
     "Prepare your robot": ("design", "class", "gait", "trial", "coach", "robot"),
     "Run a contest": ("contest", "serve", "web", "referee", "doctor"),
-    "Study and develop": ("replay", "simulate", "bot", "studio"),
+    "Study and develop": ("replay", "film", "simulate", "bot", "studio"),
 }
 _OTHERS = "Commands of other packages"
-_EXTRAS = {"cmaes": "server", "cryptography": "server", "mujoco": "server"}
+_EXTRAS = {
+    "av": "film",
+    "cmaes": "server",
+    "cryptography": "server",
+    "mujoco": "server",
+    "playwright": "film",
+}
 """Packages that the base install leaves out -> the extra that contains each."""
 _COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command only
 

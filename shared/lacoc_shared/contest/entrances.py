@@ -5,6 +5,7 @@ An option that is None was not given; it is looked up in the contest file.
 
 import hashlib
 
+from lacoc_shared.contest import codes
 from lacoc_shared.contest.file import LOOPBACK, MAIN, OTHERS, Contest, Court
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
@@ -97,6 +98,31 @@ def page_key(contest: Contest) -> str:
     secret = " ".join(court.referee.token for court in contest.courts.values())
     digest = hashlib.blake2b(secret.encode(), digest_size=16, person=b"lacoc web key").digest()
     return digest.hex()
+
+
+def organiser_key(contest: Contest) -> str:
+    """Return the key that opens the organiser's page: the same at each start.
+
+    Raises:
+        UserError: if the contest has no office.
+    """
+    digest = hashlib.blake2b(_office_token(contest), digest_size=16, person=b"lacoc organiser")
+    return digest.hexdigest()
+
+
+def event_code(contest: Contest) -> str:
+    """Return the code with which a team applies: the same at each start.
+
+    Raises:
+        UserError: if the contest has no office.
+    """
+    return codes.code_of(_office_token(contest).decode())
+
+
+def _office_token(contest: Contest) -> bytes:
+    if contest.office is None:
+        raise UserError(say("contest.no-office", file=contest.name))
+    return contest.office.token.encode()
 
 
 def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[str, str]:

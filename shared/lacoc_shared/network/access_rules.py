@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import DESK, Keys
 
 Rules = dict[str, dict[str, Any]]
 """Rules by name."""
@@ -82,6 +82,16 @@ def studio_access_control() -> dict[str, Any]:
         "progress": _rule("ingress", ["lacoc/*/studio/progress/*"], ["declare_subscriber"]),
         "presence": _presence(),
     }
+    return _for_anyone(rules)
+
+
+def desk_access_control() -> dict[str, Any]:
+    """Make Zenoh's access control for an office's desk: it can be asked, and nothing else."""
+    rules = {"desk-to-all": _to_all(), "ask": _rule("ingress", [DESK], ["query"])}
+    return _for_anyone(rules)
+
+
+def _for_anyone(rules: Rules) -> dict[str, Any]:
     return {
         "enabled": True,
         "default_permission": "deny",

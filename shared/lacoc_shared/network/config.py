@@ -20,6 +20,7 @@ from lacoc_shared.network.access_rules import (
     Credentials,
     Protection,
     access_control,
+    desk_access_control,
     studio_access_control,
 )
 from lacoc_shared.studio import TRIAL_REPLY_MAX_BYTES
@@ -94,6 +95,15 @@ def studio_config(listen: Sequence[str]) -> Config:
         "access_control": studio_access_control(),
         "transport": _transport(_ASKED_MAX_BYTES + _HEADERS_BYTES, {}) | {"unicast": _unicast()},
     }
+
+
+def desk_config(listen: Sequence[str]) -> Config:
+    """Make the configuration of the session of an office's desk: as a studio's, but for one key.
+
+    Args:
+        listen: complete addresses.
+    """
+    return studio_config(listen) | {"access_control": desk_access_control()}
 
 
 def client_config(

@@ -334,11 +334,22 @@ def open_studio(listen: Sequence[str]) -> Session:
     Raises:
         UserError: if it can't listen on one of them; the message says why.
     """
+    return _listening(listen, network_config.studio_config)
+
+
+def open_desk(listen: Sequence[str]) -> Session:
+    """Open the session of an office's desk; argument and errors are those of `open_studio`."""
+    return _listening(listen, network_config.desk_config)
+
+
+def _listening(
+    listen: Sequence[str], config: Callable[[Sequence[str]], network_config.Config]
+) -> Session:
     _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
     endpoints = [address.endpoint(one) for one in listen]
     address.check_protocols(endpoints, keys=False)
     try:
-        return Session(_open(network_config.studio_config(endpoints)), endpoints)
+        return Session(_open(config(endpoints)), endpoints)
     except zenoh.ZError as error:
         raise UserError(address.why_not_listening(endpoints, error)) from None
 

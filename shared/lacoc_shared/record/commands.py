@@ -149,6 +149,7 @@ def _summary(record: Record) -> dict[str, Any]:
         "match": header.setup.match,
         "arena": header.setup.arena,
         "started": header.started,
+        "fork_of": msgspec.to_builtins(header.setup.origin),
         "versions": header.versions,
         "teams": {seat.id: seat.team for seat in sheet.seats} if sheet else {},
         "segments": len(record.headers),
@@ -269,8 +270,14 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[Phrase, Phrase |
     complete = say("word.yes") if found["complete"] else say("word.no")
     if record.lost:
         complete = say("info.part-lost")
+    origin = record.header.setup.origin
+    fork = [
+        (say("info-name.fork"), say("info.fork", match=one.match_id, beat=one.beat))
+        for one in ([origin] if origin else [])
+    ]
     return [
         (say("info-name.match"), match),
+        *fork,
         (say("info-name.court"), found["court"]),
         (say("info-name.begun"), found["started"]),
         (say("info-name.teams"), say("plain.sentences", sentences=teams)),

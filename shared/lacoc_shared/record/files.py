@@ -23,6 +23,11 @@ def packed_path(folder: Path, match_id: str) -> Path:
     return folder / f"{match_id}.mcap"
 
 
+def odds_path(record: Path, match_id: str) -> Path:
+    """Return the path of a match's odds, beside its record (`lacoc replay odds`)."""
+    return record.parent / f"{match_id}.odds.json"
+
+
 def segment_name(path: Path) -> tuple[str, int] | None:
     """Return the match id and number of a segment; None if the file's name is not a segment's."""
     name = _SEGMENT.fullmatch(path.name)

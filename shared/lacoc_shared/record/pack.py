@@ -26,8 +26,8 @@ CHUNK_BYTES = 1 << 17
 on. Chunks of this size make a file 1 % larger than those of 1 MiB; with 64 KiB it is 6 %.
 """
 
-_Message = tuple[str, int, bytes]
-"""Topic, beat and bytes."""
+Message = tuple[str, int, bytes]
+"""Topic, beat and bytes of a message of a record."""
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
@@ -68,6 +68,35 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         raise UserError(say("pack.no-room", file=str(out), why=why)) from None
 
 
+def write(messages: Sequence[Message], out: Path) -> None:
+    """Write a packed file; it gets its name when it is complete and on the disk.
+
+    Args:
+        messages: all messages of a record, in order.
+        out: the file.
+
+    Raises:
+        UserError: if there is such a file already, or it can't be written.
+    """
+    if out.exists():
+        raise UserError(say("record.exists", file=str(out)))
+    unfinished = out.with_name(f"{out.name}.part")
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        _write(messages, unfinished)
+        unfinished.rename(out)
+        files.sync_folder(out.parent)
+    except OSError as error:
+        unfinished.unlink(missing_ok=True)
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=str(out), why=why)) from None
+
+
+def read(paths: Sequence[Path]) -> list[Message]:
+    """Read all messages of the files of a record, up to the first damage."""
+    return _messages(paths)[0]
+
+
 def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Popen[bytes]:
     """Pack matches in another process, which a Ctrl-C for this one does not stop.
 
@@ -81,14 +110,14 @@ def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Pop
     )
 
 
-def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
+def _whole_match(segments: Sequence[Path], out: Path) -> list[Message]:
     """Read all messages of a match.
 
     Raises:
         UserError: if the segments can't be read to their end, because removing them would lose
             what can't be read now.
     """
-    messages: list[_Message] = []
+    messages: list[Message] = []
     record = Record.read(segments, lambda *message: messages.append(message))
     if record.cut:
         raise UserError(say("pack.not-packed", file=str(out), cut=record.cut))
@@ -108,7 +137,7 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
     )
 
 
-def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> None:
+def _compare(wanted: Sequence[Message], wrong: Stop | None, packed: Path) -> None:
     """Check that removing the segments loses nothing.
 
     The segments may be only the last of a match: packing was interrupted after the others
@@ -127,16 +156,16 @@ def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> No
         raise UserError(say("pack.differs", file=str(packed)))
 
 
-def _messages(paths: Sequence[Path]) -> tuple[list[_Message], Stop | None]:
+def _messages(paths: Sequence[Path]) -> tuple[list[Message], Stop | None]:
     """Read the messages of some files, and the fault at the end of the last file, if any."""
-    found: list[_Message] = []
+    found: list[Message] = []
     wrong: Stop | None = None
     for path in paths:
         wrong = walk_bytes(path, lambda *message: found.append(message))
     return found, wrong
 
 
-def _write(messages: Sequence[_Message], path: Path) -> None:
+def _write(messages: Sequence[Message], path: Path) -> None:
     with path.open("wb") as file:
         # The checksum of all data finds damage between the chunks, each of which has its own.
         writer = Writer(file, chunk_size=CHUNK_BYTES, enable_data_crcs=True)

@@ -46,8 +46,8 @@ class Record:
     """(beat, state of physics after it)."""
     sheets: list[tuple[int, Sheet]] = field(default_factory=list)
     scenes: list[tuple[int, Scene]] = field(default_factory=list)
-    result: Result | None = None
-    """The newest result; None if the match has not ended."""
+    results: list[Result] = field(default_factory=list)
+    """The results so far; each replaces the one before."""
     health: HealthVerdict | None = None
     """The newest verdict; None: there is none yet, or the match was not played in real time."""
     last_beat: int = -1
@@ -66,6 +66,11 @@ class Record:
     def header(self) -> Header:
         """The first segment's header."""
         return self.headers[0]
+
+    @property
+    def result(self) -> Result | None:
+        """The newest result; None if the match has not ended."""
+        return self.results[-1] if self.results else None
 
     @property
     def given_s(self) -> float:
@@ -87,6 +92,25 @@ class Record:
     def scene_at(self, beat: int) -> Scene | None:
         """Return the scene that was valid at a beat; None before the first."""
         return _newest(beat, self.scenes)
+
+    def until(self, beat: int) -> "Record":
+        """Return the same record with its messages up to a beat, and none after it."""
+        kept = Record(
+            headers=[header for header in self.headers if header.first_beat <= beat],
+            inputs={number: items for number, items in self.inputs.items() if number <= beat},
+            events=[event for event in self.events if event.beat <= beat],
+            frames=_until(beat, self.frames),
+            touches={number: touch for number, touch in self.touches.items() if number <= beat},
+            snapshots=_until(beat, self.snapshots),
+            sheets=_until(beat, self.sheets),
+            scenes=_until(beat, self.scenes),
+            results=[result for result in self.results if result.beats <= beat + 1],
+        )
+        newest = [*kept.inputs, *kept.touches]
+        for items in (kept.frames, kept.snapshots, kept.sheets, kept.scenes):
+            newest += [number for number, _ in items[-1:]]
+        kept.last_beat = max([*newest, *(event.beat for event in kept.events[-1:])], default=-1)
+        return kept
 
     @classmethod
     def read(cls, paths: Path | Iterable[Path], also: TakeBytes | None = None) -> "Record":
@@ -138,7 +162,7 @@ class Record:
         self.lost = stop is not None and stop.damaged
         self.cut = None
         if stop is not None:
-            beat = self.last_beat if self.last_beat >= 0 else None
+            beat = self.last_beat if self.last_beat >= 0 and not stop.is_all else None
             self.cut = say("cut.file", file=str(path), beat=beat, why=stop.why)
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
@@ -148,7 +172,7 @@ class Record:
                 self._begin_segment(path, message)
                 return
             case "/lacoc/result":
-                self.result = message
+                self.results.append(message)
                 return
             case "/lacoc/health":
                 self.health = message
@@ -209,8 +233,8 @@ class Record:
         if self.last_beat < beat:
             return
         self.last_beat = beat - 1
-        if self.result is not None and self.result.beats > beat:
-            self.result = None
+        while self.results and self.results[-1].beats > beat:
+            self.results.pop()
         _drop(self.inputs, beat)
         _drop(self.touches, beat)
         while self.events and self.events[-1].beat >= beat:
@@ -228,5 +252,9 @@ def _drop(items: dict[int, V], beat: int) -> None:
 
 
 def _newest(beat: int, items: list[tuple[int, V]]) -> V | None:
-    count = bisect_right(items, beat, key=itemgetter(0))
-    return items[count - 1][1] if count else None
+    until = _until(beat, items)
+    return until[-1][1] if until else None
+
+
+def _until(beat: int, items: list[tuple[int, V]]) -> list[tuple[int, V]]:
+    return items[: bisect_right(items, beat, key=itemgetter(0))]

@@ -10,6 +10,17 @@ from lacoc_shared.messages.office import Assigned
 from lacoc_shared.words import Phrase
 
 
+class Origin(msgspec.Struct, frozen=True, kw_only=True):
+    """The match that a fork goes on from: what another match was up to a beat."""
+
+    match_id: str
+    """Id of that match; it may be a fork too."""
+    beat: int
+    """First beat of the fork's own; all beats before it are those of the other match."""
+    record_hash: str
+    """Hash of that match's record (`hashing.record_hash`), hexadecimal."""
+
+
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that a match is made from; with the inputs it gives the same match again."""
 
@@ -25,6 +36,8 @@ class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """Contest limits for robots (rules 1) that differ from the defaults."""
     assigned: Assigned | None = None
     """What the office assigned; None: the court has no office, or the record is older."""
+    origin: Origin | None = None
+    """What the match is a fork of; None: it was played from its first beat on."""
 
 
 class Header(msgspec.Struct, frozen=True, kw_only=True):

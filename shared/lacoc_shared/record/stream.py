@@ -68,6 +68,8 @@ class Stop(NamedTuple):
     """Whether the file is damaged or incomplete; False: it was only not closed, as by a killed
     court.
     """
+    is_all: bool = False
+    """Whether all messages were read all the same."""
 
 
 class _Format(msgspec.Struct):
@@ -140,7 +142,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
 
 
 def _damaged_index() -> Stop:
-    return Stop(say("cut.index"), damaged=True)
+    return Stop(say("cut.index"), damaged=True, is_all=True)
 
 
 def _is_index_damaged(data: bytes, at: int) -> bool:

@@ -31,6 +31,8 @@ class Summary(msgspec.Struct, frozen=True):
     """Seat id, "draw", "void", or "" if there is none."""
     seats: tuple[str, ...]
     """The ids of the seats."""
+    fork_of: str = ""
+    """Id of the match that this is a fork of; "": it is no fork."""
 
 
 def summary(path: Path) -> Summary | None:
@@ -64,4 +66,5 @@ def summary(path: Path) -> Summary | None:
         scores=() if result is None else result.scores,
         winner="" if result is None else result.official or result.computed,
         seats=tuple(seat.id for seat in sheet.seats),
+        fork_of=header.setup.origin.match_id if header.setup.origin else "",
     )

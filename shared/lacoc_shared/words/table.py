@@ -24,10 +24,12 @@ FILES = (
     "tournament",
     "league",
     "office",
+    "film",
     "commands",
+    "environments",
 )
-ON_PAGES = FILES[:-1]
-"""The files that pages need; the last one has only sentences that commands print in a terminal."""
+ON_PAGES = FILES[:-3]
+"""The files that pages need; the last three have only sentences for terminals and programs."""
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { bracket } from "../../../client/web/src/core/contest/bracket.ts";
 import { fit } from "../../../client/web/src/core/contest/fit.ts";
 import * as c from "../../../client/web/src/core/contest/sheet.ts";
@@ -10,7 +11,7 @@ import { slides } from "../../../client/web/src/core/contest/slides.ts";
 
 /** Sheets of contests that Python played by chance. */
 const SHEETS = JSON.parse(
-  execFileSync(process.env.PYTHON, [new URL("contest_sheets.py", import.meta.url).pathname], {
+  execFileSync(process.env.PYTHON, [fileURLToPath(new URL("contest_sheets.py", import.meta.url))], {
     maxBuffer: 1 << 28,
   }),
 );

@@ -41,6 +41,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises:
             FileRefused: with every mistake of the table.
+            UserError: if a key of a locomotion table is missing.
         """
         gait = sent_gait(self.table)
         if self.table.kind == "locomotion":

@@ -166,6 +166,7 @@ class Learner:
 
         Raises:
             FileRefused: with every mistake of the robot file; those of the table are returned.
+            UserError: if a key of a locomotion table is missing.
         """
         spec = await asyncio.to_thread(_robot, asked.robot)
         table = asked.table
@@ -190,6 +191,7 @@ def _version(table: FileTable, sequences: object) -> str:
 
     Raises:
         FileRefused: with every mistake of the table.
+        UserError: if a key of a locomotion table is missing.
     """
     data = sent_gait(table).data + repr(sequences).encode()
     return hashlib.blake2b(data, digest_size=8).hexdigest()

@@ -181,6 +181,7 @@ def _files(
 
     Raises:
         FileRefused: with every mistake of the table.
+        UserError: if a key of a locomotion table is missing.
     """
     if table is None:
         return GaitFiles(robot=robot, sequences=sequences)

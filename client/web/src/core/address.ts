@@ -4,6 +4,7 @@ import { tab } from "./storage";
 
 const KEY = "lacoc-key";
 const TOKEN = "lacoc-team-token";
+const ORGANISER = "lacoc-organiser";
 const query = new URLSearchParams(location.search);
 
 /** The page, where its own file says it: in a published folder, which has no gateway. */
@@ -36,6 +37,11 @@ export function teamToken(): string | null {
   return secret("token", TOKEN);
 }
 
+/** The organiser's key, which opens the office. */
+export function organiserKey(): string | null {
+  return secret("organiser", ORGANISER);
+}
+
 /** Keep a team's token for this tab; null forgets it. */
 export function keepTeamToken(token: string | null): void {
   tab.write(TOKEN, token);
@@ -56,10 +62,14 @@ function secret(name: string, keptAs: string): string | null {
   return found;
 }
 
-/** Another court is another address: a reload then comes back to it. */
-export function goToCourt(court: string): void {
+/** Another court is another address: a reload then comes back to it. Null: follow the director. */
+export function goToCourt(court: string | null): void {
   const query = new URLSearchParams(location.search);
-  query.set("court", court);
+  query.delete("director");
+  if (court === null) {
+    query.delete("court");
+    query.set("director", "1");
+  } else query.set("court", court);
   location.search = query.toString();
 }
 

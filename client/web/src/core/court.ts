@@ -1,6 +1,6 @@
 /** The page's knowledge of a court, as signals that its parts draw from. */
 
-import { type ReadonlySignal, signal } from "@preact/signals";
+import { batch, type ReadonlySignal, signal } from "@preact/signals";
 import { runKey, setting, socketUrl } from "./address";
 import { recoloured } from "./colours";
 import { Connection } from "./connection";
@@ -15,6 +15,7 @@ import {
   type Message,
   type OwnFiles,
   PROTOCOL,
+  type Programme,
   type RefereeState,
   type Request,
   type Scene,
@@ -29,7 +30,14 @@ const STALE_MS = 1000 * SILENT_AFTER_S;
 const LOOK_MS = 200;
 const PLAYOUT_MS = 20;
 /** All that tells how the match stands is shown with the delay, and in its order. */
-const DELAYED: ReadonlySet<Message["kind"]> = new Set(["frame", "event", "sheet", "scene", "link"]);
+const DELAYED: ReadonlySet<Message["kind"]> = new Set([
+  "frame",
+  "event",
+  "sheet",
+  "scene",
+  "link",
+  "programme",
+]);
 
 /** A court, watched through a gateway. */
 export class Court implements Match {
@@ -41,6 +49,8 @@ export class Court implements Match {
   readonly health = signal<Health | null>(null);
   readonly link = signal<Link | null>(null);
   readonly seat = signal<HeldSeat | null>(null);
+  /** What the director has on air; null where the page follows a court. */
+  readonly programme = signal<Programme | null>(null);
   readonly referee = signal<RefereeState | null>(null);
   /** The files on this machine; null until the gateway has sent them. */
   readonly ownFiles = signal<OwnFiles | null>(null);
@@ -61,15 +71,19 @@ export class Court implements Match {
   private arrivedMs = 0;
   private arrivals: number[] = [];
   private held: { dueMs: number; take: () => void }[] = [];
+  /** What came of a court that was cut to, until there is a frame of it; null: no cut is open. */
+  private coming: (() => void)[] | null = null;
 
   /**
    * @param hz Frames a second to ask for.
    * @param delayMs Everything is shown so much later, scores and events too: for a stream that
    *   must not help anyone.
+   * @param directed Whether to follow the director, and not one court.
    */
   constructor(
     private readonly hz: number,
     readonly delayMs = 0,
+    readonly directed = false,
   ) {
     this.sheet = recoloured(this.published);
     this.timeline = new Timeline();
@@ -97,7 +111,8 @@ export class Court implements Match {
     });
     this.seat.value = null;
     this.referee.value = null;
-    const fields = { court: setting("court") || null, hz: this.hz, key: runKey() };
+    const { hz, directed } = this;
+    const fields = { court: setting("court") || null, director: directed, hz, key: runKey() };
     return this.ask("watch", fields);
   }
 
@@ -121,6 +136,32 @@ export class Court implements Match {
   }
 
   private take(message: Message, arrivedMs: number): void {
+    const { kind } = message;
+    const before = this.programme.peek();
+    if (message.kind === "programme" && before && before.court !== message.body.court)
+      this.coming = [];
+    if (!this.coming || !DELAYED.has(kind)) {
+      this.apply(message, arrivedMs);
+      return;
+    }
+    this.coming.push(() => this.apply(message, arrivedMs));
+    if (kind === "frame" || (message.kind === "link" && !message.body.connected)) this.cut();
+  }
+
+  /** Show the court that was cut to, all of it at once: no team may have the other match's score. */
+  private cut(): void {
+    const coming = this.coming ?? [];
+    this.coming = null;
+    batch(() => {
+      this.log = null;
+      this.events.value = [];
+      this.frame.value = null;
+      this.timeline.reset();
+      for (const apply of coming) apply();
+    });
+  }
+
+  private apply(message: Message, arrivedMs: number): void {
     switch (message.kind) {
       case "frame":
         this.takeFrame(message.body, arrivedMs);
@@ -148,6 +189,9 @@ export class Court implements Match {
         break;
       case "seat":
         this.seat.value = message.body;
+        break;
+      case "programme":
+        this.programme.value = message.body;
         break;
       case "referee":
         this.referee.value = message.body;

@@ -75,6 +75,15 @@ export async function choose(file: File): Promise<Slot> {
   return slot;
 }
 
+/** Keep files that another page has handed on, in place of those that were chosen before. */
+export function keepGiven(files: Readonly<Record<Slot, SentFile | null>>): void {
+  const given = SLOTS.flatMap((slot) => {
+    const file = files[slot];
+    return file ? [[slot, { name: file.name, base64: toBase64(file.data) }] as const] : [];
+  });
+  kept.value = Object.fromEntries(given);
+}
+
 /** Forget a file. */
 export function forget(slot: Slot): void {
   const { [slot]: _, ...others } = kept.value;
@@ -107,13 +116,13 @@ function textOf(data: Uint8Array): string {
   return new TextDecoder(encoding).decode(head).replace("\uFEFF", "");
 }
 
-function toBase64(data: Uint8Array): string {
+export function toBase64(data: Uint8Array): string {
   let text = "";
   for (const byte of data) text += String.fromCharCode(byte);
   return btoa(text);
 }
 
-function fromBase64(text: string): Uint8Array {
+export function fromBase64(text: string): Uint8Array {
   return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
 }
 

@@ -1,6 +1,7 @@
 /** Gets records into the page: from the server's folder, or from this machine. */
 
 import { ownPage } from "./address";
+import { type Odds, readOdds } from "./odds";
 import type { MatchRecord, RecordFile } from "./record";
 import type { Answer } from "./record.worker";
 
@@ -27,6 +28,8 @@ export interface Summary {
   /** Seat id, "draw", "void", or "" while there is none. */
   winner: string;
   seats: string[];
+  /** Id of the match that this is a fork of; "": it is no fork. */
+  fork_of: string;
 }
 
 /** A record can't be read: the name of a message `replay.bad.…`, and its values. */
@@ -85,6 +88,13 @@ export async function fetched(
     at += part.length;
   }
   return [{ name, data }];
+}
+
+/** The odds of a recording of the server; null: there are none, or none of this match. */
+export async function oddsOf(name: string, matchId: string): Promise<Odds | null> {
+  if (ownPage) return null; // a published folder has none
+  const response = await ask(`${FOLDER}/${encodeURIComponent(name)}/odds`);
+  return response.ok ? readOdds(await response.json().catch(() => null), matchId) : null;
 }
 
 /** Take in files of this machine. */

@@ -91,6 +91,7 @@ export const MESSAGE_KINDS = [
   "card",
   "gone",
   "tournament",
+  "programme",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */
@@ -308,6 +309,12 @@ export interface Whereabouts {
   rank: number;
 }
 
+export interface Origin {
+  match_id: string;
+  beat: number;
+  record_hash: string;
+}
+
 export interface Setup {
   match_id: string;
   court: string;
@@ -316,6 +323,7 @@ export interface Setup {
   settings: Record<string, unknown>;
   limits: Record<string, number>;
   assigned: Assigned | null;
+  origin: Origin | null;
 }
 
 export interface Header {

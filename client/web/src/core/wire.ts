@@ -37,6 +37,8 @@ export interface Welcome {
   home: "venue" | "player" | "practice";
   /** The contest's name; "" if it has none. */
   contest: string;
+  /** Whether there is the page /enter. */
+  desk: boolean;
   prefill: Prefill | null;
 }
 
@@ -89,6 +91,33 @@ export interface HeldSeat {
 export interface RefereeState {
   acting: string | null;
   mine: boolean;
+}
+
+/** What the director has on air, for the pages that follow it. */
+export interface Programme {
+  court: string;
+  /** Why this court is on air: name of a message `director.why.…`. */
+  why: string;
+  /** How much later all is shown than it is played [s]. */
+  behind_s: number;
+  /** The programme begins in so many seconds; 0: it has begun. */
+  begins_s: number;
+  /** The newest results, the newest first. */
+  results: ShownResult[];
+}
+
+/** How a match at some court ended. */
+export interface ShownResult {
+  court: string;
+  match: string;
+  /** Title of the game. */
+  title: string;
+  /** What the match is in its contest. */
+  fixture: Phrase | null;
+  /** Names by seat. */
+  teams: string[];
+  scores: number[];
+  phase: number;
 }
 
 /** The gait and robot files of the folder that `lacoc design` was started with. */
@@ -177,6 +206,7 @@ export type Message =
   | { kind: "class"; body: ClassState }
   | { kind: "card"; body: Card }
   | { kind: "gone"; body: { name: string } }
+  | { kind: "programme"; body: Programme }
   | { kind: "tournament"; body: TournamentState }
   | { kind: "handed"; body: HandedTable }
   | { kind: "elsewhere"; body: { forgotten: boolean } };
@@ -195,7 +225,8 @@ export type Request =
   | "take_over"
   | "decide"
   | DesignRequest
-  | ClassRequest;
+  | ClassRequest
+  | DeskRequest;
 
 /** What a page of /design asks for. */
 type DesignRequest =
@@ -215,6 +246,7 @@ type DesignRequest =
   | "edit"
   | "check"
   | "play"
+  | "hand_on"
   | "phase"
   | "name"
   | "vote"
@@ -231,6 +263,9 @@ type ClassRequest =
   | "show"
   | "export"
   | "stop_play";
+
+/** What the pages of an organiser and of teams ask for. */
+type DeskRequest = "desk" | "link" | "links";
 
 /** A file on its way to the court. */
 export interface SentFile {

@@ -29,6 +29,7 @@ export const contest = {
   "contest.noneRunning": ["No game is on a court now.", "今、コートで試合はありません。"],
   "contest.court": ["Court {court}", "コート {court}"],
   "contest.watch": ["Watch", "観戦"],
+  "contest.director": ["Watch the director's choice", "ディレクターの選ぶ試合を見る"],
   "contest.watchCourt": ["Watch court {court}", "コート {court} を観戦"],
   "contest.coming": ["Coming next", "次の試合"],
   "contest.noneComing": ["No game can begin yet.", "始められる試合はまだありません。"],

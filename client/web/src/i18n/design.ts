@@ -456,6 +456,16 @@ export const design = {
     "Opens practice in a new tab: you steer this gait with the keys",
     "練習を新しいタブで開き、この歩容をキーで操縦します",
   ],
+  "design.handOn": ["Enter a contest", "大会に登録"],
+  "design.handOn.hint": [
+    "Takes the table to the contest's page on which teams enter",
+    "この表を大会の登録ページに渡します",
+  ],
+  "design.handOn.address": ["Address of the contest's pages", "大会ページのアドレス"],
+  "design.handOn.noAddress": [
+    "Type the address of the contest's pages, such as 192.168.1.20:8080.",
+    "大会ページのアドレスを入力してください（例：192.168.1.20:8080）。",
+  ],
   "design.court.contest": ["To the match", "試合へ"],
   "design.court.contest.hint": [
     "Opens the seat of your invitation in a new tab, with this gait",

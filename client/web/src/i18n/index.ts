@@ -8,6 +8,7 @@ import { classroom } from "./class";
 import { common } from "./common";
 import { contest } from "./contest";
 import { design } from "./design";
+import { office } from "./office";
 import { play } from "./play";
 import { referee } from "./referee";
 import { render } from "./render";
@@ -27,6 +28,7 @@ export const catalogue = {
   ...design,
   ...classroom,
   ...contest,
+  ...office,
 };
 export type MessageName = keyof typeof catalogue;
 

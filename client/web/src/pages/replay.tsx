@@ -5,7 +5,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { ownPage, setting } from "../core/address";
 import { followColours } from "../core/colours";
 import type { Note, RecordFile } from "../core/record";
-import { BadRecord, dropped, fetched, readBeside } from "../core/record_files";
+import { BadRecord, dropped, fetched, oddsOf, readBeside } from "../core/record_files";
 import { Recording } from "../core/recording";
 import { quality, remembered } from "../core/settings";
 import { type MessageName, t } from "../i18n";
@@ -23,8 +23,10 @@ import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
 import { Toasts, toast } from "../ui/toasts";
 import { SeekBar, seconds } from "./replay/bar";
-import { Chooser } from "./replay/chooser";
+import { Chooser, troubleText } from "./replay/chooser";
+import { ForkNote, LineScore } from "./replay/fork";
 import { ReplayLog } from "./replay/log";
+import { ChancesNow, Highlights } from "./replay/odds";
 import { Player, SPEEDS } from "./replay/player";
 import { Cameras, cameraKeys } from "./watch/cameras";
 import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
@@ -82,12 +84,33 @@ async function show(
     const [left, right] = recording.sheet.value?.seats.map((_, i) => seatTitle(recording, i)) ?? [];
     document.title = right ? `${left} – ${right}` : `LACOC ${recording.record.header.match_id}`;
     state.value = { is: "open", player, server };
+    if (server !== null) {
+      const odds = await oddsOf(server, recording.record.header.match_id).catch(() => null);
+      player.odds.value = odds;
+    }
     if (beat === null) player.play();
   } catch (error) {
     if (!fresh()) return;
     const trouble =
       error instanceof BadRecord ? error : new BadRecord("fault", { error: String(error) });
     state.value = { is: "choosing", trouble };
+  }
+}
+
+/** Show the match that a fork goes on from beside it, at the same beat; or put it away. */
+async function showBeside(player: Player): Promise<void> {
+  const { origin } = player.recording.record.header.setup;
+  if (player.beside.value || !origin) {
+    player.beside.value = null;
+    return;
+  }
+  try {
+    const files = await fetched(`${origin.match_id}.mcap`, () => {});
+    player.beside.value = new Recording(await readBeside(files));
+  } catch (error) {
+    const trouble =
+      error instanceof BadRecord ? error : new BadRecord("fault", { error: String(error) });
+    toast(troubleText(trouble), "no");
   }
 }
 
@@ -166,24 +189,43 @@ function Show({ player, server }: { player: Player; server: string | null }) {
   const { recording } = player;
   useShortcuts(useMemo(() => shortcutsOf(player), [player]));
   useEffect(() => () => player.pause(), [player]);
+  const other = player.beside.value;
+  useEffect(() => (other ? effect(() => other.seek(recording.beat.value)) : undefined), [other]);
   const narrow = isNarrow.value;
   const others = t(ownPage ? "home.contest" : "replay.others");
   const beside = panel.value && !narrow;
   const inset = narrow
-    ? { top: 92, bottom: 8 }
-    : { top: 100, bottom: 186, right: beside ? 314 : 0 };
+    ? { top: other ? 170 : 92, bottom: other ? 40 : 8 }
+    : { top: 100, bottom: 186, right: beside && !other ? 314 : 0 };
   return (
     <main class="show replay">
-      <div class="scene">
-        <View
-          source={recording}
-          camera={camera.value}
-          quality={fineness}
-          inset={inset}
-          labels
-          orbit={!narrow}
-          label={t("watch.view")}
-        />
+      <div class={`scene${other ? " two" : ""}`}>
+        <div class="line">
+          <View
+            source={recording}
+            camera={camera.value}
+            quality={fineness}
+            inset={inset}
+            labels
+            orbit={!narrow}
+            label={other ? t("replay.besideFork") : t("watch.view")}
+          />
+          {other && <LineScore name={t("replay.besideFork")} match={recording} />}
+        </div>
+        {other && (
+          <div class="line" key={other}>
+            <View
+              source={other}
+              camera={camera.value}
+              quality={fineness}
+              inset={narrow ? { top: 8, bottom: 40 } : inset}
+              labels
+              orbit={!narrow}
+              label={t("replay.besideOrigin")}
+            />
+            <LineScore name={t("replay.besideOrigin")} match={other} />
+          </div>
+        )}
       </div>
       <div class="top">
         <div class="corner left">
@@ -194,6 +236,11 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         </div>
         <header class="head">
           <ScoreBug match={recording} />
+          <ForkNote
+            recording={recording}
+            beside={player.beside}
+            {...(server !== null && { onBeside: () => void showBeside(player) })}
+          />
           <Notes notes={recording.record.notes} />
           <Hint match={recording} />
         </header>
@@ -215,6 +262,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
       {(narrow || panel.value) && (
         <aside class="panel" aria-label={t("watch.panel")}>
           <Board match={recording} />
+          {player.odds.value && <Highlights player={player} odds={player.odds.value} />}
           <h2>{t("log.title")}</h2>
           <ReplayLog player={player} />
         </aside>
@@ -235,6 +283,7 @@ function Transport({ player }: { player: Player }) {
         <Step name="ahead" onClick={() => player.step(1)} />
         <Step name="next" onClick={() => player.jump(1)} />
         <Position recording={player.recording} />
+        {player.odds.value && <ChancesNow player={player} odds={player.odds.value} />}
         <SpeedChooser playback={player} speeds={SPEEDS} />
       </div>
     </section>

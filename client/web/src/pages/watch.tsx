@@ -1,7 +1,7 @@
 /** The spectators' page: the match as on television, and nothing that one could break. */
 
 import { computed, signal } from "@preact/signals";
-import { amount, flag, setting } from "../core/address";
+import { amount, flag, goToCourt, setting } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { part } from "../core/match";
@@ -13,6 +13,7 @@ import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
 import { EventLog } from "../ui/log";
+import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
@@ -25,17 +26,22 @@ import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 
 const WIDE_PX = 1280;
+/** Among the names of courts, which are never empty. */
+const DIRECTOR = "";
 
 const court = new Court(
   amount("hz", USUAL_HZ, LEAST_HZ, MOST_HZ),
   1000 * amount("delay", 0, 0, DELAY_MOST_S),
+  flag("director", false),
 );
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const number = part(court, (frame) => frame.match, null as number | null);
+/** The match that is shown, also where the director cuts from court to court. */
+const shownMatch = computed(() => `${court.programme.value?.court ?? ""}/${number.value}`);
 /** The match whose result was put away. */
-const putAway = signal<number | null>(null);
+const putAway = signal("");
 /** After the end of a match its last picture does not count as old. */
 const isStale = computed(() => court.begun.value && !court.live.value && !isOver(court));
 const title = computed(() => {
@@ -87,7 +93,7 @@ export default function Watch() {
 }
 
 function Hud() {
-  const match = number.value;
+  const match = shownMatch.value;
   return (
     <>
       <div class="top">
@@ -95,6 +101,7 @@ function Hud() {
         <header class="head">
           <ScoreBug match={court} />
           <Hint match={court} />
+          <OnAir court={court} />
         </header>
       </div>
       <Corner panel={panel} />
@@ -110,6 +117,7 @@ function Hud() {
             }}
           />
         )}
+        <LatestResults court={court} />
       </div>
       <div class="before">
         <OpeningCard match={court} />
@@ -129,7 +137,7 @@ function Brand() {
   const sheet = court.sheet.value;
   const courts = court.welcome.value?.courts ?? [];
   const current = court.welcome.value?.court ?? setting("court");
-  const delay = court.delayMs / 1000;
+  const delay = court.delayMs / 1000 + (court.programme.value?.behind_s ?? 0);
   return (
     <div class="corner left">
       <a class="brand" href="/">
@@ -145,13 +153,12 @@ function Brand() {
         <label class="field">
           <span class="hidden-text">{t("watch.court")}</span>
           <select
-            value={current}
-            onChange={(event) => {
-              const query = new URLSearchParams(location.search);
-              query.set("court", event.currentTarget.value);
-              location.search = query.toString();
-            }}
+            value={court.directed ? DIRECTOR : current}
+            onChange={({ currentTarget: { value } }) =>
+              goToCourt(value === DIRECTOR ? null : value)
+            }
           >
+            <option value={DIRECTOR}>{t("director.name")}</option>
             {courts.map((name) => (
               <option key={name}>{name}</option>
             ))}

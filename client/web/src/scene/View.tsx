@@ -2,11 +2,12 @@
 
 import "@preact/signals"; // redraws a component when a signal that it read changes
 import type { ReadonlySignal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Quality } from "../core/settings";
 import type { CameraName } from "./cameras";
 import type { FloorMarks } from "./marks";
 import type { Hit } from "./picking";
+import type { Shutter } from "./shutter";
 import { type Inset, type Options, type Source, Viewer, type ViewHook } from "./viewer";
 import "./view.css";
 
@@ -14,6 +15,7 @@ export type { CameraName } from "./cameras";
 export { CAMERAS } from "./cameras";
 export type { FloorMarks } from "./marks";
 export type { Hit } from "./picking";
+export { Shutter } from "./shutter";
 export type { Inset, Source } from "./viewer";
 
 interface Props {
@@ -41,6 +43,8 @@ interface Props {
   ghost?: Source["sample"] | null;
   /** Marks on the floor, asked for with each picture. */
   marks?: () => FloorMarks | null;
+  /** Says when to draw, for a film. Must not change. */
+  shutter?: Shutter;
   /** The label for screen readers. */
   label?: string;
 }
@@ -74,7 +78,8 @@ export function View(props: Props) {
       made.end();
     };
   }, []);
-  useEffect(() => viewer.current?.update(options));
+  // With the change that it belongs to, not at some later picture: a film must not depend on when.
+  useLayoutEffect(() => viewer.current?.update(options));
 
   return (
     <div
@@ -102,6 +107,7 @@ function optionsOf(props: Props): Options {
     lit: props.lit ?? NONE,
     ghost: props.ghost ?? null,
     marks: props.marks ?? null,
+    shutter: props.shutter ?? null,
   };
 }
 

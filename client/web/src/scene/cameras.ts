@@ -298,6 +298,12 @@ export class Rig {
     return this.now;
   }
 
+  /** Begin the next shot at once, without a glide: it is somewhere else. */
+  cut(): void {
+    this.now = null;
+    this.from = null;
+  }
+
   /** Turn by hand [rad]. */
   orbit(azimuth: number, elevation: number): void {
     const now = this.now?.elevation ?? 0;

@@ -264,34 +264,40 @@ export class Stage {
   }
 
   /**
-   * Draw the model as it is now.
+   * Follow the model's markers.
    *
    * @param animate True: changed markers move; false: they change at once.
    * @returns Markers that changed.
    */
-  draw(
-    view: ViewAxes,
-    nowMs: number,
-    animate: boolean,
-    ring: Ring | null,
-    extras: Extras = NO_EXTRAS,
-  ): number[] {
-    const { model, motion, layers } = this;
-    let changed: number[] = [];
-    if (model && motion && layers) {
-      changed = motion.follow(model.states, nowMs, animate);
-      if (motion.stale || !this.markersDrawn) this.drawMarkers(nowMs);
-      if (animate) {
-        for (const marker of changed) {
-          const seat = model.sheet.seats[(model.states[marker] ?? 0) - 1];
-          if (seat) this.pulses.begin(model.sheet.markers[marker]!, rgb(seat.colour), nowMs);
-        }
+  follow(nowMs: number, animate: boolean): number[] {
+    const { model, motion } = this;
+    if (!model || !motion) return [];
+    const changed = motion.follow(model.states, nowMs, animate);
+    if (motion.stale) this.markersDrawn = false;
+    if (animate) {
+      for (const marker of changed) {
+        const seat = model.sheet.seats[(model.states[marker] ?? 0) - 1];
+        if (seat) this.pulses.begin(model.sheet.markers[marker]!, rgb(seat.colour), nowMs);
       }
+    }
+    this.pulses.draw(nowMs);
+    return changed;
+  }
+
+  /** Forget the rings of light: what is shown next is another moment. */
+  cut(): void {
+    this.pulses.end();
+  }
+
+  /** Draw the model as it is now; `follow` comes before. */
+  draw(view: ViewAxes, nowMs: number, ring: Ring | null, extras: Extras = NO_EXTRAS): void {
+    const { model, layers } = this;
+    if (model && layers) {
+      if (!this.markersDrawn) this.drawMarkers(nowMs);
       this.drawRobots(layers.robots, model, extras.lit);
       this.drawGhost(extras.ghost);
       this.drawMarks(extras.marks);
     }
-    this.pulses.draw(nowMs);
     this.ring.visible = ring !== null;
     if (ring) {
       this.ring.position.set(ring.x, ring.y, 0.005);
@@ -302,7 +308,6 @@ export class Stage {
     this.matrix.makeBasis(axisX.set(...right), axisY.set(...up), axisZ.set(...forward).negate());
     this.camera.quaternion.setFromRotationMatrix(this.matrix);
     this.renderer.render(this.world, this.camera);
-    return changed;
   }
 
   private drawMarkers(nowMs: number): void {

@@ -3,12 +3,13 @@
 import { pickJoint } from "../core/design/parts";
 import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
+import { type Action, AutoCamera } from "./autocamera";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
-import { type Action, Director } from "./director";
 import type { FloorMarks } from "./marks";
 import { type Field, Model } from "./model";
 import { type Hit, pick, pickFlat, project, rayAt } from "./picking";
 import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
+import type { Exposed, Shutter } from "./shutter";
 import type { Ring, Stage } from "./stage";
 import { Tags } from "./tags";
 import { type Plan, planOf, TopView } from "./topview";
@@ -42,6 +43,8 @@ export interface Options {
   ghost: Source["sample"] | null;
   /** Marks on the floor, now. */
   marks: (() => FloorMarks | null) | null;
+  /** Says when to draw; null: whenever the browser shows a picture. Can't change later. */
+  shutter: Shutter | null;
 }
 
 /** Data for tests: `window.__lacoc.view`. */
@@ -79,13 +82,13 @@ const DRAG_PX = 5;
 const EDGE = 0.96;
 const FRAME_MS = 180;
 
-export class Viewer {
+export class Viewer implements Exposed {
   private options: Options;
   private canvas: HTMLCanvasElement | null = null;
   private stage: Stage | null = null;
   private map: TopView | null = null;
-  private readonly rig = new Rig();
-  private readonly director = new Director(this.rig);
+  private rig = new Rig();
+  private autoCamera = new AutoCamera(this.rig);
   private readonly times = new FrameTimes();
   private readonly tags: Tags;
   private readonly observer: ResizeObserver;
@@ -120,7 +123,8 @@ export class Viewer {
     this.observer.observe(host);
     this.listen();
     this.measure();
-    this.handle = requestAnimationFrame(this.loop);
+    if (options.shutter) options.shutter.add(this);
+    else this.handle = requestAnimationFrame(this.loop);
   }
 
   /** Go on with other options. */
@@ -138,6 +142,7 @@ export class Viewer {
   end(): void {
     this.ended = true;
     cancelAnimationFrame(this.handle);
+    this.options.shutter?.remove(this);
     this.observer.disconnect();
     this.drop();
     this.tags.end();
@@ -242,7 +247,7 @@ export class Viewer {
     const context = canvas.getContext("webgl2", {
       // Blending the picture into the page costs something, and low quality has no glow below it.
       alpha: transparent || fineness === "high",
-      antialias: fineness === "high",
+      antialias: fineness === "high" || (this.options.shutter?.smooth ?? false),
       powerPreference: "high-performance",
       stencil: false,
     });
@@ -307,11 +312,33 @@ export class Viewer {
     if (this.model) this.draw(this.model, nowMs, animate);
   };
 
+  async prepare(): Promise<void> {
+    this.measure();
+    while (!this.ended && !this.stage && !this.map) await this.build();
+  }
+
+  expose(nowMs: number, drawn: boolean): void {
+    const animate = this.follow(nowMs);
+    if (this.model) this.draw(this.model, nowMs, animate, drawn);
+  }
+
+  cut(): void {
+    this.rig = new Rig();
+    this.autoCamera = new AutoCamera(this.rig);
+    this.drawn.beat = Number.NEGATIVE_INFINITY;
+    this.actions = [];
+    this.framed = null;
+    this.stage?.cut();
+  }
+
   /** Bring the model to what is to be shown; whether time went on evenly since the last picture. */
   private follow(nowMs: number): boolean {
     const { source } = this.options;
     const [sheet, scene] = [source.sheet.peek(), source.scene.peek()];
+    let elsewhere = false;
     if (sheet && scene && (this.model?.sheet !== sheet || this.model.scene !== scene)) {
+      elsewhere = this.model !== null && this.model.sheet.court !== sheet.court;
+      if (elsewhere) this.rig.cut();
       this.model = new Model(scene, sheet);
       this.stage?.setModel(this.model);
       this.tags.name(sheet);
@@ -322,23 +349,25 @@ export class Viewer {
     const passed = moment.beat - beat;
     this.drawn.beat = moment.beat;
     this.drawn.match = moment.before.match;
-    return match === moment.before.match && Math.abs(passed) < LEAP_BEATS;
+    return !elsewhere && match === moment.before.match && Math.abs(passed) < LEAP_BEATS;
   }
 
-  private draw(model: Model, nowMs: number, animate: boolean): void {
-    this.drawn.frames++;
+  /** @param drawn False: cameras and movements go on, but nothing is drawn. */
+  private draw(model: Model, nowMs: number, animate: boolean, drawn = true): void {
+    if (drawn) this.drawn.frames++;
     const ring = this.point(model);
     if (this.map) {
       this.plan = planOf(this.shownField(model), this.free());
       const { lit, marks, camera } = this.options;
       const near = camera === "robot" ? { lit, marks: marks?.() ?? null } : null;
-      this.map.draw(model, this.plan, ring, near);
+      if (drawn) this.map.draw(model, this.plan, ring, near);
     } else if (this.stage) {
       this.axes = viewOf(this.shot(model, nowMs));
       const { lit, marks } = this.options;
       const ghost = this.ghostAt(model, nowMs);
       const extras = { lit, ghost, marks: marks?.() ?? null };
-      const changed = this.stage.draw(this.axes, nowMs, animate, ring, extras);
+      const changed = this.stage.follow(nowMs, animate);
+      if (drawn) this.stage.draw(this.axes, nowMs, ring, extras);
       this.actions = animate
         ? changed.flatMap((marker) => {
             const seat = (model.states[marker] ?? 0) - 1;
@@ -371,7 +400,7 @@ export class Viewer {
     const aspect = this.size.width / this.size.height;
     const aim: Aim = { model, aspect, frame: this.frame(nowMs), seat };
     if (camera === "auto") {
-      const { key, shot } = this.director.shoot(aim, this.actions, nowMs);
+      const { key, shot } = this.autoCamera.shoot(aim, this.actions, nowMs);
       return this.rig.move(key, shot, nowMs, 1300);
     }
     return this.rig.move(`${camera} ${seat}`, this.rig.aim(camera, aim, nowMs), nowMs);

@@ -18,6 +18,8 @@ export function waitsForGateway({ open, attempt, refused }: SocketState): string
 export function waitsFor(court: Court): string {
   const waits = waitsForGateway(court.connection.state.value);
   if (waits) return waits;
+  const seconds = court.programme.value?.begins_s ?? 0;
+  if (seconds > 0) return t("director.begins", { seconds });
   const link = court.link.value;
   if (link && !link.connected) {
     const seconds = Math.round(link.silent_s);

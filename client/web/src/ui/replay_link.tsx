@@ -3,9 +3,11 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
-import { listed, replayAddress } from "../core/record_files";
+import type { Odds } from "../core/odds";
+import { listed, oddsOf, replayAddress } from "../core/record_files";
 import { Phase } from "../core/wire";
 import { t } from "../i18n";
+import { OddsCurve } from "./odds";
 
 const FIRST_MS = 700;
 const MOST_MS = 30_000;
@@ -15,18 +17,28 @@ export function ReplayLink({ match }: { match: Match }) {
   const isOver = phase === Phase.OFFICIAL || phase === Phase.VOID;
   const id = match.sheet.value?.match_id ?? "";
   const file = useSignal("");
+  const odds = useSignal<Odds | null>(null);
   useEffect(() => {
     file.value = "";
+    odds.value = null;
     if (!isOver || !id) return;
     let timer = 0;
     let waitMs = FIRST_MS;
     const look = async () => {
-      const list = await listed().catch(() => []);
-      if (timer < 0) return;
-      file.value = list.find(({ name }) => name === `${id}.mcap`)?.name ?? "";
-      if (file.value) return;
-      // Hundreds of pages may wait for one file.
-      waitMs = Math.min(MOST_MS, 2 * waitMs);
+      const name = `${id}.mcap`;
+      if (!file.value) {
+        const list = await listed().catch(() => []);
+        if (timer < 0) return;
+        file.value = list.find((one) => one.name === name)?.name ?? "";
+      }
+      if (file.value) {
+        const found = await oddsOf(name, id).catch(() => null);
+        if (timer < 0) return;
+        odds.value = found;
+        if (found) return;
+      }
+      // Hundreds of pages may wait for one file. Odds are computed later, if at all.
+      waitMs = file.value ? MOST_MS : Math.min(MOST_MS, 2 * waitMs);
       timer = window.setTimeout(look, waitMs);
     };
     timer = window.setTimeout(look, FIRST_MS * (1 + Math.random()));
@@ -34,11 +46,19 @@ export function ReplayLink({ match }: { match: Match }) {
       clearTimeout(timer);
       timer = -1;
     };
-  }, [file, isOver, id]);
+  }, [file, odds, isOver, id]);
   if (!file.value) return null;
+  const moments = odds.value?.moments;
   return (
-    <a class="button strong" href={replayAddress(file.value)}>
-      {t("result.replay")}
-    </a>
+    <>
+      {odds.value && moments && (
+        <span class="odds-after">
+          <OddsCurve odds={odds.value} first={moments[0]!.beat} last={moments.at(-1)!.beat} />
+        </span>
+      )}
+      <a class="button strong" href={replayAddress(file.value)}>
+        {t("result.replay")}
+      </a>
+    </>
   );
 }

@@ -1,7 +1,7 @@
 """Decide about a match after it was played, once it is clear what that changes."""
 
 import sys
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import typer
 
@@ -9,10 +9,7 @@ from lacoc_server.commands.contest.playing import Contest
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import Phrase, render, say
-
-if TYPE_CHECKING:
-    from lacoc_server.contest.league.contest import Changes
+from lacoc_shared.words import render, say
 
 
 def decide(
@@ -42,7 +39,11 @@ def decide(
     What was played before stays in the facts. If teams of later matches change, those matches are
     played again; results that do not count any more are kept.
     """
-    from lacoc_server.contest import deciding
+    from lacoc_server.contest.desk import deciding
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.kept.store import FactStore
+    from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.formats.installed import FORMATS
 
     wanted = deciding.Wanted(
         kind=decision,
@@ -52,13 +53,15 @@ def decide(
         scores=_scores(score),
         reason=reason,
     )
-    fact, changes = deciding.preview(contest, wanted)
-    for line in _lines(changes):
-        screen.show(line)
-    if not yes and not (sys.stdin.isatty() and typer.confirm(render(say("decide.sure")))):
-        screen.note(say("decide.not-done"))
-        return
-    deciding.append(contest, fact)
+    with FactStore(ContestFolder(contest).facts) as store:
+        facts = store.facts()
+        fact = deciding.decision(compute(facts, FORMATS), wanted)
+        for line in deciding.effect(facts, [fact]):
+            screen.show(line)
+        if not yes and not (sys.stdin.isatty() and typer.confirm(render(say("decide.sure")))):
+            screen.note(say("decide.not-done"))
+            return
+        store.append(fact)
     screen.show(say("decide.done"))
 
 
@@ -69,22 +72,3 @@ def _scores(score: str) -> tuple[int, int] | None:
     if not (colon and left.strip().isdecimal() and right.strip().isdecimal()):
         raise UserError(say("decide.bad-score", score=score))
     return int(left), int(right)
-
-
-def _lines(changes: "Changes") -> list[Phrase]:
-    lines: list[Phrase] = []
-    for before, after in changes.matches:
-        match = after or before
-        assert match is not None
-        lines.append(
-            say(
-                "decide.match",
-                pairing=match.pairing.id,
-                teams=[team or "?" for team in match.teams],
-                state=match.state,
-                winner=match.winner or None,
-            )
-        )
-    for stage, team, old, now in changes.ranks:
-        lines.append(say("decide.rank", stage=stage, team=team, before=old, after=now))
-    return lines or [say("decide.nothing")]

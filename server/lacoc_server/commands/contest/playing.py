@@ -11,6 +11,7 @@ from lacoc_shared.words import render, say
 
 if TYPE_CHECKING:
     from lacoc_server.contest.kept.sheet_writer import Progress
+    from lacoc_server.contest.live.run import Opened
     from lacoc_server.contest.sheet import ContestSheet
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
@@ -98,6 +99,15 @@ def run(
     browser: Annotated[
         bool, typer.Option("--open/--no-open", help="Open the pages in the browser.")
     ] = False,
+    entries: Annotated[
+        bool,
+        typer.Option(
+            "--entries",
+            help="Let teams enter on the page /enter first: until entries_close, or until you "
+            "close entries on the page /office, which stays open after the last game until Ctrl-C. "
+            "Not with --headless.",
+        ),
+    ] = False,
     json: options.Json = False,
 ) -> None:
     """Play the contest to its end: draw each stage when its teams are known, and play its games.
@@ -125,7 +135,7 @@ def run(
             engine = Pool(jobs) if cluster is None else Cluster(cluster)
             sheet, played = organiser.play_headless(file, steer, engine, changed)
         else:
-            sheet, played = _live(file, changed, speed, listen, browser, json), None
+            sheet, played = _live(file, changed, speed, listen, browser, entries, json), None
     games = sum(len(match.games) for view in sheet.stages for match in view.matches)
     if json:
         screen.print_json({"kind": "end", "played": played, "games": games})
@@ -141,18 +151,23 @@ def _live(
     speed: float,
     listen: str | None,
     browser: bool,
+    entries: bool,
     json: bool,
 ) -> "ContestSheet":
     """Run the contest at its courts until it is over, or until Ctrl-C."""
     from lacoc_server.contest.live.run import play_live
 
-    def opened(url: str, courts: dict[str, str]) -> None:
+    def opened(where: "Opened") -> None:
         if json:
-            screen.print_json({"kind": "open", "url": url, "courts": courts})
-        else:
-            screen.show(say("contest.open", url=f"{url}/contest", courts=[*courts]))
+            screen.print_json({"kind": "open", **where._asdict()})
+            return
+        screen.show(say("contest.open", url=f"{where.url}/contest", courts=[*where.courts]))
+        screen.show(say("contest.office-page", url=where.office))
+        screen.show(say("contest.enter-page", url=f"{where.url}/enter", code=where.code))
 
-    return play_live(file, opened, changed, speed=speed, listen=listen, show=browser)
+    return play_live(
+        file, opened, changed, speed=speed, listen=listen, show=browser, entering=entries
+    )
 
 
 def standings(file: FileToRead = FILE, json: options.Json = False) -> None:

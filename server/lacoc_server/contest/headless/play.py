@@ -6,14 +6,10 @@ same contest again, or one in which a single entry has changed, finds the other 
 
 import hashlib
 import os
-import platform
 from collections import Counter
 from collections.abc import Callable, Container, Iterator, Sequence
 from concurrent.futures import Future
 from functools import cache, partial
-from importlib import resources
-from importlib.metadata import version
-from pathlib import Path
 from typing import NamedTuple, Protocol
 
 import msgspec
@@ -28,8 +24,8 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import due, playable
 from lacoc_server.simulate import Seated
+from lacoc_server.simulate.software import software
 from lacoc_server.studio.workers import WorkerDied
-from lacoc_server.world import arithmetic
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.record.summary import summary
@@ -41,8 +37,6 @@ _MOST_DEATHS = 3
 """A game is played again so many times because its process died."""
 _MOST_VOIDS = 3
 """After so many games in which physics stopped, a game counts as a draw without points."""
-_PACKAGES = ("lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server")
-_SOURCES = (".py", ".toml", ".xml", ".txt")
 
 
 class Engine(Protocol):
@@ -280,18 +274,3 @@ def outcome(seats: tuple[str, ...], winner: str) -> Outcome:
     if winner == seats[1]:
         return "right"
     return "draw" if winner == "draw" else "void"
-
-
-@cache
-def software() -> str:
-    """Return a hash of all software that decides how a game goes: ours, MuJoCo, numpy, Python."""
-    digest = hashlib.blake2b(digest_size=16)
-    for name in _PACKAGES:
-        root = Path(str(resources.files(name)))
-        for path in sorted(root.rglob("*")):
-            if path.suffix in _SOURCES and path.is_file():
-                digest.update(path.relative_to(root).as_posix().encode() + b"\0")
-                digest.update(path.read_bytes() + b"\0")
-    parts = [version("mujoco"), version("numpy"), platform.python_version()]
-    digest.update(msgspec.json.encode([*parts, dict(arithmetic.here())], order="deterministic"))
-    return digest.hexdigest()

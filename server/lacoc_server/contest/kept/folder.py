@@ -30,6 +30,8 @@ class ContestFolder:
         """The database of facts."""
         self.sheet = contests.sheet_path(file)
         """The newest sheet, for pages."""
+        self.applications = folder / f"{file.stem}.applications.db"
+        """The entries that wait for the organiser."""
         self.tokens = folder / f"{file.stem}.tokens.json"
         """The tokens of the teams; secret."""
         self.entries = EntryFolder(folder / "entries")

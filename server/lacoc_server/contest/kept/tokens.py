@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import threading
 from pathlib import Path
 
 import msgspec
@@ -22,7 +23,7 @@ def lasting_hash(token: str) -> str:
 
 
 class TeamTokens:
-    """The file of all tokens; only its owner can read it.
+    """The file of all tokens; only its owner can read it. Any thread may use it.
 
     Args:
         path: the file; it is made with the first token.
@@ -33,11 +34,8 @@ class TeamTokens:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        try:
-            data = path.read_bytes() if path.exists() else b"{}"
-            self._tokens = msgspec.json.decode(data, type=dict[str, str])
-        except (OSError, msgspec.MsgspecError) as error:
-            raise UserError(say("command.cannot-read", path=str(path), why=str(error))) from None
+        self._lock = threading.Lock()
+        self._tokens = self._read()
 
     def of(self, team: str) -> str:
         """Return a team's token; it is made when it is asked for the first time.
@@ -45,17 +43,49 @@ class TeamTokens:
         Raises:
             UserError: if a new one can't be written.
         """
-        if team not in self._tokens:
-            tokens = {**self._tokens, team: new_token()}
-            before = os.umask(0o077)
-            try:
-                write(self._path, msgspec.json.encode(tokens))
-            except OSError as error:
-                why = error.strerror or str(error)
-                raise UserError(
-                    say("command.cannot-write", path=str(self._path), why=why)
-                ) from None
-            finally:
-                os.umask(before)
-            self._tokens = tokens
-        return self._tokens[team]
+        with self._lock:
+            if team not in self._tokens:
+                self._tokens = self._read()  # another program may have made it
+            if team not in self._tokens:
+                self._write({**self._tokens, team: new_token()})
+            return self._tokens[team]
+
+    def team_of(self, token: str) -> str | None:
+        """Return the team that has a token; None: nobody has it."""
+        shown = _digest(token)
+        with self._lock:
+            # Digests differ from their first letter on, so the time tells nothing of a token.
+            return next((team for team, one in self._tokens.items() if _digest(one) == shown), None)
+
+    def forget(self, team: str) -> None:
+        """Forget a team's token: its link opens nothing any more.
+
+        Raises:
+            UserError: if that can't be written.
+        """
+        with self._lock:
+            self._write({name: one for name, one in self._read().items() if name != team})
+
+    def _read(self) -> dict[str, str]:
+        try:
+            data = self._path.read_bytes() if self._path.exists() else b"{}"
+            return msgspec.json.decode(data, type=dict[str, str])
+        except (OSError, msgspec.MsgspecError) as error:
+            raise UserError(
+                say("command.cannot-read", path=str(self._path), why=str(error))
+            ) from None
+
+    def _write(self, tokens: dict[str, str]) -> None:
+        before = os.umask(0o077)
+        try:
+            write(self._path, msgspec.json.encode(tokens))
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise UserError(say("command.cannot-write", path=str(self._path), why=why)) from None
+        finally:
+            os.umask(before)
+        self._tokens = tokens
+
+
+def _digest(token: str) -> bytes:
+    return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -9,6 +9,7 @@ from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Closed,
+    Moved,
     NoShow,
     OfMatch,
     Planned,
@@ -93,6 +94,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """The plans of stages that are not drawn yet, in the order in which they were first made."""
     running: tuple[Called, ...]
     """Games that are on a court now."""
+    moves: tuple[Moved, ...]
+    """The newest move of each match that was moved, in the order in which they were made."""
     ended_ms: dict[str, tuple[str, int]]
     """By team: the pairing of its newest game, and when that ended."""
     unused: tuple[Unused, ...]
@@ -180,6 +183,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         stages=tuple(stages),
         planned=tuple(planned),
         running=_running(known, matches),
+        moves=_moves(known),
         ended_ms=_ended(known),
         unused=tuple(
             Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused
@@ -258,6 +262,16 @@ def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Ca
                 if (call.pairing, call.game) != (fact.pairing, fact.game)
             }
     return tuple(running[court] for court in sorted(running))
+
+
+def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
+    """Find the newest move of each match."""
+    moves: dict[str, Moved] = {}
+    for fact in facts:
+        if isinstance(fact, Moved):
+            moves.pop(fact.pairing, None)
+            moves[fact.pairing] = fact
+    return tuple(moves.values())
 
 
 def _ended(facts: Sequence[AnyFact]) -> dict[str, tuple[str, int]]:

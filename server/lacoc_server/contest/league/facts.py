@@ -194,8 +194,20 @@ class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
     reason: str = ""
 
 
+class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
+    """A match is played at another court or time. The newest one of a match counts."""
+
+    pairing: Name
+    court: str = ""
+    """The only court for it; "": any court."""
+    before: str = ""
+    """Pairing of the match before which it comes; "": the order of the schedule."""
+    not_before_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
+    """It is not called before this time, in milliseconds since 1970, UTC."""
+
+
 OfTeam = Entered | Closed | Withdrawn | Disqualified | FilesChanged
-OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow
+OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Drawn | RoundDrawn
 AnyFact = OfTeam | OfMatch | OfStage
 

@@ -25,7 +25,8 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
     number = int(pairing.id.rpartition(".")[2])
     knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]
     stage = view.name if len(knockouts) > 1 else None
-    match pairing.section:
+    # Groups of a round robin have letters too: group F is no final.
+    match pairing.section if view in knockouts else "":
         case "p":
             return say("fixture.third-place", stage=stage)
         case "f" if pairing.round == 2:
@@ -34,7 +35,7 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
             return say("fixture.final", stage=stage)
         case "l":
             return say("fixture.losers", stage=stage, round=pairing.round, number=number)
-        case "w" if _is_knockout(match):
+        case "w":
             return _winners(view, match, stage, number)
     several = len({one.pairing.section for one in view.matches}) > 1
     group = pairing.section.upper() if several else None
@@ -60,5 +61,5 @@ def _winners(view: StageView, match: Match, stage: str | None, number: int) -> P
 
 
 def _is_knockout(match: Match) -> bool:
-    """Return whether the match is of a bracket; group 23 of a round robin is called "w" too."""
+    """Return whether the match is of a bracket."""
     return match.pairing.loser_place is not None

@@ -20,27 +20,27 @@ class Assignment(msgspec.Struct, frozen=True, kw_only=True):
     """Who sits left and who sits right."""
 
 
-def playable(contest: Contest, first: Sequence[str] = ()) -> list[Match]:
+def playable(contest: Contest) -> list[Match]:
     """Return the matches whose next game can be played, the one to play first at the beginning.
 
-    A match that has begun goes on before others begin. Then come earlier stages and rounds.
-
-    Args:
-        contest: the contest.
-        first: pairings that a referee wants first, in this order.
+    A match that has begun goes on before others begin. Then come earlier stages and rounds. A match
+    that was moved before another one comes there.
     """
     running = {call.pairing for call in contest.running}
-    wanted = {pairing: place for place, pairing in enumerate(first)}
     matches = [
         match
         for view in contest.stages
         for match in view.matches
         if match.state == "open" and match.pairing.id not in running
     ]
-    return sorted(
-        matches,
-        key=lambda match: (wanted.get(match.pairing.id, len(wanted)), not match.games),
-    )
+    matches.sort(key=lambda match: not match.games)
+    there = {match.pairing.id: match for match in matches}
+    for move in contest.moves:
+        match, before = there.get(move.pairing), there.get(move.before)
+        if match is not None and before is not None and match is not before:
+            matches.remove(match)
+            matches.insert(matches.index(before), match)
+    return matches
 
 
 def assign(
@@ -48,7 +48,6 @@ def assign(
     courts: Sequence[str],
     now_ms: int,
     least_rest_ms: int = 0,
-    first: Sequence[str] = (),
     without: Collection[tuple[str, int]] = (),
 ) -> list[Assignment]:
     """Give the next games to the free courts.
@@ -60,7 +59,6 @@ def assign(
         now_ms: the time, in milliseconds since 1970, UTC.
         least_rest_ms: shortest time between two matches of a team; games of one match follow each
             other without it.
-        first: pairings that a referee wants first, in this order.
         without: games that are not given, by pairing and number.
 
     Returns:
@@ -68,7 +66,7 @@ def assign(
     """
     taken = {call.court for call in contest.running}
     free = [court for court in dict.fromkeys(courts) if court not in taken]
-    return list(_assigned(contest, free, now_ms, least_rest_ms, first, without))
+    return list(_assigned(contest, free, now_ms, least_rest_ms, without))
 
 
 def _assigned(
@@ -76,11 +74,11 @@ def _assigned(
     free: list[str],
     now_ms: int,
     least_rest_ms: int,
-    first: Sequence[str],
     without: Collection[tuple[str, int]],
 ) -> Iterator[Assignment]:
     busy = {team for call in contest.running for team in call.teams}
-    for match in playable(contest, first):
+    moves = {move.pairing: move for move in contest.moves}
+    for match in playable(contest):
         if not free:
             return
         teams = match.next_seats
@@ -88,10 +86,13 @@ def _assigned(
             continue
         if rested_ms(contest, match, least_rest_ms) > now_ms:
             continue
+        move = moves.get(match.pairing.id)
+        court = move.court if move is not None and move.court else free[0]
+        if court not in free or (move is not None and move.not_before_ms > now_ms):
+            continue
         busy |= {*teams}
-        yield Assignment(
-            court=free.pop(0), pairing=match.pairing.id, game=match.next_game, teams=teams
-        )
+        free.remove(court)
+        yield Assignment(court=court, pairing=match.pairing.id, game=match.next_game, teams=teams)
 
 
 def rested_ms(contest: Contest, match: Match, least_rest_ms: int) -> int:

@@ -1,6 +1,6 @@
 """Which game goes to which court, when it is taken back, and what came of it; pure."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from lacoc_server.contest.league.contest import Contest
@@ -53,8 +53,9 @@ def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
 def taken_back(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Iterator[AnyFact]:
     """Yield the games that are taken back from their courts.
 
-    These are games that are not needed any more, because a team has left, and games of courts that
-    are gone. A game that has begun stays with its court: a court that was killed goes on with it.
+    These are games that are not needed any more, because a team has left; games that were moved to
+    another court or a later time; and games of courts that are gone. A game that has begun stays
+    with its court: a court that was killed goes on with it.
     """
     needed = {
         (match.pairing.id, match.next_game, match.next_seats)
@@ -62,12 +63,18 @@ def taken_back(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Itera
         for match in view.matches
         if match.state == "open"
     }
+    moves = {move.pairing: move for move in contest.moves}
     for call in contest.running:
         court = seen.get(call.court, Seen(0))
+        move = moves.get(call.pairing)
         if court.call == call.id and court.begun:
             continue
         if (call.pairing, call.game, call.teams) not in needed:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
+        elif move is not None and (
+            move.court not in ("", call.court) or move.not_before_ms > now_ms
+        ):
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason="moved")
         elif now_ms - max(court.heard_ms, call.at_ms) > LOST_MS:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="court lost")
 
@@ -78,7 +85,6 @@ def calls(
     now_ms: int,
     least_rest_ms: int,
     held: Collection[tuple[str, int]] = (),
-    first: Sequence[str] = (),
 ) -> list[Called]:
     """Give the next games to the courts that are free.
 
@@ -88,12 +94,11 @@ def calls(
         now_ms: the time, in milliseconds since 1970, UTC.
         least_rest_ms: shortest time between two matches of a team.
         held: games that no court takes, by pairing and number.
-        first: pairings that a referee wants first.
     """
     here = [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
     return [
         new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
-        for one in assign(contest, here, now_ms, least_rest_ms, first, held)
+        for one in assign(contest, here, now_ms, least_rest_ms, held)
     ]
 
 

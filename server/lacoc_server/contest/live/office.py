@@ -20,6 +20,7 @@ from lacoc_server.contest.league.schedule import due
 from lacoc_server.contest.live.calling import Ended, Seen, calls, results, taken_back, wanted
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.teller import Teller
+from lacoc_server.contest.live.whereabouts import Known
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.seat import Phase
@@ -27,6 +28,7 @@ from lacoc_shared.words import Phrase
 
 _SEATS = ("left", "right")
 _AGAIN_MS = 1000
+_TEAMS_LEAST = 2
 _BEGUN = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
 
 
@@ -40,6 +42,8 @@ class Office:
         links: the courts by name, in the order in which they are filled.
         addresses: the courts' addresses for contestants, by name.
         least_rest_ms: shortest time between two matches of a team.
+        draw_from_ms: when the office closes entries and draws the first stage, in milliseconds
+            since 1970, UTC; None: it waits until somebody closes entries.
     """
 
     def __init__(
@@ -50,6 +54,7 @@ class Office:
         links: Mapping[str, CourtLink],
         addresses: Mapping[str, str],
         least_rest_ms: int = 0,
+        draw_from_ms: int | None = 0,
     ) -> None:
         self._store = store
         self._entry = cache(entries.load)
@@ -57,6 +62,7 @@ class Office:
         self._links = links
         self._teller = Teller(links, addresses, token_of, least_rest_ms)
         self._least_rest_ms = least_rest_ms
+        self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)
         self._asked: dict[str, Asked] = {}
         """Assignments that are not answered yet, by the id of the call."""
@@ -65,6 +71,8 @@ class Office:
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
         self.contest: Contest = self._compute()
+        self.known = Known({name: Seen(0) for name in links}, self._teller.pace, {})
+        """What it knew at the newest step; any thread may read it."""
 
     @property
     def over(self) -> bool:
@@ -83,7 +91,7 @@ class Office:
             self.contest = self._compute()
         refused = self._answers()
         self._append(lambda contest: [*refused, *results(contest, seen)])
-        while due(self.contest, FORMATS) is not None:
+        while self._may_draw(now_ms) and due(self.contest, FORMATS) is not None:
             self._append(_draws)
         self._append(lambda contest: taken_back(contest, seen, now_ms))
         self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
@@ -93,6 +101,14 @@ class Office:
                 self._asked[call.id] = self._assign(call)
         self._take_back(now_ms)
         self._teller.tell(self.contest, self._facts, seen, now_ms)
+        self.known = Known(seen, self._teller.pace, dict(self.held))
+
+    def _may_draw(self, now_ms: int) -> bool:
+        """Return whether teams have had their time to enter, and there are enough of them."""
+        if self.contest.closed:
+            return True
+        over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
+        return over and sum(not team.gone for team in self.contest.teams) >= _TEAMS_LEAST
 
     def _look(self, name: str, link: CourtLink, now_ms: int) -> Seen:
         link.poll()

@@ -44,6 +44,8 @@ class Teller:
         self._least_rest_ms = least_rest_ms
         salt = token_bytes(_SALT_BYTES)
         self._hash_of = cache(lambda team: seal.hash_token(token_of(team), salt))
+        self.pace = Pace(0, 0, least_rest_ms)
+        """How fast the contest goes, as of the newest estimate."""
         self._teams: dict[str, Whereabouts] = {}
         self._contest: Contest | None = None
         self._calls: tuple[str, ...] = ()
@@ -72,8 +74,9 @@ class Teller:
         is_new = contest is not self._contest or calls != self._calls
         if is_new or now_ms - self._looked_ms >= _LOOK_MS:
             self._contest, self._calls, self._looked_ms = contest, calls, now_ms
-            pace = Pace(now_ms, game_ms(facts, self._guess_ms(contest)), self._least_rest_ms)
-            found = whereabouts(contest, Courts(seen, self._addresses), pace)
+            usual_ms = game_ms(facts, self._guess_ms(contest))
+            self.pace = Pace(now_ms, usual_ms, self._least_rest_ms)
+            found = whereabouts(contest, Courts(seen, self._addresses), self.pace)
             self._teams = {self._hash_of(team): there for team, there in found.items()}
         for name, link in self._links.items():
             if (asked := self._asked.get(name)) is not None and asked.take() is None:

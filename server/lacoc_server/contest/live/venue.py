@@ -64,7 +64,9 @@ def _court(name: str, words: list[str], folder: Path) -> Iterator[dict[str, Any]
 
 
 @contextmanager
-def pages(where: ContestFolder, folder: Path, listen: str | None, show: bool) -> Iterator[str]:
+def pages(
+    where: ContestFolder, folder: Path, listen: str | None, show: bool, desk: str
+) -> Iterator[str]:
     """Serve the pages of a contest until the block ends; give their address.
 
     Args:
@@ -72,8 +74,9 @@ def pages(where: ContestFolder, folder: Path, listen: str | None, show: bool) ->
         folder: folder for what the process prints.
         listen: where to listen; None: this machine only.
         show: whether to open a browser.
+        desk: address of the office's desk.
     """
-    words = ["web", "--contest", str(where.file), "--json"]
+    words = ["web", "--contest", str(where.file), "--office", desk, "--json"]
     words += ["--listen", listen] if listen else []
     first = [*words, "--open"] if show else words
     place = folder / "pages"

@@ -46,12 +46,24 @@ class Pace(NamedTuple):
     """Shortest time between two matches of a team."""
 
 
-class _Start(NamedTuple):
+class Known(NamedTuple):
+    """What the office knows besides the facts, as of its newest look at the courts."""
+
+    seen: Mapping[str, Seen]
+    """The courts, in the order in which they are filled."""
+    pace: Pace
+    held: Mapping[tuple[str, int], Phrase]
+    """Games that a court refused, by pairing and number, with the reason."""
+
+
+class Start(NamedTuple):
     """When and where a match probably begins."""
 
     court: str
     at_ms: int
+    """In milliseconds since 1970, UTC."""
     games_before: int
+    """Games that probably begin before it, on all courts."""
 
 
 def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
@@ -75,7 +87,7 @@ def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Where
     """Say of each team where it plays, or what it waits for."""
     over = not contest.planned and all(view.over for view in contest.stages)
     calls = {team: call for call in contest.running for team in call.teams}
-    starts = dict(_starts(contest, courts.seen, pace))
+    begins = dict(starts(contest, courts.seen, pace))
     coming = _coming(contest)
     found: dict[str, Whereabouts] = {}
     for team in contest.teams:
@@ -86,7 +98,7 @@ def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Where
             found[name] = _ended(contest, name, over=True)
         elif not team.gone and name in coming:
             view, match = coming[name]
-            found[name] = _waits(contest, name, view, match, starts.get(match.pairing.id), pace)
+            found[name] = _waits(contest, name, view, match, begins.get(match.pairing.id), pace)
         elif not team.gone and _may_come(contest, name):
             found[name] = Whereabouts(team=name, state="waits", said=say("team.awaits-draw"))
         else:
@@ -131,7 +143,7 @@ def _waits(
     team: str,
     view: StageView,
     match: Match,
-    start: _Start | None,
+    start: Start | None,
     pace: Pace,
 ) -> Whereabouts:
     """Say what a team waits for whose next match is known."""
@@ -190,7 +202,7 @@ def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
     return coming
 
 
-def _starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[tuple[str, _Start]]:
+def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[tuple[str, Start]]:
     """Estimate for each open match, by its pairing, when and where it begins."""
     now_ms, game, rest_ms = pace
     matches = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
@@ -203,15 +215,19 @@ def _starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[
             court_ms[call.court] = end_ms
         team_ms |= dict.fromkeys(call.teams, end_ms + rest_ms)
     begun: list[int] = []
+    moves = {move.pairing: move for move in contest.moves}
     for match in playable(contest):
         if not court_ms or match.next_seats is None:
             return
         last = {contest.ended_ms.get(team, ("", 0))[0] for team in match.next_seats}
         goes_on = last == {match.pairing.id}
         rested = 0 if goes_on else max(team_ms.get(team, 0) for team in match.next_seats)
+        move = moves.get(match.pairing.id)
         court = min(court_ms, key=court_ms.__getitem__)
-        at_ms = max(court_ms[court], rested)
-        yield match.pairing.id, _Start(court, at_ms, bisect_left(begun, at_ms))
+        if move is not None and move.court in court_ms:
+            court = move.court
+        at_ms = max(court_ms[court], rested, 0 if move is None else move.not_before_ms)
+        yield match.pairing.id, Start(court, at_ms, bisect_left(begun, at_ms))
         count = _games(matches[match.pairing.id][0], match)
         for number in range(count):
             insort(begun, at_ms + number * game)

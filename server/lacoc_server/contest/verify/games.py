@@ -117,6 +117,8 @@ def _differences(folder: Path, game: Game, plan: Planned, record: Record) -> Ite
     """
     played = game.played
     setup, result = record.header.setup, record.result
+    if setup.origin is not None:
+        yield say("verify.of-fork", match=setup.origin.match_id, beat=setup.origin.beat)
     if packed_path(Path(), record.header.match_id).name != played.record:
         yield say("verify.of-name")
     if (setup.assigned.call if setup.assigned else "") != game.call:

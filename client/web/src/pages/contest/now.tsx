@@ -1,8 +1,13 @@
 /** What is played now, and what comes next. */
 
+import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
+import { LiveScores } from "../../core/contest/live";
 import { type ContestSheet, found, score } from "../../core/contest/sheet";
+import type { CourtScore } from "../../core/desk.gen";
+import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
+import { BEATS_PER_S, clock } from "../../i18n/words";
 import { TeamLink } from "./parts";
 import { gameTitle } from "./words";
 
@@ -14,7 +19,10 @@ interface Props {
   most?: number;
 }
 
+const live = new LiveScores();
+
 export function Now({ sheet, most = COMING_MOST }: Props) {
+  useEffect(() => (ownPage ? undefined : live.start()), []);
   const coming = sheet.coming.slice(0, most);
   const more = sheet.coming.length - coming.length;
   return (
@@ -22,8 +30,13 @@ export function Now({ sheet, most = COMING_MOST }: Props) {
       <div>
         <h2>{t("contest.running")}</h2>
         {!sheet.running.length && <p class="muted">{t("contest.noneRunning")}</p>}
+        {!ownPage && sheet.running.length > 1 && (
+          <p>
+            <a href="watch?director=1">{t("contest.director")}</a>
+          </p>
+        )}
         <ul class="courts">
-          {sheet.running.map(({ pairing, game, teams, court }) => (
+          {sheet.running.map(({ id, pairing, game, teams, court }) => (
             <li key={court} class="court card">
               <div class="where">
                 <b>{t("contest.court", { court })}</b>
@@ -37,6 +50,7 @@ export function Now({ sheet, most = COMING_MOST }: Props) {
                 )}
               </div>
               <Sides teams={teams} stands={stands(sheet, pairing, teams)} />
+              <Live score={live.of(id)} />
               <p class="muted">{gameTitle(sheet, pairing, game)}</p>
             </li>
           ))}
@@ -56,6 +70,20 @@ export function Now({ sheet, most = COMING_MOST }: Props) {
         {more > 0 && <p class="muted">{t("contest.more", { count: more })}</p>}
       </div>
     </section>
+  );
+}
+
+/** The points and the clock of the game that a court plays; nothing before it begins. */
+function Live({ score: now }: { score: CourtScore | null }) {
+  if (!now || now.phase < Phase.PLAYING) return null;
+  const [left = 0, right = 0] = now.scores;
+  return (
+    <p class="live-score">
+      <b>
+        {left} : {right}
+      </b>{" "}
+      <span>{clock((now.duration_s - now.clock_s) * BEATS_PER_S)}</span>
+    </p>
   );
 }
 

@@ -18,6 +18,7 @@ import type { Player } from "../../core/player";
 import { Level, MAX_KEYS, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Mistakes } from "../../ui/mistakes";
+import { PickFiles } from "../../ui/pick";
 import { toast } from "../../ui/toasts";
 import { ARROW_OF } from "./pad";
 
@@ -61,19 +62,7 @@ export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
         <label class="link" for={input}>
           {t("files.pick")}
         </label>
-        <input
-          id={input}
-          class="hidden-text"
-          type="file"
-          multiple
-          accept=".txt,.xlsx,.toml,.tsv,.csv"
-          onChange={(event) => {
-            const picked = event.currentTarget;
-            void take([...(picked.files ?? [])]).then(() => {
-              picked.value = ""; // the same file again, after it was mended
-            });
-          }}
-        />
+        <PickFiles id={input} take={take} />
       </p>
       <ul>
         {slots.map((slot) => (

@@ -44,6 +44,11 @@ export function TeamCard({ court, team }: Props) {
       ) : (
         <p class="muted">{t("team.byItself")}</p>
       )}
+      {court.welcome.value?.desk && !isOver && (
+        <a class="button quiet small" href="/enter">
+          {t("team.files")}
+        </a>
+      )}
       <button class="button quiet small" type="button" onClick={() => team.forget()}>
         {t("team.other")}
       </button>

@@ -6,6 +6,7 @@ import type { Recording } from "../../core/recording";
 import { type Event, Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { BEATS_PER_S, eventClock } from "../../i18n/words";
+import { OddsCurve } from "../../ui/odds";
 import { sentence } from "../../ui/thirds";
 import type { Player } from "./player";
 
@@ -53,6 +54,15 @@ function Happened({ player }: { player: Player }) {
   return (
     <>
       <Lead recording={recording} />
+      {player.odds.value && (
+        <div class="odds">
+          <OddsCurve
+            odds={player.odds.value}
+            first={recording.firstBeat}
+            last={recording.lastBeat}
+          />
+        </div>
+      )}
       <div class="done" />
       <div class="marks" aria-hidden="true">
         {player.marks.map((event) => (

@@ -106,6 +106,7 @@ function MatchLine({ match }: { match: Summary }) {
   return (
     <b>
       {team(0)} <span class="points">{scores.length ? scores.join(" : ") : "–"}</span> {team(1)}
+      {match.fork_of && <small class="fork"> {t("replay.forkShort")}</small>}
       {winner === "void" && <small> {t("phase.8")}</small>}
     </b>
   );

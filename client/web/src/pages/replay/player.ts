@@ -1,5 +1,7 @@
 /** Plays a recording, with the ways to another moment of the match. */
 
+import { signal } from "@preact/signals";
+import type { Odds } from "../../core/odds";
 import { Playback } from "../../core/playback";
 import type { Recording } from "../../core/recording";
 import type { Event } from "../../core/wire";
@@ -16,6 +18,11 @@ const JUST_BEATS = 1.5 * BEATS_PER_S;
 export class Player extends Playback {
   /** The events that one jumps to, and that have a mark. */
   readonly marks: readonly Event[];
+
+  /** The odds, once they are here; null: there are none. */
+  readonly odds = signal<Odds | null>(null);
+  /** What is shown beside the recording, at the same beat: the match that it is a fork of. */
+  readonly beside = signal<Recording | null>(null);
 
   constructor(readonly recording: Recording) {
     super(recording);

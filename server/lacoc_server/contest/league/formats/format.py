@@ -58,3 +58,17 @@ class Format(Protocol):
             matches: its matches by the pairing's id.
             last: teams that are ranked last, whatever they won.
         """
+
+
+class DrawnAtOnce:
+    """What formats share whose draw fixes all rounds."""
+
+    def rounds(self, stage: Stage) -> int:
+        """Return 0: no round is drawn later."""
+        return 0
+
+    def next_round(
+        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+    ) -> tuple[Pair, ...]:
+        """Return no pairs."""
+        return ()

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
-from lacoc_server.contest.league.formats.format import Pair, Stage
+from lacoc_server.contest.league.formats.format import DrawnAtOnce, Stage
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.pairing import AnySource, Bye, Entry, LoserOf, Pairing, WinnerOf
 from lacoc_server.contest.league.standings import Standing, Table, counted, standings
@@ -13,7 +13,7 @@ ORDER = ("seed",)
 """What orders teams that went out in the same round; they share the rank."""
 
 
-class Knockout:
+class Knockout(DrawnAtOnce):
     """A bracket. Whoever loses is out, or gets a second chance in the losers' bracket."""
 
     decisive = True
@@ -32,16 +32,6 @@ class Knockout:
         if len(stage.entries) < 2:
             return ()
         return tuple(double_bracket(stage) if self.double else single_bracket(stage))
-
-    def rounds(self, stage: Stage) -> int:
-        """Return 0: the draw fixes all rounds."""
-        return 0
-
-    def next_round(
-        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
-    ) -> tuple[Pair, ...]:
-        """Return nothing: no round is drawn later."""
-        return ()
 
     def tables(
         self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 
-from lacoc_server.contest.league.formats.format import Pair, Stage
+from lacoc_server.contest.league.formats.format import DrawnAtOnce, Stage
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.pairing import Entry, Pairing
 from lacoc_server.contest.league.standings import Table, counted, standings
@@ -10,7 +10,7 @@ from lacoc_server.contest.league.standings import Table, counted, standings
 ORDER = ("points", "direct", "difference", "scored", "wins", "seed")
 
 
-class RoundRobin:
+class RoundRobin(DrawnAtOnce):
     """Groups in which everybody meets everybody, by the circle method."""
 
     decisive = False
@@ -30,16 +30,6 @@ class RoundRobin:
             for order, (left, right) in enumerate(circle_round(len(teams), number - 1), 1)
         ]
         return tuple(sorted(found, key=lambda pairing: pairing.round))
-
-    def rounds(self, stage: Stage) -> int:
-        """Return 0: the draw fixes all rounds."""
-        return 0
-
-    def next_round(
-        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
-    ) -> tuple[Pair, ...]:
-        """Return nothing: no round is drawn later."""
-        return ()
 
     def tables(
         self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]

@@ -1,6 +1,7 @@
 /** The way of the table to a court: to practice, or to the seat of an invitation. */
 
 import { signal } from "@preact/signals";
+import { enterPage, filesFragment, type GivenFiles } from "../../../core/given";
 import { t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
 import type { Gateway } from "../gateway";
@@ -20,6 +21,38 @@ export class Court {
     private readonly sheet: Sheet,
     private readonly robot: RobotInUse,
   ) {}
+
+  /**
+   * Take the table to the page on which teams enter a contest, in a new tab. Only a click may call
+   * this.
+   *
+   * @param address Of the contest's pages.
+   */
+  async handOn(address: string): Promise<void> {
+    const { gateway, sheet } = this;
+    const page = enterPage(address);
+    if (!page) {
+      toast(t("design.handOn.noAddress"), "no");
+      return;
+    }
+    const gait = sentGait(sheet, this.robot);
+    if (!gait) {
+      sheet.select(sheet.bad.peek()[0]!);
+      toast(t("design.badCells", { count: sheet.bad.peek().length }), "no");
+      return;
+    }
+    this.blocked.value = "";
+    const tab = window.open("about:blank");
+    try {
+      const files = await gateway.ask<GivenFiles>("hand_on", gait);
+      const url = `${page}#${filesFragment(files)}`;
+      if (tab) tab.location.replace(url);
+      else this.blocked.value = url;
+    } catch (error) {
+      tab?.close();
+      gateway.refuse(error);
+    }
+  }
 
   /** Take the table there, and open its page in a new tab. Only a click may call this. */
   async go(): Promise<void> {

@@ -14,6 +14,7 @@ import type { Sheet } from "../table/sheet";
 import type { Court } from "./court";
 import { CourtButton } from "./court_button";
 import type { Files } from "./files";
+import { HandOn } from "./hand_on";
 import "./files.css";
 
 /** Take files that were dropped or picked. */
@@ -105,6 +106,7 @@ export function FilesDialog(props: Props) {
             )}
           </div>
           <CourtButton court={court} />
+          <HandOn court={court} />
           <h3>{t("design.robots")}</h3>
           <ul>
             {robots.map(({ name }) => (

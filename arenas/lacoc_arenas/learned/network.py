@@ -1,0 +1,182 @@
+"""A learned policy as layers of numbers, and as a bot file that plays anywhere.
+
+A bot file holds the layers as text. It needs neither MuJoCo nor the library that trained it.
+"""
+
+import base64
+import textwrap
+import zlib
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_arenas.bot import Brain, Key
+from lacoc_arenas.learned.senses import Numbers, Senses
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.words import say
+
+Activation = Literal["tanh", "relu"]
+
+_FILE = '''\
+"""A bot that a machine learned; written by `lacoc_arenas.learned.network.export`."""
+
+from lacoc_arenas.learned.network import read
+
+NETWORK = read(
+    """
+{text}
+    """
+)
+
+
+def bot(sheet, seat):
+    return NETWORK.brain(sheet, seat)
+'''
+
+
+class Layer(NamedTuple):
+    """One layer: its output is `weights @ input + biases`."""
+
+    weights: npt.NDArray[np.float64]
+    """(outputs, inputs)."""
+    biases: npt.NDArray[np.float64]
+    """(outputs,)."""
+
+
+class _Saved(msgspec.Struct, frozen=True, array_like=True):
+    keys: tuple[int, ...]
+    inputs: int
+    every_ticks: int
+    activation: Activation
+    shapes: tuple[tuple[int, int], ...]
+    numbers: bytes
+
+
+class Network:
+    """A policy that presses the key of its largest output.
+
+    Args:
+        layers: from the input on; the first takes what `Senses` gives, the last has an output for
+            each key. After each layer but the last comes the activation.
+        keys: digits of level B, and `RESTART_KEY` for [x].
+        every_ticks: the policy chooses a key in every n-th tick; as `beats` of an environment.
+        activation: what follows each layer but the last.
+
+    Raises:
+        UserError: if the layers do not fit each other or the keys.
+    """
+
+    def __init__(
+        self,
+        layers: Sequence[Layer],
+        keys: Sequence[int],
+        every_ticks: int = 1,
+        activation: Activation = "tanh",
+    ) -> None:
+        self.layers = [Layer(*(np.asarray(part, np.float64) for part in one)) for one in layers]
+        self.keys = tuple(int(key) for key in keys)
+        self.every_ticks = every_ticks
+        self.activation: Activation = activation
+        shapes = [layer.weights.shape for layer in self.layers]
+        fits = all(
+            len(shape) == 2 and layer.biases.shape == shape[:1]
+            for shape, layer in zip(shapes, self.layers, strict=True)
+        )
+        ends = [shape[0] for shape in shapes[:-1]] if fits else []
+        if not (shapes and fits and ends == [s[1] for s in shapes[1:]]):
+            raise UserError(say("learned.layers", shapes=str(shapes)))
+        if shapes[-1][0] != len(self.keys):
+            raise UserError(say("learned.keys", outputs=shapes[-1][0], keys=len(self.keys)))
+        if not all(np.isfinite(part).all() for layer in self.layers for part in layer):
+            raise UserError(say("learned.not-finite"))
+
+    @property
+    def inputs(self) -> int:
+        """Number of numbers that the policy sees."""
+        return int(self.layers[0].weights.shape[1])
+
+    def choose(self, numbers: Numbers) -> int:
+        """Return the index of the key to press, as an action of an environment."""
+        values = numbers.astype(np.float64)
+        for index, layer in enumerate(self.layers):
+            if index:
+                values = np.tanh(values) if self.activation == "tanh" else np.maximum(values, 0)
+            values = layer.weights @ values + layer.biases
+        return int(values.argmax())
+
+    def brain(self, sheet: Sheet, seat: int) -> Brain:
+        """Make a brain for one match.
+
+        Raises:
+            UserError: if the match gives another number of numbers than the policy learned with.
+        """
+        senses = Senses(sheet)
+        if senses.size != self.inputs:
+            raise UserError(
+                say(
+                    "learned.other-match", learned=self.inputs, found=senses.size, arena=sheet.arena
+                )
+            )
+
+        def see(frame: Frame) -> Key | None:
+            if (frame.clock_ticks - 1) % self.every_ticks:
+                return None
+            return press(frame, seat, self.keys[self.choose(senses.see(frame)[seat])])
+
+        return see
+
+
+def press(frame: Frame, seat: int, digit: int) -> Key | None:
+    """Return the key that makes a digit the present one; None if it is pressed already.
+
+    [x] is pressed whenever keys are accepted.
+    """
+    now = frame.seats[seat]
+    if now.locked_ticks or (digit == now.key and now.level == Level.LOCOMOTION):
+        return None
+    return Key(Level.LOCOMOTION, digit)
+
+
+def export(network: Network) -> str:
+    """Return a bot file's text."""
+    parts = [part for layer in network.layers for part in layer]
+    saved = _Saved(
+        network.keys,
+        network.inputs,
+        network.every_ticks,
+        network.activation,
+        tuple((layer.weights.shape[0], layer.weights.shape[1]) for layer in network.layers),
+        b"".join(part.astype("<f8").tobytes() for part in parts),
+    )
+    packed = base64.b85encode(zlib.compress(msgspec.msgpack.encode(saved), 9)).decode()
+    return _FILE.format(text=textwrap.fill(packed, 96, break_on_hyphens=False))
+
+
+def read(text: str) -> Network:
+    """Read the policy of a bot file.
+
+    Raises:
+        UserError: if the text is damaged.
+    """
+    try:
+        packed = base64.b85decode("".join(text.split()))
+        saved = msgspec.msgpack.decode(zlib.decompress(packed), type=_Saved)
+        layers, at = [], 0
+        numbers = np.frombuffer(saved.numbers, "<f8")
+        for outputs, inputs in saved.shapes:
+            weights = numbers[at : at + outputs * inputs].reshape(outputs, inputs)
+            at += outputs * inputs
+            layers.append(Layer(weights, numbers[at : at + outputs]))
+            at += outputs
+    except (ValueError, zlib.error, msgspec.MsgspecError) as error:
+        raise UserError(say("learned.damaged", error=str(error)[:80])) from None
+    return Network(layers, saved.keys, saved.every_ticks, saved.activation)
+
+
+__all__ = ["RESTART_KEY", "Layer", "Network", "export", "press", "read"]

@@ -1,0 +1,161 @@
+"""What a learned policy sees of a frame: numbers with units, from its own seat's side.
+
+A robot in the right seat sees the field turned by 180 degrees, and its own robot first. So one
+policy plays both seats. A field that is not the same after this turn is not turned.
+
+Environments and exported bots use the same functions. So a policy sees the same numbers, bit for
+bit, while it learns and while it plays (docs/environments.md).
+"""
+
+from collections.abc import Sequence
+from struct import Struct
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_shared.codec import unpack_states
+from lacoc_shared.gait.tables import JOINTS_PER_LEG
+from lacoc_shared.messages import Frame, MarkerInfo, Sheet
+from lacoc_shared.seat import BEATS_PER_S
+
+Numbers = npt.NDArray[np.float32]
+
+BODY = ("x_m", "y_m", "z_m", "forward_x", "forward_y", "up")
+"""Names of the numbers of a robot's body: position of its middle, the two level parts of its
+forward direction, and how upright it is (1 upright, -1 on its back)."""
+SEAT = ("points", "key", "posture", "locked_s")
+"""Names of the numbers of a seat: its points, the digit of its present key, the index of the
+posture that its robot moves to, and for how long keys are still refused."""
+CLOCK = ("left_s", "played_s")
+"""Names of the numbers of the clock: time left to play (0 without a limit), and time played."""
+
+_POSE = Struct("<7f")
+_FLOAT = np.dtype("<f4")
+_TWO, _FOUR, _SIX = (Struct(f"<{count}f").pack for count in (2, 4, 6))
+
+
+class Robot(NamedTuple):
+    """Where the numbers of one robot are."""
+
+    pose: int
+    """Index of its first byte in `Frame.poses`."""
+    joints: int
+
+    @property
+    def first(self) -> int:
+        """Index of the first byte of its joint angles."""
+        return self.pose + _POSE.size
+
+    @property
+    def end(self) -> int:
+        """Index after the last byte of its joint angles."""
+        return self.first + _FLOAT.itemsize * self.joints
+
+
+class Senses:
+    """Reads the frames of one match as numbers.
+
+    The numbers are, in this order: for each robot, one's own first, `BODY` and the angle of each
+    joint [rad] by joint id; for each seat, one's own first, `SEAT`; `CLOCK`; for each marker 1 if
+    it is one's own, -1 if it is another's, 0 if it is neutral and 0.5 if it fell for nobody.
+
+    Args:
+        sheet: the sheet of the match, with all robots.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        self._seats = len(sheet.seats)
+        self._duration_ticks = round(sheet.duration_s * BEATS_PER_S)
+        self._markers = len(sheet.markers)
+        self._robots: list[Robot] = []
+        offset = 0
+        for seat in sheet.seats:
+            joints = JOINTS_PER_LEG * len(seat.legs)
+            self._robots.append(Robot(offset, joints))
+            offset += _POSE.size + _FLOAT.itemsize * joints
+        turned = partners(sheet.markers) if self._seats == 2 else None
+        self._turned = turned
+        self.names = tuple(self._names(sheet))
+        """What each number is; the seats are "own" and "other"."""
+        self.size = len(self.names)
+        self._angles = [(robot.first, robot.end) for robot in self._robots]
+        seats = range(self._seats)
+        self._orders = [(seat, *(s for s in seats if s != seat)) for seat in seats]
+        self._packed: bytes | None = None
+        self._boards: list[bytes] = []
+
+    def see(self, frame: Frame) -> list[Numbers]:
+        """Return what each seat sees of a frame of READY or later: (size,) numbers, by seat."""
+        if frame.markers != self._packed:
+            self._packed, self._boards = frame.markers, self._read_board(frame.markers)
+        poses = frame.poses
+        bodies = [_body(poses, robot.pose) for robot in self._robots]
+        angles = [poses[first:end] for first, end in self._angles]
+        commands = [
+            _FOUR(seat.score, seat.key, seat.posture, seat.locked_ticks / BEATS_PER_S)
+            for seat in frame.seats
+        ]
+        played = frame.clock_ticks
+        left = max(0, self._duration_ticks - played) if self._duration_ticks else 0
+        clock = _TWO(left / BEATS_PER_S, played / BEATS_PER_S)
+        seen = []
+        for seat, order in enumerate(self._orders):
+            turns = seat == 1 and self._turned is not None
+            parts: list[bytes] = []
+            for robot in order:
+                parts += (bodies[robot][turns], angles[robot])
+            parts += [commands[robot] for robot in order]
+            parts += (clock, self._boards[seat])
+            seen.append(np.frombuffer(bytearray().join(parts), _FLOAT))
+        return seen
+
+    def _read_board(self, packed: bytes) -> list[bytes]:
+        states = unpack_states(packed, self._markers)
+        boards = []
+        for seat in range(self._seats):
+            order: Sequence[int] = range(self._markers)
+            if seat == 1 and self._turned is not None:
+                order = self._turned
+            values = [_value(states[marker], seat) for marker in order]
+            boards.append(np.array(values, _FLOAT).tobytes())
+        return boards
+
+    def _names(self, sheet: Sheet) -> list[str]:
+        whose = ("own", *("other" for _ in range(self._seats - 1)))
+        names = []
+        for owner, robot in zip(whose, self._robots, strict=True):
+            names += [f"{owner} {name}" for name in BODY]
+            names += [f"{owner} angle {joint} [rad]" for joint in range(robot.joints)]
+        names += [f"{owner} {name}" for owner in whose for name in SEAT]
+        return [*names, *CLOCK, *(marker.name for marker in sheet.markers)]
+
+
+def partners(markers: Sequence[MarkerInfo]) -> tuple[int, ...] | None:
+    """Return for each marker the one in its place after a turn of the field by 180 degrees.
+
+    None if a marker has no partner of its kind and points: then the field is not symmetric.
+    """
+    places = {_place(m, 1): index for index, m in enumerate(markers)}
+    found = [places.get(_place(m, -1)) for m in markers]
+    return None if None in found else tuple(index for index in found if index is not None)
+
+
+def _place(marker: MarkerInfo, sign: int) -> tuple[object, ...]:
+    x, y = (round(sign * value_m * 1e6) for value_m in (marker.x_m, marker.y_m))
+    return x, y, marker.kind, marker.points
+
+
+def _value(state: int, seat: int) -> float:
+    """Return what a marker's state is for a seat."""
+    if state == seat + 1:
+        return 1.0
+    return (0.0, -1.0, -1.0, 0.5)[state]
+
+
+def _body(poses: bytes, offset: int) -> tuple[bytes, bytes]:
+    """Return the packed numbers of a body, as it is and after a turn by 180 degrees."""
+    x, y, z, qw, qx, qy, qz = _POSE.unpack_from(poses, offset)
+    ahead_x, ahead_y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
+    up = 1 - 2 * (qx * qx + qy * qy)
+    return _SIX(x, y, z, ahead_x, ahead_y, up), _SIX(-x, -y, z, -ahead_x, -ahead_y, up)

@@ -1,0 +1,383 @@
+"""Plays 24 matches of both games, and lets the director choose among them in simulated time.
+
+    python -m benchmarks.director
+
+Bots play each match without a network. Then all matches are put on one clock, as an event would
+have them: in `spread` each begins within the first three minutes, by chance, and in `at_once` all
+begin together. The director looks at all courts ten times a second, as the gateway does: `ahead`
+with all shown later, as on the pages, and `not_ahead` without that.
+
+A swing is a change of the difference in points. What counts as a moment of the event:
+
+- `windows`: each quarter of a minute, the time that a picture has at four cuts a minute;
+- `seconds`: each second;
+- `changes`: each swing at each court.
+
+The swing of a window or a second is the largest one at any court in it, and of equal ones the
+first. Of each kind the tenth with the largest swings counts. One is on air if its court is on air
+at the swing, or 0.5 s later at the latest. `best` is what a director could reach that knows the
+future and keeps the same two rules, by dynamic programming over all its ways.
+
+It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of the windows on air.
+"""
+
+import argparse
+import json
+import os
+import random
+import sys
+from bisect import bisect_right
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+
+from lacoc_arenas import arena as arenas
+from lacoc_client.director.courts import LAST_S, CourtNow
+from lacoc_client.director.director import AHEAD_S, Director
+from lacoc_client.director.plan import CUTS_MOST, MINUTE_S
+from lacoc_server.simulate import player, simulate
+from lacoc_shared.messages import Frame
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
+
+COURTS = 24
+LOOK_S = 0.1
+LATE_S = 0.5
+"""A moment counts as shown if it is on air by then."""
+WINDOW_S = 15.0
+AIM = 0.9
+KINDS = ("windows", "seconds", "changes")
+_BOTS = ("straight", "nearest", "planner")
+_ROBOTS = ("hexapod", "quadruped", "long-legs", "octopod")
+_SPREAD_S = 180.0
+_NEVER = float("-inf")
+
+
+class Point(msgspec.Struct, frozen=True, array_like=True):
+    """How a match stands from a beat on."""
+
+    beat: int
+    phase: int
+    clock_ticks: int
+    scores: tuple[int, ...]
+
+
+class Line(msgspec.Struct, frozen=True):
+    """A match as a line of scores; a point wherever phase or scores change."""
+
+    duration_s: float
+    points: tuple[Point, ...]
+
+
+def play(number: int) -> Line:
+    """Play one of the matches; the same number gives the same match."""
+    name = ("othello", "flag-strike")[number % 2]
+    arena = arenas.load(name)
+    pair = number // 2
+    bots = (_BOTS[pair % 3], _BOTS[pair // 3 % 3])
+    players = [
+        player(
+            arena,
+            seat,
+            bot,
+            robot=_ROBOTS[(pair + seat * pair // 6) % len(_ROBOTS)],
+            team=f"Team {seat}",
+            late_ticks=(11 * number + 5 * seat) % 50,
+        )
+        for seat, bot in enumerate(bots)
+    ]
+    points: list[Point] = []
+
+    def watch(frame: Frame) -> None:
+        scores = tuple(seat.score for seat in frame.seats)
+        now = Point(frame.beat, frame.phase, frame.clock_ticks, scores)
+        if not points or (points[-1].phase, points[-1].scores) != (now.phase, now.scores):
+            points.append(now)
+
+    made = Setup(
+        match_id=f"{name}-{number:02d}",
+        court="main",
+        match=1,
+        arena=name,
+        settings=arena.settings,
+        limits={},
+    )
+    simulate(made, players, None, watch)
+    return Line(arena.match.duration_s, tuple(points))
+
+
+class Moment(NamedTuple):
+    """A swing at a court."""
+
+    at_s: float
+    court: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A line on the clock of the event."""
+
+    name: str
+    line: Line
+    begins_s: float
+    _beats: tuple[int, ...]
+
+    @classmethod
+    def at(cls, number: int, line: Line, begins_s: float) -> "Placed":
+        """Place a line on the clock."""
+        beats = tuple(one.beat for one in line.points)
+        return cls(f"court-{number:02d}", line, begins_s, beats)
+
+    @property
+    def ends_s(self) -> float:
+        """When its last point is."""
+        return self.begins_s + self._beats[-1] * BEAT_S
+
+    def now(self, now_s: float) -> CourtNow:
+        """Return the court at a time."""
+        beat = round((now_s - self.begins_s) * BEATS_PER_S)
+        index = bisect_right(self._beats, beat) - 1
+        if index < 0:
+            return CourtNow(self.name, "", Phase.LOBBY, None, (0, 0))
+        point = self.line.points[index]
+        ticks = point.clock_ticks + (beat - point.beat) * (point.phase == Phase.PLAYING)
+        left_s = self.line.duration_s - ticks * BEAT_S
+        return CourtNow(self.name, self.name, Phase(point.phase), left_s, point.scores)
+
+    def moments(self) -> Iterator[Moment]:
+        """Give all swings of play."""
+        for before, after in pairwise(self.line.points):
+            size = abs(_ahead(after) - _ahead(before))
+            if size and before.phase == Phase.PLAYING:
+                yield Moment(self.begins_s + after.beat * BEAT_S, self.name, size)
+
+    def closing(self) -> list[tuple[float, float]]:
+        """Return when nobody may cut away: the parts of its last 30 s in which it is close."""
+        found: list[tuple[float, float]] = []
+        end_s = self.ends_s
+        from_s = end_s - LAST_S - 1.0
+        while from_s < end_s:  # finer than a look
+            if self.now(from_s).is_closing:
+                if found and from_s - found[-1][1] < 2 * BEAT_S:
+                    found[-1] = (found[-1][0], from_s)
+                else:
+                    found.append((from_s, from_s))
+            from_s += BEAT_S
+        return found
+
+
+class Cut(NamedTuple):
+    """When a court came on air."""
+
+    at_s: float
+    court: str
+    why: str
+
+
+def direct(courts: list[Placed], ahead_s: float) -> list[Cut]:
+    """Let the director watch an event; return all that was on air, the first court first."""
+    director = Director(ahead_s)
+    cuts: list[Cut] = []
+    end_s = max(one.ends_s for one in courts) + ahead_s + 10.0
+    for look in range(round(end_s / LOOK_S)):
+        now_s = look * LOOK_S
+        shot = director.look(now_s, [one.now(now_s) for one in courts])
+        assert shot is not None
+        if not cuts or cuts[-1].court != shot.court:
+            cuts.append(Cut(now_s - ahead_s, shot.court, shot.why))
+    return cuts
+
+
+def on_air(cuts: list[Cut], moment: Moment) -> bool:
+    """Return whether a moment's court is on air at the moment, or soon enough after it."""
+    first = bisect_right([one.at_s for one in cuts], moment.at_s) - 1
+    last = bisect_right([one.at_s for one in cuts], moment.at_s + LATE_S) - 1
+    return any(one.court == moment.court for one in cuts[max(0, first) : last + 1])
+
+
+def tenth(moments: list[Moment]) -> list[Moment]:
+    """Return the tenth with the largest swings, the earlier ones of equal ones, in time."""
+    ordered = sorted(moments, key=lambda one: (-one.size, one.at_s, one.court))
+    return sorted(ordered[: max(1, round(len(moments) / 10))])
+
+
+def of_windows(moments: list[Moment], window_s: float) -> list[Moment]:
+    """Return the tenth of all windows with the largest swing in them, each as that swing."""
+    best: dict[int, Moment] = {}
+    for one in sorted(moments):
+        window = int(one.at_s / window_s)
+        if window not in best or best[window].size < one.size:
+            best[window] = one
+    span_s = max(one.at_s for one in moments) - min(one.at_s for one in moments)
+    most = max(1, round(span_s / window_s / 10))
+    ordered = sorted(best.values(), key=lambda one: (-one.size, one.at_s, one.court))
+    return sorted(ordered[:most])
+
+
+class _Way(NamedTuple):
+    """A way to direct up to a moment; the court on air is known from where it is kept."""
+
+    shown: int
+    free_s: float
+    """The court on air is needed until then."""
+    cuts: tuple[float, ...]
+    """The last four, the oldest first."""
+
+
+def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
+    """Return how many moments a director can show who knows them all and keeps the rules.
+
+    A cut is made as early as the rules let it: when its court has shown what it was wanted for, and
+    the fourth cut before it is a minute old. An earlier cut never forbids anything later, so this
+    loses no way.
+    """
+    closing = {one.name: one.closing() for one in courts}
+    ways: dict[str, list[_Way]] = {}
+    for at_s, court, _ in moments:
+        none = (_NEVER,) * CUTS_MOST
+        found = [_Way(1, at_s, none)]  # it was on air from the beginning
+        for there, kept in ways.items():
+            for shown, free_s, cuts in kept:
+                if there == court:
+                    found.append(_Way(shown + 1, max(free_s, at_s), cuts))
+                    continue
+                cut_s = max(free_s, cuts[0] + MINUTE_S + LOOK_S)
+                for from_s, to_s in closing[there]:
+                    if from_s <= cut_s <= to_s:
+                        cut_s = to_s + BEAT_S
+                if cut_s <= at_s + LATE_S:
+                    found.append(_Way(shown + 1, max(cut_s, at_s), (*cuts[1:], cut_s)))
+        ways[court] = _undominated([*ways.get(court, []), *found])
+    return max(one.shown for kept in ways.values() for one in kept)
+
+
+def _undominated(ways: list[_Way]) -> list[_Way]:
+    """Leave out each way than which another one is as good in everything."""
+    kept: list[_Way] = []
+    for one in sorted(set(ways), key=lambda way: (-way.shown, way.free_s, way.cuts)):
+        if not any(
+            other.free_s <= one.free_s
+            and all(mine <= its for mine, its in zip(other.cuts, one.cuts, strict=True))
+            for other in kept
+        ):
+            kept.append(one)
+    return kept
+
+
+def measure(courts: list[Placed], ahead_s: float) -> dict[str, Any]:
+    """Direct an event, and count what was on air and how often a rule was broken."""
+    cuts = direct(courts, ahead_s)
+    times = [one.at_s for one in cuts[1:]]
+    by_name = {one.name: one for one in courts}
+    return {
+        "cuts": len(times),
+        "most_a_minute": max(
+            (bisect_right(times, at_s + MINUTE_S) - index for index, at_s in enumerate(times)),
+            default=0,
+        ),
+        "left_closing": sum(
+            by_name[before.court].now(after.at_s).is_closing for before, after in pairwise(cuts)
+        ),
+        **{
+            kind: sum(on_air(cuts, one) for one in wanted)
+            for kind, wanted in largest(courts).items()
+        },
+    }
+
+
+def largest(courts: list[Placed]) -> dict[str, list[Moment]]:
+    """Return the moments that count, by kind."""
+    moments = sorted(moment for one in courts for moment in one.moments())
+    return {
+        "windows": of_windows(moments, WINDOW_S),
+        "seconds": of_windows(moments, 1.0),
+        "changes": tenth(moments),
+    }
+
+
+def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
+    """Direct some events, and return the shares that were on air, and the worst of the rules."""
+    found = [measure(one, ahead_s) for one in events]
+    wanted = [largest(one) for one in events]
+    return {
+        "cuts_a_minute": round(
+            60 * sum(one["cuts"] for one in found) / sum(map(_length_s, events)), 2
+        ),
+        "most_a_minute": max(one["most_a_minute"] for one in found),
+        "left_closing": sum(one["left_closing"] for one in found),
+        **{
+            kind: round(sum(one[kind] for one in found) / sum(len(one[kind]) for one in wanted), 3)
+            for kind in KINDS
+        },
+    }
+
+
+def best(events: list[list[Placed]]) -> dict[str, float]:
+    """Return the shares that a director could have on air who knows the future."""
+    wanted = [largest(one) for one in events]
+    return {
+        kind: round(
+            sum(best_possible(one[kind], event) for one, event in zip(wanted, events, strict=True))
+            / sum(len(one[kind]) for one in wanted),
+            3,
+        )
+        for kind in KINDS
+    }
+
+
+def _length_s(courts: list[Placed]) -> float:
+    return max(one.ends_s for one in courts)
+
+
+def _ahead(point: Point) -> int:
+    return point.scores[0] - point.scores[1]
+
+
+def lines(kept: Path | None) -> list[Line]:
+    """Play all matches, or read them from a file; write them into it if it is not there."""
+    if kept is not None and kept.exists():
+        return msgspec.json.decode(kept.read_bytes(), type=list[Line])
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(play, range(COURTS)))
+    if kept is not None:
+        kept.write_bytes(msgspec.json.encode(found))
+    return found
+
+
+def arranged(played: list[Line], number: int) -> list[Placed]:
+    """Put all matches on one clock: number 0 all at once, the others by chance."""
+    rng = random.Random(1000 + number)
+    begins = [rng.uniform(0, _SPREAD_S) if number else 0.0 for _ in played]
+    return [Placed.at(index, line, begins[index]) for index, line in enumerate(played)]
+
+
+def main() -> None:
+    """Run the benchmark, print its results, and exit with 1 if an aim is missed."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.director", description=__doc__)
+    parser.add_argument("--events", type=int, default=20, help="arrangements by chance")
+    parser.add_argument("--lines", type=Path, help="file that keeps the matches")
+    options = parser.parse_args()
+    played = lines(options.lines)
+    spread = [arranged(played, number + 1) for number in range(options.events)]
+    found: dict[str, Any] = {}
+    for name, events in (("spread", spread), ("at_once", [arranged(played, 0)])):
+        found[name] = {
+            "moments": {kind: sum(len(largest(one)[kind]) for one in events) for kind in KINDS},
+            "ahead": told(events, AHEAD_S),
+            "not_ahead": told(events, 0.0),
+            "best": best(events),
+        }
+    print(json.dumps(found, indent=1))
+    runs = [found[name][way] for name in found for way in ("ahead", "not_ahead")]
+    kept = all(one["most_a_minute"] <= CUTS_MOST and not one["left_closing"] for one in runs)
+    sys.exit(not (kept and found["spread"]["ahead"]["windows"] >= AIM))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,187 @@
+"""`python -m benchmarks.odds`: do the odds of forks come true, and do highlights miss a swing?
+
+Calibration: plays many short matches. Games, openings, bots and delays are drawn by chance. At some
+random moments of each match, forks with the same bots give the odds. Of all moments at which a seat
+had a chance of 70 %, about 70 % must have been won in the match itself. A moment is counted for
+each seat, because the chance of the other seat is the rest; a draw is half a win.
+
+Highlights (`--highlights`): of the first matches, the odds at every second of play give the five
+largest swings. The highlights, which look closely only where the odds change, must contain them.
+
+Rows are appended to a file, so a benchmark that was stopped goes on where it was.
+"""
+
+import argparse
+import json
+import random
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.simulate import player, simulate
+from lacoc_server.simulate.forks import odds
+from lacoc_server.simulate.forks.chances import ChanceJob, Course, Wish, compute, margins
+from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.studio.workers import Workers
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.words import Phrase
+
+_BOTS = ("straight", "nearest", "planner")
+_WEIGHTS = (1, 3, 3)
+"""How often each bot plays; with `straight`, most matches are decided from the start."""
+_SMALL = {"pitch_m": 0.15, "disc_radius_m": 0.0675}
+"""An Othello field of half the size, on which much happens in a short time."""
+_GAMES: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("othello", {"game": {**_SMALL, "opening": "reversi"}}),
+    ("othello", {"game": {**_SMALL, "opening": "checkers"}}),
+    ("flag-strike", {}),
+)
+_BIN = 0.05
+_LARGEST = 5
+
+
+def main() -> int:
+    """Play the matches that are not in the file yet, and print how the odds came true."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.odds", description=__doc__)
+    parser.add_argument("--matches", type=int, default=200)
+    parser.add_argument("--moments", type=int, default=2, help="of each match")
+    parser.add_argument("--forks", type=int, default=5, help="at each moment")
+    parser.add_argument("--seconds", type=float, default=15.0, help="of play, each match")
+    parser.add_argument("--highlights", type=int, default=0, help="matches whose swings are sought")
+    parser.add_argument("--jobs", type=int, default=None)
+    parser.add_argument("--rows", type=Path, default=Path("odds.jsonl"), help="file of results")
+    options = parser.parse_args()
+    one: Callable[..., dict[str, Any]]
+    if options.highlights:
+        numbers, one = range(options.highlights), partial(_swings, options.forks, options.seconds)
+    else:
+        numbers = range(options.matches)
+        one = partial(_odds, options.moments, options.forks, options.seconds)
+    rows = {row["number"]: row for row in _read(options.rows)}
+    with Workers(options.jobs, background=True, limit_s=3600.0) as workers:
+        futures = [workers.submit(one, number) for number in numbers if number not in rows]
+        for future in futures:
+            row = future.result()
+            rows[row["number"]] = row
+            with options.rows.open("a", encoding="utf-8") as file:
+                file.write(f"{json.dumps(row)}\n")
+    chosen = [rows[number] for number in numbers]
+    return _tell_swings(chosen) if options.highlights else _tell_odds(chosen)
+
+
+def _read(path: Path) -> Iterator[dict[str, Any]]:
+    if path.exists():
+        yield from map(json.loads, path.read_text(encoding="utf-8").splitlines())
+
+
+def _odds(moments: int, forks: int, seconds: float, number: int) -> dict[str, Any]:
+    """Play a match, and ask for its odds at some moments."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, bots, chance = _match(Path(folder), number, seconds)
+        course = Course(source)
+        assert course.end is not None
+        asked = []
+        for beat in sorted(chance.sample(course.playing, moments)):
+            variants = tuple(range(1, forks + 1))
+            file = str(Path(folder, f"{source.match_id}.mcap"))
+            found = margins(ChanceJob(file=file, beat=beat, bots=bots, variants=variants))
+            assert not isinstance(found, Phrase), found
+            asked.append({"clock_s": course.clock_s(beat), "margins": found})
+        return {"number": number, "won": course.end.chance, "bots": bots, "asked": asked}
+
+
+def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
+    """Play a match; return the odds at every second, and the highlights."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, bots, _ = _match(Path(folder), number, seconds)
+        file = str(Path(folder, f"{source.match_id}.mcap"))
+        near, far = (
+            Wish(file=file, bots=bots, forks=forks, step_s=step_s, closer=closer)
+            for step_s, closer in ((1.0, 0), (4.0, 6))
+        )
+        curve, looked = (
+            [*compute(wish, _Here(), None, lambda done, of: None)][-1] for wish in (near, far)
+        )
+        chosen = odds.highlights(looked.moments)
+        largest = odds.swings(curve.moments)[:_LARGEST]
+        return {
+            "number": number,
+            "largest": [(one.before.beat, one.after.beat, one.change) for one in largest],
+            "highlights": [(one.before.beat, one.after.beat, one.change) for one in chosen],
+            "moments": (len(curve.moments), len(looked.moments)),
+        }
+
+
+class _Here:
+    """Plays forks in this process."""
+
+    def submit(
+        self, function: Callable[[ChanceJob], tuple[float, ...] | Phrase], job: ChanceJob, /
+    ) -> "Future[tuple[float, ...] | Phrase]":
+        done: Future[tuple[float, ...] | Phrase] = Future()
+        done.set_result(function(job))
+        return done
+
+
+def _match(
+    folder: Path, number: int, seconds: float
+) -> tuple[Source, tuple[str, str], random.Random]:
+    """Play a match that is drawn by its number."""
+    chance = random.Random(number)
+    name, settings = chance.choice(_GAMES)
+    rules = {"match": {"duration_s": seconds, "countdown_s": 0.2}}
+    arena = arenas.load(name, {**settings, **rules})
+    match_id = f"match-{number:04d}"
+    setup = Setup(
+        match_id=match_id, court="main", match=1, arena=name, settings=arena.settings, limits={}
+    )
+    left, right = chance.choices(_BOTS, _WEIGHTS, k=2)
+    late = [chance.randrange(100), chance.randrange(100)]
+    players = [
+        player(arena, seat, bot, late_ticks=late[seat]) for seat, bot in enumerate((left, right))
+    ]
+    simulate(setup, players, folder)
+    return read_source(folder / f"{match_id}.mcap"), (left, right), chance
+
+
+def _tell_odds(rows: list[dict[str, Any]]) -> int:
+    said: list[tuple[float, float]] = []
+    for row in rows:
+        for one in row["asked"]:
+            chance = odds.chance(one["margins"])
+            said += [(chance, row["won"]), (1 - chance, 1 - row["won"])]
+    print(f"{len(rows)} matches, {len(said) // 2} moments")
+    for middle in (0.5, 0.6, 0.7, 0.8, 0.9, 0.975):
+        chosen = [won for chance, won in said if abs(chance - middle) <= _BIN]
+        if chosen:
+            share = sum(chosen) / len(chosen)
+            print(f"said {100 * middle:.0f} ± 5 %: {len(chosen)}, won {100 * share:.0f} %")
+    brier = sum((chance - won) ** 2 for chance, won in said) / len(said)
+    print(f"Brier score {brier:.3f} (0.25: nothing is known)")
+    chosen = [won for chance, won in said if abs(chance - 0.7) <= _BIN]
+    return int(not chosen or not 0.6 <= sum(chosen) / len(chosen) <= 0.8)
+
+
+def _tell_swings(rows: list[dict[str, Any]]) -> int:
+    found = of = 0
+    for row in rows:
+        for first, last, change in row["largest"]:
+            if not change:
+                continue
+            of += 1
+            found += any(a < last and first < b for a, b, _ in row["highlights"])
+    asked = [sum(row["moments"][one] for row in rows) for one in range(2)]
+    print(
+        f"{len(rows)} matches: highlights contain {found} of {of} of the largest swings "
+        f"({100 * found / of:.0f} %), from {asked[1]} moments in place of {asked[0]}"
+    )
+    return int(found < 0.8 * of)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,156 @@
+"""Chooses the court that is on air. Pure: the same looks give the same cuts."""
+
+from bisect import bisect_left
+from collections import deque
+from collections.abc import Mapping, Sequence
+from typing import Literal, NamedTuple
+
+from lacoc_client.director.courts import CourtNow
+from lacoc_client.director.moments import Moment, Track
+from lacoc_client.director.moments import Why as Moving
+from lacoc_client.director.plan import CUTS_MOST, Prices, cuts_left, is_worth_it, may_cut
+
+AHEAD_S = 15.0
+"""How much later than the courts play all is shown [s]: the director knows what comes."""
+RESULT_S = 6.0
+"""A result stays on air for this time [s]."""
+_EARLY_S = 1.0
+"""A cut comes so much before its moment, if that is known in time [s]."""
+_LATE_S = 0.5
+"""A moment that is longer ago is no reason to cut any more [s]."""
+_EMPTY_MOST_S = 20.0
+"""A court without a match stays on air no longer, if another one has a match [s]."""
+_KNOWN_S = 180.0
+"""Moments of this time say what a moment is worth [s]."""
+
+Why = Moving | Literal["first", "played", "gone"]
+"""Why a court is on air: a moment, or
+
+first: nothing was on air before. played: the match before it is over, and here is one. gone: the
+court before it has vanished.
+"""
+
+
+class Shot(NamedTuple):
+    """What is on air."""
+
+    court: str
+    why: Why
+    since_s: float
+    """When it came on air, by the time that is shown [s]."""
+
+
+class Director:
+    """Looks at all courts several times a second, and says which one is on air.
+
+    What is on air is shown later than it is played, by `ahead_s`. So the director knows what comes,
+    and cuts to a moment before it happens. It never cuts away from the last 30 s of a close match
+    nor from a fresh result, and never cuts more than four times in any minute. Only a court that
+    has vanished is left in spite of the first two rules.
+
+    Args:
+        ahead_s: how much later all is shown [s].
+    """
+
+    def __init__(self, ahead_s: float = AHEAD_S) -> None:
+        self._ahead_s = ahead_s
+        self._shot: Shot | None = None
+        self._looks: deque[tuple[float, Mapping[str, CourtNow]]] = deque()
+        """Those from the one that is shown now to the newest."""
+        self._tracks: dict[str, Track] = {}
+        self._moments: deque[Moment] = deque()
+        """Those of the last minutes and those that come, in time."""
+        self._cuts: deque[float] = deque(maxlen=CUTS_MOST)
+        self._empty: tuple[str, str, float] = ("", "", 0.0)
+        """The court on air, its match, and when play was last shown there."""
+
+    def look(self, now_s: float, courts: Sequence[CourtNow]) -> Shot | None:
+        """Take in how all courts stand, and choose.
+
+        Args:
+            now_s: the time, by a clock that never goes back [s].
+            courts: every court that can be shown; who is missing has vanished.
+
+        Returns:
+            What is on air, of what was played `ahead_s` ago; None until there is a court. In the
+            first `ahead_s` the first look stays.
+        """
+        self._see(now_s, courts)
+        shown_s = now_s - self._ahead_s
+        while len(self._looks) > 1 and self._looks[1][0] <= shown_s:
+            self._looks.popleft()
+        shown = self._looks[0][1]
+        if self._shot is None:
+            if shown:
+                self._shot = Shot(self._richest(shown_s, shown), "first", shown_s)
+            return self._shot
+        self._note_empty(shown_s, shown.get(self._shot.court))
+        if may_cut(self._cuts, shown_s):
+            next_ = self._next(shown_s, shown, self._shot)
+            if next_ is not None:
+                self._shot = next_
+                self._cuts.append(shown_s)
+        return self._shot
+
+    def _see(self, now_s: float, courts: Sequence[CourtNow]) -> None:
+        self._looks.append((now_s, {one.name: one for one in courts}))
+        self._tracks = {one.name: self._tracks.get(one.name) or Track(one) for one in courts}
+        for one in courts:
+            self._moments.extend(self._tracks[one.name].see(now_s, one))
+        while self._moments and self._moments[0].at_s < now_s - _KNOWN_S:
+            self._moments.popleft()
+
+    def _next(self, shown_s: float, shown: Mapping[str, CourtNow], shot: Shot) -> Shot | None:
+        """Return what to cut to; None: stay."""
+        now = shown.get(shot.court)
+        if now is None:
+            return Shot(self._richest(shown_s, shown), "gone", shown_s) if shown else None
+        if now.is_closing:
+            return None
+        empty_s = shown_s - self._empty[2]
+        if now.is_over and empty_s < RESULT_S:
+            return None
+        moment = self._moment(shown_s, shown, shot.court)
+        if moment is not None:
+            return Shot(moment.court, moment.why, shown_s)
+        richest = self._richest(shown_s, shown)
+        if now.is_played or not shown[richest].is_played:
+            return None
+        if cuts_left(self._cuts, shown_s) > 1 or empty_s > _EMPTY_MOST_S:
+            return Shot(richest, "played", shown_s)
+        return None
+
+    def _note_empty(self, shown_s: float, now: CourtNow | None) -> None:
+        """Note since when the court on air is without play."""
+        if now is not None and (now.is_played or self._empty[:2] != (now.name, now.match)):
+            self._empty = (now.name, now.match, shown_s)
+
+    def _moment(self, shown_s: float, shown: Mapping[str, CourtNow], on_air: str) -> Moment | None:
+        """Return the moment at another court to which to cut now; None: none is worth it."""
+        coming = [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
+        due = [
+            one
+            for one in coming
+            if one.at_s <= shown_s + _EARLY_S and one.court != on_air and one.court in shown
+        ]
+        if not due:
+            return None
+        prices = Prices(self._moments)
+        best = max(due, key=lambda one: (one.points, -one.at_s))
+        later = [one for one in coming if one != best]
+        return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
+
+    def _locked(self, court: str, at_s: float) -> bool:
+        """Return whether a court that plays is in the last 30 s of a close match at a time."""
+        index = bisect_left(self._looks, at_s, key=lambda look: look[0])
+        courts = self._looks[min(index, len(self._looks) - 1)][1]
+        return court in courts and courts[court].is_closing
+
+    def _richest(self, shown_s: float, shown: Mapping[str, CourtNow]) -> str:
+        """Return the court of which most is to be seen soon; of equal ones the first."""
+        worth = {name: (one.is_played, one.stake) for name, one in shown.items()}
+        soon = dict.fromkeys(shown, 0.0)
+        for one in self._moments:
+            if one.court in soon and one.at_s >= shown_s - _LATE_S:
+                soon[one.court] += one.points**2
+        return max(shown, key=lambda name: (worth[name][0], soon[name], worth[name][1]))

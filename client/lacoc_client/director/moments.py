@@ -1,0 +1,71 @@
+"""What is worth seeing at a court, found by comparing two looks at it. Pure."""
+
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+from lacoc_client.director.courts import CourtNow
+
+LEAD_POINTS = 2.0
+"""A change of the lead counts as so many points more."""
+CLOSING_POINTS = 4.0
+"""The last 30 s of a close match count as a swing of so many points."""
+_STAKE_POINTS = 4.0
+"""The beginning of a match with a stake of 2 counts as a swing of so many points."""
+
+Why = Literal["lead", "swing", "closing", "stake"]
+"""What makes a moment.
+
+lead: another seat leads. swing: the difference in points changed. closing: the last 30 s of a close
+match begin. stake: a match begins at which more than usual is at stake.
+"""
+
+
+class Moment(NamedTuple):
+    """A moment that is worth seeing."""
+
+    at_s: float
+    court: str
+    points: float
+    """What it is worth, as a swing of so many points at a match of the usual stake."""
+    why: Why
+
+
+class Track:
+    """Follows one court, and finds its moments.
+
+    Args:
+        now: the court at the first look.
+    """
+
+    def __init__(self, now: CourtNow) -> None:
+        self._now = now
+        self._leader = _sign(now.ahead)
+        """Sign of the last difference that was not 0."""
+
+    def see(self, now_s: float, now: CourtNow) -> Iterator[Moment]:
+        """Take in how the court stands; give what happened since the last look.
+
+        Args:
+            now_s: the time of the look [s].
+            now: the court.
+        """
+        before, self._now = self._now, now
+        if now.match != before.match:
+            self._leader = 0
+        if not now.is_played:
+            return
+        if now.stake > 1 and (now.match != before.match or not before.is_played):
+            yield Moment(now_s, now.name, _STAKE_POINTS * (now.stake - 1), "stake")
+        if now.is_closing and not (before.is_closing and now.match == before.match):
+            yield Moment(now_s, now.name, CLOSING_POINTS * now.stake, "closing")
+        points = abs(now.ahead - before.ahead)
+        leader = _sign(now.ahead)
+        is_lead = bool(leader and self._leader and leader != self._leader)
+        self._leader = leader or self._leader
+        if now.match == before.match and before.is_played and points:
+            worth = (points + LEAD_POINTS * is_lead) * now.stake
+            yield Moment(now_s, now.name, worth, "lead" if is_lead else "swing")
+
+
+def _sign(number: float) -> int:
+    return (number > 0) - (number < 0)

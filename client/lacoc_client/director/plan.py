@@ -1,0 +1,112 @@
+"""Compares ways through the moments that come, under the limit of cuts. Pure."""
+
+import math
+from collections.abc import Callable, Sequence
+
+from lacoc_client.director.moments import Moment
+
+CUTS_MOST = 4
+"""Most cuts in any minute."""
+MINUTE_S = 60.0
+_SPARE_S = 0.01  # sums of times are not exact
+LEAST_S = 2.0
+"""Least time between two cuts [s]."""
+
+_RANKS = (0.03, 0.05, 0.1, 0.2)
+"""What a cut costs while 1, 2, 3 or 4 cuts are left: nearly as much as the moment than which this
+share of all moments is better."""
+_NEARLY = 0.9
+_LOOKED_AT = 0.15
+"""Only the best moments are planned for: this share of all."""
+_KNOWN_LEAST = 20
+_AT_FIRST = 6.0
+"""What the best tenth is worth at least, before so many moments are known [points]."""
+_MOST = 8
+"""So many moments are planned for at once."""
+
+
+def cuts_left(cuts: Sequence[float], at_s: float) -> int:
+    """Return how many cuts may be made now, of those that any minute may have.
+
+    Args:
+        cuts: the times of earlier cuts.
+        at_s: the time [s].
+    """
+    return CUTS_MOST - sum(at_s - one <= MINUTE_S + _SPARE_S for one in cuts)
+
+
+def may_cut(cuts: Sequence[float], at_s: float) -> bool:
+    """Return whether another cut may be made now; arguments are those of `cuts_left`."""
+    return cuts_left(cuts, at_s) > 0 and not (cuts and at_s - cuts[-1] < LEAST_S)
+
+
+class Prices:
+    """What moments and cuts are worth, by all moments of the last minutes.
+
+    Args:
+        known: those moments, at all courts.
+    """
+
+    def __init__(self, known: Sequence[Moment]) -> None:
+        self._sorted = sorted((one.points for one in known), reverse=True)
+        self._least = self._rank(_LOOKED_AT)
+        self._costs = [_NEARLY * self._rank(share) ** 2 for share in _RANKS]
+
+    def value(self, moment: Moment) -> float:
+        """Return what a moment is worth on air; 0 for most moments.
+
+        It is the square of its points: one swing of ten is more than two of five.
+        """
+        return moment.points * moment.points if moment.points >= self._least else 0.0
+
+    def cost(self, left: int) -> float:
+        """Return what a cut costs while so many are left."""
+        return self._costs[left - 1]
+
+    def _rank(self, share: float) -> float:
+        if len(self._sorted) < _KNOWN_LEAST:
+            return _AT_FIRST * math.sqrt(0.1 / share)
+        return self._sorted[max(0, int(len(self._sorted) * share) - 1)]
+
+
+def is_worth_it(
+    on_air: str,
+    moment: Moment,
+    coming: Sequence[Moment],
+    cuts: Sequence[float],
+    prices: Prices,
+    locked: Callable[[str, float], bool],
+) -> bool:
+    """Return whether to cut to a moment, or rather to stay and cut to a later one.
+
+    Args:
+        on_air: the court on air.
+        moment: a moment at another court, now.
+        coming: the moments after it that are known, in time.
+        cuts: the times of earlier cuts.
+        prices: what moments and cuts are worth.
+        locked: tells whether nobody may cut away from a court at a time.
+    """
+    worth = prices.value(moment)
+    if not worth:
+        return False
+    best = sorted(coming, key=lambda one: (-prices.value(one), one.at_s))[:_MOST]
+    ahead = sorted(one for one in best if prices.value(one))
+
+    def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
+        """Return what the best way through the moments from an index on is worth."""
+        if index == len(ahead):
+            return 0.0
+        one = ahead[index]
+        if one.court == court:
+            return prices.value(one) + way(index + 1, court, cuts)
+        stay = way(index + 1, court, cuts)
+        gain = prices.value(one) - prices.cost(max(1, cuts_left(cuts, one.at_s)))
+        if gain <= 0 or not may_cut(cuts, one.at_s) or locked(court, one.at_s):
+            return stay
+        return max(stay, gain + way(index + 1, one.court, (*cuts, one.at_s)))
+
+    made = tuple(cuts)
+    go = worth - prices.cost(max(1, cuts_left(cuts, moment.at_s)))
+    go += way(0, moment.court, (*made, moment.at_s))
+    return go > way(0, on_air, made)

@@ -1,0 +1,70 @@
+"""The newest result of each court, as late as everything else is shown. Pure."""
+
+from collections import deque
+from collections.abc import Sequence
+
+import msgspec
+
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase
+
+_SHOWN = 6
+"""So many of the newest results are shown."""
+
+
+class Result(msgspec.Struct, frozen=True):
+    """How a match ended."""
+
+    court: str
+    match: str
+    """Names the match."""
+    title: str
+    """Title of the game."""
+    fixture: Phrase | None
+    """What the match is in its contest; None: it is in none."""
+    teams: tuple[str, ...]
+    """Names of the teams by seat."""
+    scores: tuple[int, ...]
+    phase: Phase
+
+
+class Results:
+    """Keeps the newest result of each court.
+
+    Args:
+        behind_s: how much later than they are known results are shown [s].
+    """
+
+    def __init__(self, behind_s: float) -> None:
+        self._behind_s = behind_s
+        self._known: dict[str, Result] = {}
+        """By court, the newest last."""
+        self._later: deque[tuple[float, tuple[Result, ...]]] = deque()
+        """What is shown from a time on."""
+        self._shown: tuple[Result, ...] = ()
+
+    def see(self, now_s: float, over: Sequence[Result], going: Sequence[tuple[str, str]]) -> None:
+        """Take in how the courts stand.
+
+        Args:
+            now_s: the time, by a clock that never goes back [s].
+            over: the matches that are over; a referee may still correct one.
+            going: court and match of those that are not over, also if they were.
+        """
+        before = tuple(self._known.values())
+        for court, match in going:
+            if court in self._known and self._known[court].match == match:
+                del self._known[court]
+        for one in over:
+            known = self._known.get(one.court)
+            if known is not None and known.match != one.match:
+                del self._known[one.court]  # the new one is the newest of all
+            self._known[one.court] = one
+        if (after := tuple(self._known.values())) != before:
+            self._later.append((now_s + self._behind_s, after))
+
+    def shown(self, now_s: float) -> tuple[Result, ...]:
+        """Return what is shown at a time, the newest first."""
+        while self._later and self._later[0][0] <= now_s:
+            self._shown = self._later.popleft()[1]
+        return self._shown[-_SHOWN:][::-1]

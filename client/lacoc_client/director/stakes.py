@@ -1,0 +1,39 @@
+"""How much a match counts: what it is in its contest, as a weight. Pure."""
+
+from lacoc_shared.words import Phrase
+
+USUAL = 1.0
+"""Weight of a match whose stake is not known."""
+
+_WEIGHTS = {
+    "fixture.deciding-final": 3.0,
+    "fixture.final": 3.0,
+    "fixture.semi-final": 2.0,
+    "fixture.third-place": 1.5,
+    "fixture.quarter-final": 1.5,
+    "fixture.knockout": 1.25,
+    "fixture.losers": 1.25,
+}
+"""By the code of the match in its contest; all others count as usual."""
+
+_LAST_GAME = 1.25
+"""What the last game of a match counts more: it decides the match."""
+
+
+def stake(fixture: Phrase | None) -> float:
+    """Return the weight of a match.
+
+    Args:
+        fixture: what the match is in its contest, a phrase of `fixture.*`; None: it is in none.
+
+    Returns:
+        `USUAL` or more.
+    """
+    if fixture is None:
+        return USUAL
+    if fixture.code == "fixture.game":
+        match = fixture.values.get("match")
+        games = fixture.values.get("games")
+        last = games is not None and fixture.values.get("game") == games
+        return stake(match if isinstance(match, Phrase) else None) * (_LAST_GAME if last else 1)
+    return _WEIGHTS.get(fixture.code, USUAL)

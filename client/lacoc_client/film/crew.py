@@ -1,0 +1,139 @@
+"""Draws the pictures of a film in several browsers at a time, and gives them in order.
+
+Each browser gets all pictures in order, but draws only each N-th one: the automatic camera depends
+on what it has shown before. So a film does not depend on how many browsers draw it.
+"""
+
+import contextlib
+import threading
+from collections.abc import Iterator, Sequence
+from queue import Empty, Full, Queue
+from typing import TypeVar
+
+from lacoc_client.film.camera_page import CameraPage, camera_page
+from lacoc_client.film.look import Look
+from lacoc_client.film.plan import Picture
+
+T = TypeVar("T")
+
+_AHEAD = 4
+"""Pictures that a browser may be ahead of the film."""
+_LOOK_S = 0.2
+
+
+class Drawing:
+    """A browser that draws its part of the pictures, on a thread of its own.
+
+    Args:
+        address: the page's address.
+        look: how the film looks.
+        number: which of the browsers this is, from 0.
+        of: how many browsers there are.
+    """
+
+    def __init__(self, address: str, look: Look, number: int, of: int) -> None:
+        self._address, self._look = address, look
+        self._number, self._of = number, of
+        self._wanted: Queue[Sequence[Picture]] = Queue()
+        self._ends: Queue[tuple[int, int] | BaseException] = Queue()
+        self._drawn: Queue[bytes | BaseException] = Queue(_AHEAD)
+        self._stopped = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def ends(self) -> tuple[int, int]:
+        """Wait until the page is open; return the first and the last beat of the replay.
+
+        Raises:
+            UserError: if the page can't be opened.
+        """
+        return _got(self._ends)
+
+    def begin(self, pictures: Sequence[Picture]) -> None:
+        """Begin to draw; to be called once."""
+        self._wanted.put(pictures)
+
+    def next(self) -> bytes:
+        """Wait for this browser's next picture, and return it as PNG.
+
+        Raises:
+            UserError: if it can't be drawn.
+        """
+        return _got(self._drawn)
+
+    def stop(self) -> None:
+        """End the browser."""
+        self._stopped.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            with camera_page(self._address, self._look) as page:
+                self._ends.put((page.first, page.last))
+                while not self._stopped.is_set():
+                    with contextlib.suppress(Empty):
+                        self._draw(page, self._wanted.get(timeout=_LOOK_S))
+        except BaseException as error:  # whoever waits for a picture must get it
+            self._ends.put(error)
+            self._put(error)
+
+    def _draw(self, page: CameraPage, pictures: Sequence[Picture]) -> None:
+        since = 0
+        for index in range(self._number, len(pictures), self._of):
+            if self._stopped.is_set():
+                return
+            self._put(page.picture(pictures[since : index + 1]))
+            since = index + 1
+
+    def _put(self, picture: bytes | BaseException) -> None:
+        while not self._stopped.is_set():
+            with contextlib.suppress(Full):
+                self._drawn.put(picture, timeout=_LOOK_S)
+                return
+
+
+class Crew:
+    """All browsers that draw a record; see `drawn_by`."""
+
+    def __init__(self, drawings: Sequence[Drawing]) -> None:
+        self._drawings = drawings
+
+    def ends(self) -> tuple[int, int]:
+        """Wait until all pages are open; return the first and the last beat of the replay."""
+        *_, ends = [drawing.ends() for drawing in self._drawings]
+        return ends
+
+    def pictures(self, pictures: Sequence[Picture]) -> Iterator[bytes]:
+        """Yield pictures as PNG, in order; to be called once.
+
+        Raises:
+            UserError: if one can't be drawn.
+        """
+        for drawing in self._drawings:
+            drawing.begin(pictures)
+        for index in range(len(pictures)):
+            yield self._drawings[index % len(self._drawings)].next()
+
+
+@contextlib.contextmanager
+def drawn_by(count: int, address: str, look: Look) -> Iterator[Crew]:
+    """Open some browsers with the page of a record; they end with the block.
+
+    Args:
+        count: how many.
+        address: the page's address.
+        look: how the film looks.
+    """
+    drawings = [Drawing(address, look, number, count) for number in range(count)]
+    try:
+        yield Crew(drawings)
+    finally:
+        for drawing in drawings:
+            drawing.stop()
+
+
+def _got(queue: "Queue[T | BaseException]") -> T:
+    found = queue.get()
+    if isinstance(found, BaseException):
+        raise found
+    return found

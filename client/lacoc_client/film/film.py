@@ -1,0 +1,134 @@
+"""Makes a film of one record or of several, and stills of it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lacoc_client.film import moments, plan
+from lacoc_client.film.camera_page import camera_page
+from lacoc_client.film.crew import drawn_by
+from lacoc_client.film.look import Look
+from lacoc_client.film.moments import Moment
+from lacoc_client.film.movie import Movie, movie
+from lacoc_client.film.plan import Picture, Shot
+from lacoc_client.film.site import served
+from lacoc_shared.command import keep
+from lacoc_shared.record import files
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import BEATS_PER_S
+
+HIGHLIGHTS = 5
+"""How many moments the highlights of a match have."""
+REEL = 2
+"""How many moments a reel has of each match."""
+_AFTER_BEATS = BEATS_PER_S // 2
+"""How long after its moment a still is."""
+
+Progress = Callable[[int, int], None]
+"""Called with how many pictures are in the film, and how many of them are known to come."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A record in a film."""
+
+    record: Record
+    paths: tuple[Path, ...]
+    count: int | None = None
+    """How many moments are shown; None: the whole match."""
+    chosen: tuple[Moment, ...] = ()
+    """The moments to choose from; none: those in which the score changed."""
+    opening: bool = False
+    """Whether the card with the teams is shown first."""
+
+    @property
+    def moments(self) -> list[Moment]:
+        """The moments to choose from."""
+        return list(self.chosen) or moments.by_score(self.record)
+
+    def shots(self, first: int, last: int) -> list[Shot]:
+        """Return what is shown of the match.
+
+        Args:
+            first: beat at which a replay begins.
+            last: beat at which it ends.
+        """
+        if self.count is None:
+            return plan.whole(first, last)
+        best = moments.largest(self.moments, self.count)
+        return plan.highlights(best, first, last, opening=self.opening)
+
+    def still(self, first: int, last: int) -> int:
+        """Return the beat of the match's still: just after its largest moment, else the middle."""
+        best = moments.largest(self.moments, 1)
+        beat = best[0].beat + _AFTER_BEATS if best else (first + last) // 2
+        return min(last, max(first, beat))
+
+
+def part(path: Path, count: int | None = None, *, opening: bool = False) -> Part:
+    """Read a record for a film.
+
+    Args:
+        path: a packed file, or a segment.
+        count: how many moments are shown; None: the whole match.
+        opening: whether the card with the teams is shown first.
+
+    Raises:
+        UserError: if it is no record, or is damaged so far that nothing can be shown.
+    """
+    paths = tuple(files.record_paths(path))
+    return Part(Record.read(paths), paths, count, opening=opening)
+
+
+def make(
+    parts: Sequence[Part], out: Path, look: Look, fps: int, browsers: int, progress: Progress
+) -> int:
+    """Make a film.
+
+    Args:
+        parts: its records, in order.
+        out: the film's path.
+        look: how it looks.
+        fps: pictures a second.
+        browsers: how many draw at a time.
+        progress: called after each picture.
+
+    Returns:
+        The number of its pictures.
+
+    Raises:
+        UserError: if a record can't be shown, there is no browser, or the film can't be written.
+    """
+    with movie(out, look.width, look.height, fps) as film:
+        for one in parts:
+            _add(film, one, look, fps, browsers, progress)
+    return film.count
+
+
+def still(one: Part, out: Path, look: Look) -> None:
+    """Write a picture of a record's largest moment as PNG; an older file of the name is kept.
+
+    Args:
+        one: the record.
+        out: the picture's path.
+        look: how it looks.
+
+    Raises:
+        UserError: as for `make`.
+    """
+    with served(one.paths) as site, camera_page(site.address(look), look) as page:
+        keep.save(out, page.picture(_way(one.still(page.first, page.last), page.first)))
+
+
+def _add(film: Movie, one: Part, look: Look, fps: int, browsers: int, progress: Progress) -> None:
+    with served(one.paths) as site, drawn_by(browsers, site.address(look), look) as crew:
+        pictures = plan.pictures(one.shots(*crew.ends()), fps)
+        before = film.count
+        for png in crew.pictures(pictures):
+            film.add(png)
+            progress(film.count, before + len(pictures))
+
+
+def _way(beat: int, first: int) -> list[Picture]:
+    """Return the pictures that lead to a beat: so the automatic camera is where it is in a film."""
+    return plan.pictures([Shot(max(first, beat - plan.RUN_UP_BEATS), beat)], BEATS_PER_S)

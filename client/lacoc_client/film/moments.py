@@ -1,0 +1,99 @@
+"""The moments of a match that are worth showing, by the change of the score or from a file."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import msgspec
+
+from lacoc_shared import codec
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.words import say
+
+TOGETHER_BEATS = BEATS_PER_S
+"""Changes of the score within this time are one moment."""
+_LARGEST_BYTES = 1 << 20
+_EXAMPLE = '{"moments": [{"beat": 1234, "swing": 0.4}]}'
+
+
+class Moment(msgspec.Struct, frozen=True):
+    """A moment of a match."""
+
+    beat: int
+    swing: float = 0.0
+    """How much it changed the match: the larger, the earlier it is chosen."""
+
+
+class _File(msgspec.Struct):
+    """A file of moments."""
+
+    moments: list[Moment]
+
+
+def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
+    """Return the moments with the largest swings, in the order of time; of equal ones the first."""
+    ranked = sorted(moments, key=lambda moment: (-moment.swing, moment.beat))
+    return sorted(ranked[:count], key=lambda moment: moment.beat)
+
+
+def by_score(record: Record) -> list[Moment]:
+    """Return the moments in which the score changed while play was on.
+
+    A swing is by how many points the lead changed; with one seat, its points.
+
+    Raises:
+        UserError: if a frame of the record can't be read.
+    """
+    try:
+        frames = [(beat, codec.decode(data, Frame)) for beat, data in record.frames]
+    except codec.BadMessage as error:
+        match, told = record.header.match_id[:80], str(error)[:80]
+        raise UserError(say("replay.damaged-copy", match=match, error=told)) from None
+    scores = [
+        (beat, [seat.score for seat in frame.seats])
+        for beat, frame in frames
+        if frame.phase == Phase.PLAYING
+    ]
+    return swings(scores)
+
+
+def swings(scores: Sequence[tuple[int, Sequence[int]]]) -> list[Moment]:
+    """Return the moments in which the lead changed.
+
+    Args:
+        scores: beats in rising order, each with the points by seat.
+    """
+    found: list[tuple[int, int, int]] = []  # first beat, lead before, lead after
+    before: int | None = None
+    for beat, points in scores:
+        lead = points[0] - points[1] if len(points) == 2 else sum(points)
+        if before is not None and lead != before:
+            if found and beat - found[-1][0] <= TOGETHER_BEATS:
+                found[-1] = (found[-1][0], found[-1][1], lead)
+            else:
+                found.append((beat, before, lead))
+        before = lead
+    return [Moment(beat, abs(after - was)) for beat, was, after in found if after != was]
+
+
+def from_file(path: Path) -> list[Moment]:
+    """Read moments from a file: JSON, `{"moments": [{"beat": 1234, "swing": 0.4}]}`.
+
+    Raises:
+        UserError: if it can't be read, or is something else.
+    """
+    try:
+        if path.stat().st_size > _LARGEST_BYTES:
+            raise UserError(
+                say("film.bad-moments", file=str(path), error="too large", example=_EXAMPLE)
+            )
+        return msgspec.json.decode(path.read_bytes(), type=_File).moments
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("film.cannot-read", file=str(path), why=why)) from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        told = printable(str(error), 120)
+        said = say("film.bad-moments", file=str(path), error=told, example=_EXAMPLE)
+        raise UserError(said) from None

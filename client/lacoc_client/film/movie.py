@@ -1,0 +1,105 @@
+"""Writes pictures into an MP4 that every browser plays; the file gets its name when it is whole."""
+
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import av
+from av.video.frame import PictureType
+from av.video.reformatter import ColorRange, Colorspace
+
+from lacoc_shared.command import keep
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_CODEC = "libx264"
+_OPTIONS = {"preset": "veryfast", "crf": "20"}
+_THREADS = 4
+"""The number of threads changes the bits of a film, so it does not depend on the machine."""
+_BT709 = 1
+
+
+class Movie:
+    """An open film; see `movie`.
+
+    Args:
+        container: the open file.
+        width: of its pictures [px].
+        height: of its pictures [px].
+        fps: pictures a second.
+    """
+
+    def __init__(self, container: Any, width: int, height: int, fps: int) -> None:
+        self._container = container
+        self._stream = container.add_stream(_CODEC, rate=fps, options=_OPTIONS)
+        self._stream.width, self._stream.height = width, height
+        self._stream.pix_fmt = "yuv420p"
+        self._stream.time_base = self._stream.codec_context.time_base = Fraction(1, fps)
+        context = self._stream.codec_context
+        context.gop_size = 2 * fps  # a player that seeks decodes two seconds at most
+        context.thread_type, context.thread_count = "FRAME", _THREADS
+        context.color_range = ColorRange.MPEG
+        context.colorspace = context.color_primaries = context.color_trc = _BT709
+        self.count = 0
+        """How many pictures it has."""
+
+    def add(self, png: bytes) -> None:
+        """Add a picture.
+
+        Raises:
+            OSError: if the file can't be written.
+        """
+        # A new decoder each time: one adds a picture to those before, as in an animation.
+        (picture,) = av.CodecContext.create("png", "r").decode(av.Packet(png))
+        frame = picture.reformat(
+            format="yuv420p", dst_colorspace=Colorspace.ITU709, dst_color_range=ColorRange.MPEG
+        )
+        frame.pts = self.count
+        frame.pict_type = PictureType.NONE  # a PNG is a key picture, but not of this film
+        frame.time_base = self._stream.codec_context.time_base
+        self._container.mux(self._stream.encode(frame))
+        self.count += 1
+
+    def end(self) -> None:
+        """Write what is left in the encoder."""
+        self._container.mux(self._stream.encode(None))
+
+
+@contextmanager
+def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
+    """Open a film for writing; when the block ends, it is at its place.
+
+    If the block fails, or the program is killed, there is nothing under the film's name; an older
+    file of this name stays. When the film is whole, an older file is kept under a numbered name.
+
+    Args:
+        out: the film's path.
+        width: of its pictures [px], even.
+        height: of its pictures [px], even.
+        fps: pictures a second.
+
+    Raises:
+        UserError: if it can't be written, such as on a full disk.
+    """
+    part = out.with_name(f".{out.name}.{secrets.token_hex(4)}.part")
+    try:
+        part.open("xb").close()
+        # The index comes first, so that a browser begins before it has loaded all.
+        container = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
+        try:
+            film = Movie(container, width, height, fps)
+            yield film
+            film.end()
+        finally:
+            container.close()
+        keep.make_room(out)
+        part.replace(out)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=str(out), why=why)) from None
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)

@@ -1,0 +1,92 @@
+"""Which beats of a match a film shows, picture by picture."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from lacoc_client.film.moments import Moment
+from lacoc_shared.seat import BEATS_PER_S
+
+RUN_UP_BEATS = 4 * BEATS_PER_S
+"""How long before a moment its shot begins."""
+AFTER_BEATS = 3 * BEATS_PER_S
+"""How long after a moment its shot ends."""
+OPENING_BEATS = 2 * BEATS_PER_S
+"""In a reel, how long the card with the teams is shown."""
+END_BEATS = 4 * BEATS_PER_S
+"""How long the end of the match is shown after its moments."""
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A part of a match that is shown without a cut: from a beat to another, both included."""
+
+    first: int
+    last: int
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One picture of a film."""
+
+    beat: float
+    """Beat of the match, with its fraction."""
+    cut: bool
+    """Whether a new shot begins."""
+
+
+def whole(first: int, last: int) -> list[Shot]:
+    """Return the one shot of a whole match.
+
+    Args:
+        first: beat at which a replay begins.
+        last: beat at which it ends.
+    """
+    return [Shot(first, last)]
+
+
+def highlights(
+    moments: Iterable[Moment], first: int, last: int, *, opening: bool = False
+) -> list[Shot]:
+    """Return the shots of some moments, and of the end of the match, in the order of time.
+
+    Shots that touch or overlap become one.
+
+    Args:
+        moments: what to show, in any order; one outside of the match is left out.
+        first: beat at which a replay begins.
+        last: beat at which it ends.
+        opening: whether to show the beginning too.
+    """
+    wanted = [
+        Shot(max(first, moment.beat - RUN_UP_BEATS), min(last, moment.beat + AFTER_BEATS))
+        for moment in moments
+        if first <= moment.beat <= last
+    ]
+    if opening:
+        wanted.append(Shot(first, min(last, first + OPENING_BEATS)))
+    wanted.append(Shot(max(first, last - END_BEATS), last))
+    joined: list[Shot] = []
+    for shot in sorted(wanted, key=lambda shot: shot.first):
+        if joined and shot.first <= joined[-1].last + 1:
+            joined[-1] = Shot(joined[-1].first, max(joined[-1].last, shot.last))
+        else:
+            joined.append(shot)
+    return joined
+
+
+def pictures(shots: Iterable[Shot], fps: int) -> list[Picture]:
+    """Return the pictures of some shots.
+
+    A shot has a picture at its first beat, and then one each 1/`fps` seconds up to its last beat.
+
+    Args:
+        shots: in the order in which they are shown.
+        fps: pictures a second.
+    """
+    found: list[Picture] = []
+    for shot in shots:
+        count = (shot.last - shot.first) * fps // BEATS_PER_S + 1
+        found += [
+            Picture(shot.first + index * BEATS_PER_S / fps, index == 0) for index in range(count)
+        ]
+    return found

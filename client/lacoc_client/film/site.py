@@ -1,0 +1,85 @@
+"""Serves the film's page and a record to the browser that draws it, on this machine only."""
+
+import shutil
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import urlencode
+
+from starlette.applications import Starlette
+
+from lacoc_client.film.look import Look, Quality
+from lacoc_client.gateway import server
+from lacoc_client.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.gateway.guard import Guard
+from lacoc_client.gateway.recordings import Recordings
+from lacoc_client.gateway.site import page_routes, recording_routes
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_PATH = "/film"
+_SPLIT = "split"
+
+
+@dataclass(frozen=True)
+class FilmSite:
+    """Where the page of a record is."""
+
+    base: str
+    """Such as "http://127.0.0.1:40000"."""
+    files: tuple[str, ...]
+    """The parts of the record, by the names under which they are served."""
+
+    def address(self, look: Look) -> str:
+        """Return the address of the page with a look."""
+        query = [
+            *(("file", name) for name in self.files),
+            ("q", "high" if look.quality is Quality.HIGH else "low"),
+            ("smooth", "0" if look.quality is Quality.LOW else "1"),
+            ("hud", "1" if look.overlay else "0"),
+            ("split", "1" if look.view == _SPLIT else "0"),
+            ("cam", "auto" if look.view == _SPLIT else look.view),
+            ("lang", look.language),
+        ]
+        return f"{self.base}{_PATH}?{urlencode(query)}"
+
+
+@contextmanager
+def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
+    """Serve a record until the block ends.
+
+    Args:
+        paths: its files, in order.
+
+    Raises:
+        UserError: if the pages are not built, or a file can't be read.
+    """
+    files = PageFiles()
+    if not files.built:
+        raise UserError(NOT_BUILT)
+    with tempfile.TemporaryDirectory(prefix="lacoc-film-") as folder:
+        names = tuple(f"{number}.mcap" for number in range(len(paths)))
+        for name, path in zip(names, paths, strict=True):
+            try:
+                shutil.copyfile(path, Path(folder, name))
+            except OSError as error:
+                why = error.strerror or str(error)
+                raise UserError(say("film.cannot-read", file=str(path), why=why)) from None
+        shelf = Recordings(Path(folder), lambda: ())
+        routes = page_routes(files, (_PATH,), recording_routes(shelf))
+        opened = server.listen(server.LOOPBACK)
+        stopped = threading.Event()
+        serving = threading.Thread(
+            target=server.serve, args=(Guard(Starlette(routes=routes)), opened, stopped.is_set)
+        )
+        serving.start()
+        try:
+            yield FilmSite(server.url(opened), names)
+        finally:
+            stopped.set()
+            serving.join()
+            opened.close()
+            shelf.close()

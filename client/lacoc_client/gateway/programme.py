@@ -1,0 +1,155 @@
+"""Shows every page that follows the director the same court, and cuts when it does."""
+
+import asyncio
+import math
+import time
+from collections.abc import Callable, Sequence
+
+from lacoc_client.director.courts import OVER, CourtNow
+from lacoc_client.director.director import AHEAD_S, Director
+from lacoc_client.director.results import Result, Results
+from lacoc_client.director.stakes import stake
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.audience import Audience
+from lacoc_client.gateway.feed import CourtFeed
+from lacoc_client.gateway.late_feed import LateFeed
+from lacoc_client.gateway.picture import FramePart, SheetPart
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.wire import Kind
+from lacoc_shared.seat import BEAT_S
+
+_LOOKS = 5
+"""Beats between two looks of the director."""
+
+
+class Programme:
+    """What is on air; used from the event loop only.
+
+    It begins with the first page that follows the director, and goes on until the gateway ends. All
+    is shown `AHEAD_S` later than it is played, unless there is only one court.
+
+    Args:
+        feeds: returns the feeds of all courts, started; at least one.
+    """
+
+    def __init__(self, feeds: Callable[[], Sequence[CourtFeed]]) -> None:
+        self._feeds = feeds
+        self._late: dict[str, LateFeed] = {}
+        self._followers: dict[Viewer, None] = {}
+        self._behind_s = 0.0
+        self._begins_s = 0.0
+        self._director = Director(0.0)
+        self._results = Results(0.0)
+        self._on_air = ""
+        self._told = b""
+        self._running: asyncio.Task[None] | None = None
+
+    def add(self, viewer: Viewer) -> None:
+        """Let a page follow; send it everything that is known of what is on air."""
+        if self._running is None:
+            self._begin()
+        self._followers[viewer] = None
+        viewer.send(self._told)
+        self._late[self._on_air].add(viewer)
+
+    def remove(self, viewer: Viewer) -> None:
+        """Let a page follow no longer."""
+        if viewer in self._followers:
+            del self._followers[viewer]
+            self._late[self._on_air].audience.remove(viewer)
+
+    def audience(self, court: str) -> Audience | None:
+        """Return the pages that follow while this court is on air; None: it never was."""
+        late = self._late.get(court)
+        return None if late is None else late.audience
+
+    def others(self, viewer: Viewer) -> int:
+        """Count the other pages that follow and have the same right as this one."""
+        return sum(late.audience.others(viewer) for late in list(self._late.values()))
+
+    def stop(self) -> None:
+        """End."""
+        if self._running is not None:
+            self._running.cancel()
+
+    def _begin(self) -> None:
+        feeds = self._feeds()
+        self._behind_s = AHEAD_S if len(feeds) > 1 else 0.0
+        self._begins_s = time.monotonic() + self._behind_s
+        self._director, self._results = Director(self._behind_s), Results(self._behind_s)
+        self._on_air = feeds[0].court
+        self._look(time.monotonic())
+        self._running = asyncio.get_running_loop().create_task(self._run())
+
+    async def _run(self) -> None:
+        beats = 0
+        while True:
+            await asyncio.sleep(BEAT_S)
+            now_s = time.monotonic()
+            for late in self._late.values():
+                late.play(now_s)
+            beats += 1
+            if beats % _LOOKS == 0:
+                self._look(now_s)
+
+    def _look(self, now_s: float) -> None:
+        """Let the director look at all courts, and cut if it does."""
+        courts: list[CourtNow] = []
+        over: list[Result] = []
+        for feed in self._feeds():
+            if feed.court not in self._late:
+                self._late[feed.court] = LateFeed(feed, self._behind_s)
+            stands, played = feed.picture.stands(), feed.picture.played()
+            if not feed.connected or stands is None or played is None:
+                continue
+            courts.append(_now(feed.court, stands, played))
+            if stands.phase in OVER:
+                over.append(_result(feed.court, stands, played))
+        going = [(one.name, one.match) for one in courts if one.phase not in OVER]
+        self._results.see(now_s, over, going)
+        shot = self._director.look(now_s, courts)
+        self._tell(now_s, self._on_air if shot is None else shot.court, shot and shot.why)
+
+    def _tell(self, now_s: float, court: str, why: str | None) -> None:
+        """Tell the pages what is on air, if it has changed; and cut."""
+        body = {
+            "court": court,
+            "why": why or "first",
+            "behind_s": self._behind_s,
+            "begins_s": max(0, math.ceil(self._begins_s - now_s)),
+            "results": self._results.shown(now_s),
+        }
+        told = wire.map_message(Kind.PROGRAMME, body)
+        if told == self._told:
+            return
+        before, self._told, self._on_air = self._on_air, told, court
+        for viewer in self._followers:
+            if before != court:
+                self._late[before].audience.remove(viewer)
+            viewer.send(told)
+            if before != court:
+                self._late[court].add(viewer)
+
+
+def _now(name: str, stands: FramePart, played: SheetPart) -> CourtNow:
+    left_s = played.duration_s - stands.clock_ticks * BEAT_S if played.duration_s else None
+    return CourtNow(
+        name=name,
+        match=str(stands.match),
+        phase=stands.phase,
+        left_s=left_s,
+        scores=stands.scores,
+        stake=stake(played.fixture if played.call else None),
+    )
+
+
+def _result(court: str, stands: FramePart, played: SheetPart) -> Result:
+    return Result(
+        court=court,
+        match=str(stands.match),
+        title=played.title,
+        fixture=played.fixture if played.call else None,
+        teams=tuple(seat.team for seat in played.seats),
+        scores=stands.scores,
+        phase=stands.phase,
+    )

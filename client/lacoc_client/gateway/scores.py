@@ -1,0 +1,56 @@
+"""How the courts of a gateway stand: the small part of their newest frames that /contest shows."""
+
+import msgspec
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import BaseRoute, Route
+
+from lacoc_client.gateway.courts import Courts
+from lacoc_client.gateway.feed import CourtFeed
+from lacoc_shared.seat import BEAT_S
+
+
+class CourtScore(msgspec.Struct, frozen=True, kw_only=True):
+    """How a court stands."""
+
+    court: str
+    call: str
+    """Id of the call whose match the court has; "": none."""
+    phase: int
+    clock_s: float
+    """Used time."""
+    duration_s: float
+    scores: tuple[int, ...]
+    """Points by seat."""
+
+
+def scores_route(courts: Courts) -> BaseRoute:
+    """Return the route that says how all courts stand.
+
+    A page that asks takes no place of a spectator: it gets a few hundred bytes, not frames.
+
+    Args:
+        courts: the courts of the gateway.
+    """
+
+    async def scores(_: Request) -> Response:
+        found = [_score(courts.find(name)[0]) for name in courts.home.courts]
+        body = msgspec.json.encode([one for one in found if one is not None])
+        return Response(body, media_type="application/json", headers={"Cache-Control": "no-store"})
+
+    return Route("/courts.json", scores)
+
+
+def _score(feed: CourtFeed) -> CourtScore | None:
+    """Return how a court stands; None if it is not heard, or was not heard yet."""
+    stands, played = feed.picture.stands(), feed.picture.played()
+    if not feed.connected or stands is None or played is None:
+        return None
+    return CourtScore(
+        court=feed.court,
+        call=played.call,
+        phase=stands.phase,
+        clock_s=stands.clock_ticks * BEAT_S,
+        duration_s=played.duration_s,
+        scores=stands.scores,
+    )

@@ -1,0 +1,134 @@
+"""One /office or /enter page's connection: it passes requests on to the office's desk."""
+
+import asyncio
+import time
+from typing import Annotated, Any
+
+import msgspec
+from starlette.websockets import WebSocket
+
+from lacoc_client.gateway.answers import Answers
+from lacoc_client.gateway.guesses import Guesses
+from lacoc_client.gateway.page_requests import serve_requests
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.wire import Ask, Ping, Unreadable
+from lacoc_client.office.desk import DeskLine
+from lacoc_client.office.links import TeamLink, TeamLinks, qr_code, team_link
+from lacoc_shared import codec
+from lacoc_shared.messages.desk import REPLY_MAX_BYTES, Own, OwnEntry, TeamTokenList, Tokens
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_ASKS_HZ, _ASKS_BURST = 20.0, 60
+_WRONG = ("desk.wrong-code", "desk.no-such-team", "desk.not-organiser", "desk.slower")
+"""Refusals of a secret."""
+
+
+class DeskAsk(Ask, frozen=True, kw_only=True, tag="desk"):
+    """Pass a request on to the desk, and its answer back."""
+
+    request: msgspec.Raw
+
+
+class LinkAsk(Ask, frozen=True, kw_only=True, tag="link"):
+    """Ask for the link of the team that has this token."""
+
+    token: Annotated[str, msgspec.Meta(max_length=200)]
+
+
+class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
+    """Ask for the links of teams, with the organiser's key."""
+
+    secret: Annotated[str, msgspec.Meta(max_length=200)]
+    team: Annotated[str, msgspec.Meta(max_length=64)] = ""
+    """The only team that is wanted; "": all."""
+
+
+Asked = DeskAsk | LinkAsk | LinksAsk | Ping
+"""Every request of these pages."""
+
+_asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
+
+
+def read(data: bytes) -> Asked:
+    """Decode a request.
+
+    Raises:
+        Unreadable: if it is no known request.
+    """
+    try:
+        return _asked.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise Unreadable(say("gateway.bad-message", error=str(error))) from None
+
+
+class DeskPage:
+    """One page's connection.
+
+    Args:
+        websocket: the page's WebSocket, not accepted yet.
+        desk: the way to the desk.
+        guesses: slows down whoever shows wrong secrets.
+        key: the gateway's page key.
+        address: address of the pages for everybody.
+    """
+
+    def __init__(
+        self, websocket: WebSocket, desk: DeskLine, guesses: Guesses, key: str, address: str
+    ) -> None:
+        self._websocket = websocket
+        self._desk = desk
+        self._guesses = guesses
+        self._key = key
+        self._address = address
+        self._answers = Answers(Viewer(websocket.state.socket), lambda *_: None)
+
+    async def serve(self) -> None:
+        """Answer the page's requests until the page goes."""
+        try:
+            await serve_requests(
+                self._websocket, self._answers, read, self._take, _ASKS_HZ, _ASKS_BURST
+            )
+        finally:
+            self._answers.stop()
+
+    async def _take(self, asked: Asked) -> bool:
+        match asked:
+            case Ping():
+                self._answers.reply(asked.id, {"t": asked.t})
+            case DeskAsk():
+                self._answers.later(asked.id, self._passed_on(bytes(asked.request)))
+            case LinkAsk():
+                self._answers.later(asked.id, self._link(asked.token))
+            case LinksAsk():
+                self._answers.later(asked.id, self._links(asked.secret, asked.team))
+        return True
+
+    async def _passed_on(self, request: bytes) -> Any:
+        return msgspec.Raw(await self._asked(request))
+
+    async def _link(self, token: str) -> TeamLink:
+        answer = await self._asked(codec.encode(Own(secret=token)))
+        entry = codec.decode(answer, OwnEntry, REPLY_MAX_BYTES)
+        return team_link(entry.team, self._address, self._key, entry.token)
+
+    async def _links(self, secret: str, wanted: str) -> TeamLinks:
+        answer = await self._asked(codec.encode(Tokens(secret=secret)))
+        tokens = codec.decode(answer, TeamTokenList, REPLY_MAX_BYTES).tokens
+        teams = {team: token for team, token in tokens.items() if wanted in ("", team)}
+        return await asyncio.to_thread(self._made, teams)
+
+    def _made(self, tokens: dict[str, str]) -> TeamLinks:
+        enter = f"{self._address}/enter"
+        links = (team_link(team, self._address, self._key, token) for team, token in tokens.items())
+        return TeamLinks(enter=enter, enter_qr=qr_code(enter), teams=tuple(links))
+
+    async def _asked(self, request: bytes) -> bytes:
+        try:
+            return await self._desk.ask(request)
+        except UserError as error:
+            if error.phrase.code in _WRONG:
+                client = self._websocket.client
+                where = client.host if client is not None else ""
+                await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
+            raise

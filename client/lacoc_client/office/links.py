@@ -1,0 +1,51 @@
+"""The one link of a team for the whole event, and its QR code; pure."""
+
+import io
+from functools import lru_cache
+from typing import Any
+
+import msgspec
+import segno
+
+_BORDER = 4
+"""White edge, in modules: scanners need it."""
+
+
+class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
+    """A team's link."""
+
+    team: str
+    link: str
+    qr: str
+    """The link as a QR code: a picture in SVG."""
+
+
+class TeamLinks(msgspec.Struct, frozen=True, kw_only=True):
+    """The links of all teams, and the address at which teams enter."""
+
+    enter: str
+    enter_qr: str
+    """That address as a QR code: a picture in SVG."""
+    teams: tuple[TeamLink, ...]
+
+
+def team_link(team: str, address: str, key: str, token: str) -> TeamLink:
+    """Make the link of a team.
+
+    Args:
+        team: name of the team.
+        address: address of the pages, such as "http://192.168.1.20:8080".
+        key: the gateway's page key, which lets a page act.
+        token: the team's token.
+    """
+    link = f"{address}/play#key={key}&token={token}"
+    return TeamLink(team=team, link=link, qr=qr_code(link))
+
+
+@lru_cache(maxsize=1024)  # one takes some milliseconds, and a large contest has hundreds
+def qr_code(text: str) -> str:
+    """Return a text as a QR code in SVG, black on white."""
+    out = io.BytesIO()
+    options: dict[str, Any] = {"border": _BORDER, "light": "#fff", "xmldecl": False}
+    segno.make(text, error="m", micro=False).save(out, kind="svg", omitsize=True, **options)
+    return out.getvalue().decode()

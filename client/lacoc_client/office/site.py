@@ -1,0 +1,45 @@
+"""The paths of an organiser's page and of the page on which teams enter."""
+
+from collections.abc import Sequence
+
+from starlette.routing import BaseRoute, WebSocketRoute
+from starlette.websockets import WebSocket
+
+from lacoc_client.gateway.guesses import Guesses
+from lacoc_client.office.desk import DeskLine
+from lacoc_client.office.desk_page import DeskPage
+from lacoc_shared.messages.desk import DESK_MAX_BYTES
+
+DESK_BYTES = DESK_MAX_BYTES + 1024
+"""Longest message of a page."""
+
+
+class DeskSite:
+    """The pages /office and /enter of a gateway.
+
+    Args:
+        desk: address of the office's desk.
+        key: the gateway's page key.
+        address: address of the pages for everybody.
+    """
+
+    paths: Sequence[str] = ("/office", "/enter")
+
+    def __init__(self, desk: str, key: str, address: str) -> None:
+        self._line = DeskLine(desk)
+        self._guesses = Guesses()
+        self._key = key
+        self._address = address
+
+    @property
+    def routes(self) -> Sequence[BaseRoute]:
+        """The route of the pages' requests."""
+
+        async def page(websocket: WebSocket) -> None:
+            await DeskPage(websocket, self._line, self._guesses, self._key, self._address).serve()
+
+        return [WebSocketRoute("/office/ws", page)]
+
+    async def close(self) -> None:
+        """Close the connection to the desk."""
+        await self._line.close()

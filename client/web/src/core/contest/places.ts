@@ -1,0 +1,50 @@
+/** The place of each team for its certificate. Pure. */
+
+import { type ContestSheet, champions, isOver, isStillIn } from "./sheet";
+
+/** Where a team came. */
+export interface Place {
+  team: string;
+  rank: number;
+  /** The stage of that rank; "": the last one, so that the rank is that of the whole contest. */
+  stage: string;
+  /** Group of the stage, such as "a"; "": it has only one. */
+  group: string;
+  won: boolean;
+}
+
+/**
+ * The final places, the best first: of each team in the last stage that it reached and that is over
+ * for it. Teams without a final place, and those that were disqualified, are left out.
+ */
+export function places(sheet: ContestSheet): Place[] {
+  const found = new Map<string, Place>();
+  const best = champions(sheet);
+  for (const view of sheet.stages.toReversed()) {
+    const last = view === sheet.stages.at(-1) && !sheet.planned.length;
+    for (const { section, rows } of view.tables) {
+      for (const { team, rank, out } of rows) {
+        const open = !isOver(view) && isStillIn(view, team);
+        if (out || open || found.has(team) || (!isOver(view) && !knockedOut(sheet, team))) continue;
+        found.set(team, {
+          team,
+          rank,
+          stage: last && view.tables.length === 1 ? "" : view.stage.name,
+          group: view.tables.length > 1 ? section : "",
+          won: best.includes(team),
+        });
+      }
+    }
+  }
+  return [...found.values()];
+}
+
+/** Whether a team has lost its way in a bracket that goes on. */
+function knockedOut(sheet: ContestSheet, team: string): boolean {
+  return sheet.stages.some((view) =>
+    view.matches.some(
+      ({ pairing, loser, state }) =>
+        state === "decided" && loser === team && typeof pairing.loser_place === "number",
+    ),
+  );
+}

@@ -1,0 +1,186 @@
+// Made by client/web/make_wire.py from the Python structs; not edited by hand.
+
+import type { Phrase } from "./phrase";
+
+import type { Mistake, SentFile } from "./wire.gen";
+
+export interface Files {
+  robot?: SentFile | null;
+  postures?: SentFile | null;
+  locomotion?: SentFile | null;
+}
+
+export interface Look {
+  do: "look";
+  secret?: string;
+}
+
+export interface Apply {
+  do: "apply";
+  secret?: string;
+  team: string;
+  files: Files;
+}
+
+export interface Change {
+  do: "change";
+  secret?: string;
+  files: Files;
+}
+
+export interface Own {
+  do: "own";
+  secret?: string;
+}
+
+export interface Overview {
+  do: "overview";
+  secret?: string;
+  known?: string;
+}
+
+export interface Approve {
+  do: "approve";
+  secret?: string;
+  teams: string[];
+  reason?: string;
+}
+
+export interface Decline {
+  do: "decline";
+  secret?: string;
+  team: string;
+}
+
+export interface CloseEntries {
+  do: "close";
+  secret?: string;
+}
+
+export interface TakeOut {
+  do: "take_out";
+  secret?: string;
+  team: string;
+  reason?: string;
+  disqualify?: boolean;
+  really?: boolean;
+}
+
+export interface Rule {
+  do: "rule";
+  secret?: string;
+  kind: "replay" | "result" | "void" | "no-show";
+  pairing: string;
+  game?: number;
+  team?: string;
+  scores?: [number, number] | null;
+  reason?: string;
+  really?: boolean;
+}
+
+export interface Move {
+  do: "move";
+  secret?: string;
+  pairing: string;
+  court?: string;
+  before?: string;
+  not_before_ms?: number;
+}
+
+export interface Tokens {
+  do: "tokens";
+  secret?: string;
+}
+
+export interface EventInfo {
+  name: string;
+  open: boolean;
+  closes_ms: number;
+}
+
+export interface OwnEntry {
+  event: EventInfo;
+  team: string;
+  token: string;
+  state: "waits" | "in" | "late" | "left" | "none";
+  files: string;
+  at_ms: number;
+}
+
+export interface TeamRow {
+  team: string;
+  state: "refused" | "waits" | "late" | "in" | "withdrawn" | "disqualified";
+  files: string;
+  bot: string;
+  at_ms: number;
+  mistakes: Mistake[];
+}
+
+export interface CourtRow {
+  court: string;
+  here: boolean;
+}
+
+export interface Moved {
+  court: string;
+  before: string;
+  not_before_ms: number;
+}
+
+export interface Slot {
+  pairing: string;
+  fixture: Phrase;
+  teams: [string, string];
+  court: string;
+  at_ms: number;
+  running: boolean;
+  begun: boolean;
+  moved: Moved | null;
+  held: Phrase | null;
+}
+
+export interface OfficeView {
+  version: string;
+  event: EventInfo;
+  code: string;
+  drawn: boolean;
+  teams: TeamRow[];
+  courts: CourtRow[];
+  slots: Slot[];
+}
+
+export interface Overviewed {
+  view: OfficeView | null;
+}
+
+export interface Effect {
+  lines: Phrase[];
+  done: boolean;
+}
+
+export interface Said {
+  said: Phrase[];
+}
+
+export interface TeamLink {
+  team: string;
+  link: string;
+  qr: string;
+}
+
+export interface TeamLinks {
+  enter: string;
+  enter_qr: string;
+  teams: TeamLink[];
+}
+
+export interface CourtScore {
+  court: string;
+  call: string;
+  phase: number;
+  clock_s: number;
+  duration_s: number;
+  scores: number[];
+}
+
+export type AnyRequest = Look | Apply | Change | Own | Overview | Approve | Decline | CloseEntries | TakeOut | Rule | Move | Tokens;

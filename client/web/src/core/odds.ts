@@ -1,0 +1,68 @@
+/** The odds of a match over its course (`lacoc replay odds`): a curve, and where it moved most. */
+
+/** A moment of a match, as far as pages need it. */
+export interface Moment {
+  beat: number;
+  clock_s: number;
+  /** Chance of the first seat to win, 0 to 1; a draw counts half. */
+  chance: number;
+}
+
+export interface Odds {
+  match_id: string;
+  /** In the order of their beats. */
+  moments: readonly Moment[];
+}
+
+/** A stretch of a match in which the odds changed. */
+export interface Swing {
+  before: Moment;
+  after: Moment;
+  /** How much the chance of the first seat grew; negative: it fell. */
+  change: number;
+}
+
+const FORMAT = 1;
+
+/** Read the file of a match's odds; null: it has another form, or is of another match. */
+export function readOdds(data: unknown, matchId: string): Odds | null {
+  if (!isObject(data) || data.format !== FORMAT || data.match_id !== matchId) return null;
+  if (!Array.isArray(data.moments) || data.moments.length < 2) return null;
+  const moments = data.moments.filter(isMoment).sort((a, b) => a.beat - b.beat);
+  return moments.length === data.moments.length ? { match_id: matchId, moments } : null;
+}
+
+/** The chance of the first seat at a beat; between two moments it is on the line between them. */
+export function chanceAt({ moments }: Odds, beat: number): number {
+  const index = moments.findIndex((moment) => moment.beat > beat);
+  if (index === 0) return moments[0]!.chance;
+  if (index < 0) return moments.at(-1)!.chance;
+  const before = moments[index - 1]!;
+  const after = moments[index]!;
+  const part = (beat - before.beat) / (after.beat - before.beat);
+  return before.chance + part * (after.chance - before.chance);
+}
+
+/** The stretches in which the odds changed most, the largest change first. */
+export function highlights({ moments }: Odds, most = 8, least = 0.05): Swing[] {
+  return moments
+    .slice(1)
+    .map((after, index) => {
+      const before = moments[index]!;
+      return { before, after, change: after.chance - before.chance };
+    })
+    .filter(({ change }) => Math.abs(change) >= least)
+    .sort((a, b) => Math.abs(b.change) - Math.abs(a.change) || a.before.beat - b.before.beat)
+    .slice(0, most);
+}
+
+function isMoment(value: unknown): value is Moment {
+  if (!isObject(value)) return false;
+  const { beat, clock_s, chance } = value;
+  const isNumber = [beat, clock_s, chance].every((one) => Number.isFinite(one));
+  return isNumber && (chance as number) >= 0 && (chance as number) <= 1;
+}
+
+function isObject(value: unknown): value is Record<string, unknown> {
+  return typeof value === "object" && value !== null;
+}

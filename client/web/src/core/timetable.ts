@@ -1,0 +1,73 @@
+/** The organiser's timetable: which match is where, and what dropping one on another means. Pure. */
+
+import type { Move, OfficeView, Slot } from "./desk.gen";
+
+/** A court with what is played there, in the order of time. */
+export interface Column {
+  court: string;
+  here: boolean;
+  slots: Slot[];
+}
+
+/** The columns of the timetable, in the order of the contest file. */
+export function columns(view: OfficeView): Column[] {
+  return view.courts.map(({ court, here }) => ({
+    court,
+    here,
+    slots: view.slots
+      .filter((slot) => slot.court === court)
+      .toSorted(
+        (one, other) => Number(other.running) - Number(one.running) || one.at_ms - other.at_ms,
+      ),
+  }));
+}
+
+/** Whether a match can be moved: its game has not begun. */
+export function canMove(slot: Slot): boolean {
+  return !slot.begun;
+}
+
+/**
+ * What it asks for to drop a match.
+ *
+ * @param slot The match.
+ * @param court Where it was dropped.
+ * @param on The match on which it was dropped; null: below all others.
+ * @returns The request; null if it changes nothing.
+ */
+export function dropped(slot: Slot, court: string, on: Slot | null): Omit<Move, "secret"> | null {
+  if (!canMove(slot) || on?.pairing === slot.pairing) return null;
+  // A match that runs can't come later: what is dropped on it comes after it, as the first.
+  const before = on && !on.running ? on.pairing : "";
+  if (!before && court === slot.court && !slot.moved) return null;
+  return {
+    do: "move",
+    pairing: slot.pairing,
+    court,
+    before,
+    not_before_ms: slot.moved?.not_before_ms ?? 0,
+  };
+}
+
+/** A time of day, as the field of a form has it: "14:05". */
+export function clockOf(timeMs: number): string {
+  if (!timeMs) return "";
+  const time = new Date(timeMs);
+  return [time.getHours(), time.getMinutes()].map((part) => `${part}`.padStart(2, "0")).join(":");
+}
+
+/**
+ * The next moment of a time of day.
+ *
+ * @param clock As `clockOf` gives it; "": none.
+ * @returns 0 for none. A time that is over by more than half a day is tomorrow's.
+ */
+export function momentOf(clock: string, nowMs: number): number {
+  const [hours, minutes] = clock.split(":").map(Number);
+  if (hours === undefined || minutes === undefined || !clock) return 0;
+  const time = new Date(nowMs);
+  time.setHours(hours, minutes, 0, 0);
+  const HALF_DAY_MS = 43_200_000;
+  if (time.getTime() < nowMs - HALF_DAY_MS) time.setDate(time.getDate() + 1);
+  return time.getTime();
+}

@@ -1,0 +1,109 @@
+/** What the page knows of a team that enters, and what it asks of the office. */
+
+import { signal } from "@preact/signals";
+import { keepTeamToken, teamToken } from "../../core/address";
+import { Refused } from "../../core/connection";
+import {
+  type AnyRequest,
+  Desk,
+  type EventInfo,
+  type OwnEntry,
+  type TeamLink,
+} from "../../core/desk";
+import { checkSizes, chosenFiles, keepGiven } from "../../core/files";
+import { filesOf } from "../../core/given";
+import type { Phrase } from "../../core/phrase";
+import type { Mistake } from "../../core/wire";
+
+const LOOK_MS = 3000;
+
+export class Entrant {
+  readonly desk = new Desk();
+  readonly event = signal<EventInfo | null>(null);
+  /** How the entry of the token that is kept here stands; null: there is none. */
+  readonly entry = signal<OwnEntry | null>(null);
+  readonly link = signal<TeamLink | null>(null);
+  readonly isWeighing = signal(false);
+  /** Why the last files or the last secret were refused. */
+  readonly why = signal<Phrase | null>(null);
+  readonly mistakes = signal<readonly Mistake[]>([]);
+
+  constructor() {
+    const given = filesOf(location.hash);
+    if (given) {
+      keepGiven(given);
+      history.replaceState(null, "", location.pathname + location.search);
+    }
+    setInterval(() => void this.look(), LOOK_MS);
+    const { state } = this.desk.connection;
+    const stop = state.subscribe(({ open }) => {
+      if (open) void this.look();
+    });
+    addEventListener("pagehide", stop);
+  }
+
+  /** Enter with the event's code. */
+  apply(code: string, team: string): Promise<boolean> {
+    return this.send((files) => ({ do: "apply", secret: code, team, files }));
+  }
+
+  /** Hand other files in. */
+  change(): Promise<boolean> {
+    const secret = this.entry.peek()?.token ?? "";
+    return this.send((files) => ({ do: "change", secret, files }));
+  }
+
+  /** Forget the team here: somebody else enters at this computer. */
+  forget(): void {
+    keepTeamToken(null);
+    this.entry.value = null;
+    this.link.value = null;
+    this.why.value = null;
+    this.mistakes.value = [];
+  }
+
+  private async send(
+    request: (files: ReturnType<typeof chosenFiles>) => AnyRequest,
+  ): Promise<boolean> {
+    if (this.isWeighing.peek()) return false;
+    this.isWeighing.value = true;
+    this.why.value = null;
+    this.mistakes.value = [];
+    try {
+      const files = chosenFiles();
+      checkSizes(Object.values(files));
+      await this.take(await this.desk.ask<OwnEntry>(request(files)));
+      return true;
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      this.why.value = error.why;
+      this.mistakes.value = error.mistakes;
+      return false;
+    } finally {
+      this.isWeighing.value = false;
+    }
+  }
+
+  private async take(entry: OwnEntry): Promise<void> {
+    keepTeamToken(entry.token);
+    this.entry.value = entry;
+    this.event.value = entry.event;
+    if (this.link.peek()?.team !== entry.team) {
+      this.link.value = await this.desk.connection.ask<TeamLink>("link", { token: entry.token });
+    }
+  }
+
+  private async look(): Promise<void> {
+    if (!this.desk.connection.state.peek().open || this.isWeighing.peek()) return;
+    const token = teamToken();
+    try {
+      if (token) await this.take(await this.desk.ask<OwnEntry>({ do: "own", secret: token }));
+      else this.event.value = await this.desk.ask<EventInfo>({ do: "look" });
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      if (error.why.code !== "desk.no-such-team") return;
+      this.forget();
+      this.why.value = error.why;
+    }
+  }
+}

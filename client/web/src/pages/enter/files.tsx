@@ -1,0 +1,50 @@
+/** The files of a team that enters: dropped or picked, sorted by what is in them. */
+
+import { useId } from "preact/hooks";
+import { choose, chosenNames, forget, MOST_BYTES, SLOTS } from "../../core/files";
+import { t } from "../../i18n";
+import { PickFiles } from "../../ui/pick";
+import { toast } from "../../ui/toasts";
+
+/** Keep files, each in its slot. */
+export async function take(files: Iterable<File>): Promise<void> {
+  for (const file of files) {
+    const { name } = file;
+    if (file.size > MOST_BYTES) toast(t("files.tooLarge", { name }), "no");
+    // A folder seems to be a file until it is read.
+    else await choose(file).catch(() => toast(t("files.unreadable", { name }), "no"));
+  }
+}
+
+export function Files() {
+  const input = useId();
+  const names = chosenNames.value;
+  return (
+    <fieldset class="files">
+      <legend>{t("enter.files")}</legend>
+      <p>{t("enter.drop")}</p>
+      <label class="button" for={input}>
+        {t("enter.pick")}
+      </label>
+      <PickFiles id={input} take={take} />
+      <ul>
+        {SLOTS.map((slot) => (
+          <li key={slot}>
+            <span class="muted">{t(`enter.${slot}`)}</span>
+            <b>{names[slot] || t(slot === "robot" ? "enter.contests" : "enter.none")}</b>
+            {names[slot] && (
+              <button
+                class="button quiet small"
+                type="button"
+                aria-label={t("enter.remove", { name: names[slot] })}
+                onClick={() => forget(slot)}
+              >
+                ×
+              </button>
+            )}
+          </li>
+        ))}
+      </ul>
+    </fieldset>
+  );
+}

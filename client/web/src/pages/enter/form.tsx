@@ -1,0 +1,152 @@
+/** The form with which a team enters, and the card of a team that has entered. */
+
+import { useSignal } from "@preact/signals";
+import { type EventInfo, type OwnEntry, pictureUrl } from "../../core/desk";
+import { said, t } from "../../i18n";
+import { Mistakes } from "../../ui/mistakes";
+import { dayTime } from "../office/head";
+import type { Entrant } from "./entrant";
+import { Files } from "./files";
+
+interface Props {
+  entrant: Entrant;
+}
+
+export function Form({ entrant }: Props) {
+  const code = useSignal("");
+  const team = useSignal("");
+  const event = entrant.event.value;
+  const wrongCode = entrant.why.value?.code === "desk.wrong-code";
+  const wrongName = ["desk.name-taken", "contest.team-name"].includes(
+    entrant.why.value?.code ?? "",
+  );
+  return (
+    <form
+      aria-labelledby="enter-title"
+      onSubmit={(submit) => {
+        submit.preventDefault();
+        void entrant.apply(code.peek(), team.peek());
+      }}
+    >
+      {event && <p class="muted">{event.name}</p>}
+      <h1 id="enter-title">{t("enter.title")}</h1>
+      {event && <Until event={event} />}
+      <label class="field">
+        <span>{t("enter.code")}</span>
+        <input
+          class="code"
+          value={code.value}
+          autocomplete="off"
+          autocapitalize="characters"
+          autocorrect="off"
+          spellcheck={false}
+          maxLength={40}
+          required
+          aria-invalid={wrongCode}
+          aria-describedby="enter-why"
+          onInput={(change) => {
+            code.value = change.currentTarget.value;
+          }}
+        />
+      </label>
+      <label class="field">
+        <span>{t("enter.team")}</span>
+        <input
+          value={team.value}
+          autocomplete="off"
+          spellcheck={false}
+          maxLength={40}
+          required
+          aria-invalid={wrongName}
+          aria-describedby="enter-why"
+          onInput={(change) => {
+            team.value = change.currentTarget.value;
+          }}
+        />
+      </label>
+      <Files />
+      <Refusal entrant={entrant} />
+      <button class="button strong large" type="submit" aria-busy={entrant.isWeighing.value}>
+        {t(entrant.isWeighing.value ? "enter.weighing" : "enter.go")}
+      </button>
+    </form>
+  );
+}
+
+interface CardProps extends Props {
+  entry: OwnEntry;
+}
+
+/** How a team stands: its state, its link, and the way to replace its files. */
+export function EntryCard({ entrant, entry }: CardProps) {
+  const { event, team, state, files } = entry;
+  const link = entrant.link.value;
+  return (
+    <section aria-labelledby="entry-title" data-state={state}>
+      <p class="muted">{event.name}</p>
+      <h1 id="entry-title">{team}</h1>
+      <p role="status" class="state">
+        {t(`enter.state.${state}`)}
+      </p>
+      {files && (
+        <p class="muted">
+          {t("office.hash")} <code>{files}</code>
+        </p>
+      )}
+      {link && state !== "left" && (
+        <div class="qr">
+          <img src={pictureUrl(link.qr)} alt={t("office.qrOf", { team })} />
+          <div>
+            <p>{t("enter.link")}</p>
+            <a class="button strong" href={link.link}>
+              {t("enter.play")}
+            </a>
+            <p class="address">{link.link}</p>
+          </div>
+        </div>
+      )}
+      {state !== "left" && (
+        <details open={state === "none" || entrant.why.value !== null}>
+          <summary>{t("enter.replace")}</summary>
+          <form
+            onSubmit={(submit) => {
+              submit.preventDefault();
+              void entrant.change();
+            }}
+          >
+            <Until event={event} />
+            <Files />
+            <Refusal entrant={entrant} />
+            <button class="button" type="submit" aria-busy={entrant.isWeighing.value}>
+              {t(entrant.isWeighing.value ? "enter.weighing" : "enter.change")}
+            </button>
+          </form>
+        </details>
+      )}
+      <button class="button quiet small" type="button" onClick={() => entrant.forget()}>
+        {t("enter.other")}
+      </button>
+    </section>
+  );
+}
+
+/** Until when files can be replaced. */
+function Until({ event }: { event: EventInfo }) {
+  if (!event.open) return <p class="warning">{t("enter.closed")}</p>;
+  if (!event.closes_ms) return <p class="muted">{t("enter.untilClosed")}</p>;
+  return <p class="muted">{t("enter.until", { time: dayTime(event.closes_ms) })}</p>;
+}
+
+/** Why nothing was entered: one reason, or every mistake of every file. */
+function Refusal({ entrant }: Props) {
+  const mistakes = entrant.mistakes.value;
+  const why = entrant.why.value;
+  return (
+    <div id="enter-why" class="why" role="alert">
+      {why && (
+        <p>{mistakes.length ? t("enter.mistakes", { count: mistakes.length }) : said(why)}</p>
+      )}
+      {mistakes.length > 0 && <Mistakes mistakes={mistakes} />}
+    </div>
+  );
+}

@@ -1,0 +1,106 @@
+/**
+ * A recording for `lacoc film`: it shows exactly the moment that it is told, and then stands still.
+ *
+ * Nothing here depends on the time of day or on this machine's speed: there is no animation, and
+ * views draw when the shutter says so. `window.__film` is all that the film's program uses.
+ */
+
+import { signal } from "@preact/signals";
+import { flag } from "../core/address";
+import { followColours } from "../core/colours";
+import { fetched, readBeside } from "../core/record_files";
+import { Recording } from "../core/recording";
+import { BEATS_PER_S } from "../i18n/words";
+import { Shutter } from "../scene/View";
+import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
+import { cameraOfAddress, qualityOfAddress } from "./watch/flags";
+
+const MS_PER_BEAT = 1000 / BEATS_PER_S;
+
+/** One picture of a film. */
+interface Step {
+  beat: number;
+  /** A new shot begins. */
+  cut: boolean;
+}
+
+/** What the film's program does with the page. */
+interface Film {
+  /** The first and the last beat of the recording, once it is open and can be drawn. */
+  open(): Promise<[number, number]>;
+  /** Go through some pictures in order; the last one is drawn when it resolves. */
+  show(steps: Step[]): Promise<void>;
+  /** What is used for drawing: "low" or "high", or "map" without WebGL. */
+  quality(): string;
+}
+
+declare global {
+  interface Window {
+    __film?: Film;
+  }
+}
+
+const recording = signal<Recording | null>(null);
+const shutter = new Shutter(flag("smooth", true));
+const style: Style = {
+  camera: cameraOfAddress(),
+  quality: qualityOfAddress() ?? "low",
+  transparent: false,
+  hud: flag("hud", true),
+  split: flag("split", false),
+  shutter,
+};
+const scale = signal(scaleOfWindow());
+document.documentElement.classList.add("broadcast", "film");
+
+window.__film = {
+  async open() {
+    const names = new URLSearchParams(location.search).getAll("file");
+    const files = [];
+    for (const name of names) files.push(...(await fetched(name, () => undefined)));
+    const opened = new Recording(await readBeside(files));
+    followColours(opened);
+    recording.value = opened;
+    await document.fonts.ready;
+    while (!shutter.count) await drawn();
+    await shutter.prepare();
+    return [opened.firstBeat, opened.lastBeat];
+  },
+  async show(steps) {
+    for (const [index, { beat, cut }] of steps.entries()) {
+      recording.value?.seek(beat);
+      // The page's parts follow a signal in a microtask; cameras look at what they made of it.
+      await turn();
+      if (cut) shutter.cut();
+      shutter.expose(beat * MS_PER_BEAT, index === steps.length - 1);
+    }
+    await drawn(); // what was painted is handed over with the browser's next picture
+  },
+  quality: () => window.__lacoc?.view?.quality ?? "",
+};
+
+/** Resolves when the browser has drawn once. */
+function drawn(): Promise<unknown> {
+  return new Promise((resolve) => requestAnimationFrame(resolve));
+}
+
+const channel = new MessageChannel();
+const turns: (() => void)[] = [];
+channel.port1.onmessage = () => turns.shift()?.();
+
+/** Resolves when all that is due in this turn of the event loop is done; no timer delays it. */
+function turn(): Promise<void> {
+  return new Promise((resolve) => {
+    turns.push(resolve);
+    channel.port2.postMessage(null);
+  });
+}
+
+export default function Film() {
+  const match = recording.value;
+  return (
+    <main class="overlay" style={`--scale: ${scale.value}`}>
+      {match && <Broadcast match={match} style={style} scale={scale} />}
+    </main>
+  );
+}

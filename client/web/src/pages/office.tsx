@@ -1,0 +1,74 @@
+/** The office: entries, timetable, decisions and papers, for whoever organises a contest. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import { said, t } from "../i18n";
+import { Banner, waitsForGateway } from "../ui/banner";
+import { Settings } from "../ui/settings";
+import { Toasts } from "../ui/toasts";
+import { CloseDialog } from "./office/closing";
+import { ApproveDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
+import { Entries } from "./office/entries";
+import { Head } from "./office/head";
+import { MoveDialog } from "./office/moving";
+import { Organiser } from "./office/organiser";
+import { Papers } from "./office/papers";
+import { RuleDialog, Rulings } from "./office/ruling";
+import { Timetable } from "./office/timetable";
+import "./contest/contest.css";
+import "./office/office.css";
+
+export default function Office() {
+  const organiser = useMemo(() => new Organiser(), []);
+  const settings = useSignal(false);
+  const view = organiser.view.value;
+  const over = organiser.over.value;
+  const name = view?.event.name;
+  useEffect(() => {
+    document.title = `${t("office.title")} – ${name ?? "LACOC"}`;
+  });
+  const trouble = organiser.trouble.value;
+  const waits = trouble ? said(trouble) : waitsForGateway(organiser.desk.connection.state.value);
+  if (over?.is === "paper") return <Papers organiser={organiser} paper={over.paper} />;
+  return (
+    <>
+      {waits && <Banner role="alert">{waits}</Banner>}
+      <main class="office">
+        {!view && <h1>{t("office.title")}</h1>}
+        {view && (
+          <>
+            <Head
+              organiser={organiser}
+              view={view}
+              onSettings={() => {
+                settings.value = true;
+              }}
+            />
+            {view.drawn && organiser.waiting.value.length > 0 && (
+              <Entries organiser={organiser} view={view} waiting />
+            )}
+            {view.drawn && <Timetable organiser={organiser} view={view} />}
+            {view.drawn && <Rulings organiser={organiser} />}
+            <Entries organiser={organiser} view={view} />
+          </>
+        )}
+      </main>
+      {over?.is === "close" && view && <CloseDialog organiser={organiser} view={view} />}
+      {over?.is === "team" && <TeamDialog organiser={organiser} team={over.team} />}
+      {over?.is === "leave" && <LeaveDialog organiser={organiser} team={over.team} />}
+      {over?.is === "approve" && <ApproveDialog organiser={organiser} team={over.team} />}
+      {over?.is === "move" && view && (
+        <MoveDialog organiser={organiser} view={view} pairing={over.pairing} />
+      )}
+      {over?.is === "rule" && <RuleDialog organiser={organiser} pairing={over.pairing} />}
+      {settings.value && (
+        <Settings
+          onClose={() => {
+            settings.value = false;
+          }}
+        />
+      )}
+      <Toasts />
+    </>
+  );
+}

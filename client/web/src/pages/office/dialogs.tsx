@@ -1,0 +1,172 @@
+/** What the organiser does with one team: its link, its late files, taking it out. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { type Effect, pictureUrl } from "../../core/desk";
+import { said, t } from "../../i18n";
+import { Dialog } from "../../ui/dialog";
+import { toast } from "../../ui/toasts";
+import type { Organiser } from "./organiser";
+
+interface Props {
+  organiser: Organiser;
+  team: string;
+}
+
+/** A team: its link with the QR code, and what can be done. */
+export function TeamDialog({ organiser, team }: Props) {
+  const row = organiser.view.value?.teams.find((one) => one.team === team);
+  useEffect(() => void organiser.getLinks(team), [organiser, team]);
+  const link = organiser.links.value?.teams.find((one) => one.team === team);
+  if (!row) return null;
+  const isIn = row.state === "in" || row.state === "late";
+  return (
+    <Dialog title={team} onClose={() => organiser.close()}>
+      <div class="asks">
+        <p class="muted">{t(`office.state.${row.state}`)}</p>
+        {row.files && (
+          <p>
+            {t("office.hash")} <code>{row.files}</code>
+          </p>
+        )}
+        {link && (
+          <div class="qr">
+            <img src={pictureUrl(link.qr)} alt={t("office.qrOf", { team })} />
+            <div>
+              <p>{t("office.link")}</p>
+              <a href={link.link}>{link.link}</a>
+              <button
+                class="button"
+                type="button"
+                onClick={() => {
+                  void navigator.clipboard?.writeText(link.link);
+                  toast(t("office.copied"), "yes");
+                }}
+              >
+                {t("office.copy")}
+              </button>
+            </div>
+          </div>
+        )}
+        {isIn && (
+          <button
+            class="button danger"
+            type="button"
+            onClick={() => {
+              organiser.over.value = { is: "leave", team };
+            }}
+          >
+            {t("office.takeOut")}
+          </button>
+        )}
+      </div>
+    </Dialog>
+  );
+}
+
+/** Late files: the organiser lets the team use them, and says why. */
+export function ApproveDialog({ organiser, team }: Props) {
+  const reason = useSignal("");
+  return (
+    <Dialog title={t("office.late.title", { team })} onClose={() => organiser.close()}>
+      <form
+        class="asks"
+        onSubmit={async (event) => {
+          event.preventDefault();
+          const done = await organiser.do({
+            do: "approve",
+            teams: [team],
+            reason: reason.value.trim(),
+          });
+          if (done) organiser.close();
+        }}
+      >
+        <p>{t("office.late.text")}</p>
+        <Reason reason={reason} />
+        <button class="button strong" type="submit" disabled={!reason.value.trim()}>
+          {t("office.approve")}
+        </button>
+      </form>
+    </Dialog>
+  );
+}
+
+/** A team leaves: what that changes is shown first. */
+export function LeaveDialog({ organiser, team }: Props) {
+  const reason = useSignal("");
+  const expelled = useSignal(false);
+  const effect = useSignal<Effect | null>(null);
+  const disqualify = expelled.value;
+  useEffect(() => {
+    void organiser.preview({ do: "take_out", team, disqualify }).then((found) => {
+      effect.value = found;
+    });
+  }, [organiser, team, disqualify]);
+  return (
+    <Dialog title={t("office.leave.title", { team })} onClose={() => organiser.close()}>
+      <form
+        class="asks"
+        onSubmit={async (event) => {
+          event.preventDefault();
+          const wish = {
+            do: "take_out",
+            team,
+            disqualify,
+            reason: reason.value,
+            really: true,
+          } as const;
+          if (await organiser.act(wish)) organiser.close();
+        }}
+      >
+        <label class="check">
+          <input
+            type="checkbox"
+            checked={disqualify}
+            onChange={(event) => {
+              expelled.value = event.currentTarget.checked;
+            }}
+          />
+          {t("office.leave.disqualify")}
+        </label>
+        <Reason reason={reason} />
+        <Effects effect={effect.value} />
+        <button class="button danger" type="submit" disabled={!reason.value.trim()}>
+          {t("office.takeOut")}
+        </button>
+      </form>
+    </Dialog>
+  );
+}
+
+/** The field for a reason, which everybody can read. */
+export function Reason({ reason }: { reason: { value: string } }) {
+  return (
+    <label class="field">
+      <span>{t("office.reason")}</span>
+      <input
+        value={reason.value}
+        maxLength={200}
+        required
+        onInput={(event) => {
+          reason.value = event.currentTarget.value;
+        }}
+      />
+    </label>
+  );
+}
+
+/** What a decision would change, before it is made. */
+export function Effects({ effect }: { effect: Effect | null }) {
+  return (
+    <section class="effects" aria-live="polite">
+      <h3>{t("office.effect")}</h3>
+      {effect && (
+        <ul>
+          {effect.lines.map((line, index) => (
+            <li key={index}>{said(line)}</li>
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}

@@ -1,0 +1,92 @@
+/** The head of the office: the contest, how teams enter, what to print, and the next step. */
+
+import type { OfficeView } from "../../core/desk";
+import { language, t } from "../../i18n";
+import { IconButton } from "../../ui/icons";
+import { type Organiser, PAPERS, type Paper } from "./organiser";
+
+interface Props {
+  organiser: Organiser;
+  view: OfficeView;
+  onSettings: () => void;
+}
+
+export function Head({ organiser, view, onSettings }: Props) {
+  const { event, code } = view;
+  const here = view.teams.filter(({ state }) => state === "in" || state === "late").length;
+  return (
+    <header class="head">
+      <div class="title">
+        <h1>{event.name}</h1>
+        <p class="muted">
+          {t(event.open ? "office.open" : "office.closed")} ·{" "}
+          {t("contest.teamCount", { count: here })}
+          {event.open && event.closes_ms > 0 && (
+            <> · {t("office.closesAt", { time: dayTime(event.closes_ms) })}</>
+          )}
+        </p>
+      </div>
+      {event.open && (
+        <dl class="entrance">
+          <div>
+            <dt>{t("office.enterAt")}</dt>
+            <dd>
+              <a href="/enter">{`${location.host}/enter`}</a>
+            </dd>
+          </div>
+          <div>
+            <dt>{t("office.code")}</dt>
+            <dd class="code">{code}</dd>
+          </div>
+        </dl>
+      )}
+      <div class="tools">
+        {event.open && (
+          <button
+            class="button strong"
+            type="button"
+            onClick={() => {
+              organiser.over.value = { is: "close" };
+            }}
+          >
+            {t("office.close")}
+          </button>
+        )}
+        <label class="printing">
+          <span class="hidden-text">{t("office.print")}</span>
+          <select
+            value=""
+            onChange={(change) => {
+              const paper = change.currentTarget.value as Paper;
+              organiser.over.value = { is: "paper", paper };
+            }}
+          >
+            <option value="" disabled>
+              {t("office.print")}
+            </option>
+            {PAPERS.map((paper) => (
+              <option key={paper} value={paper}>
+                {t(`office.paper.${paper}`)}
+              </option>
+            ))}
+          </select>
+        </label>
+        <a class="button" href="/contest">
+          {t("contest.title")}
+        </a>
+        <IconButton name="settings" label={t("settings.title")} onClick={onSettings} />
+      </div>
+    </header>
+  );
+}
+
+/** A moment in words, in the reader's language and time zone. */
+export function dayTime(timeMs: number): string {
+  const options = {
+    weekday: "short",
+    hour: "2-digit",
+    minute: "2-digit",
+    hourCycle: "h23",
+  } as const;
+  return new Date(timeMs).toLocaleString(language.value, options);
+}

@@ -1,0 +1,125 @@
+/** What the organiser's page knows of the contest, and what it asks of the office. */
+
+import { computed, signal } from "@preact/signals";
+import { organiserKey } from "../../core/address";
+import { Refused } from "../../core/connection";
+import { Feed } from "../../core/contest/feed";
+import {
+  type AnyRequest,
+  Desk,
+  type Effect,
+  type OfficeView,
+  type Overviewed,
+  type Said,
+  type TeamLinks,
+  type TeamRow,
+} from "../../core/desk";
+import type { Phrase } from "../../core/phrase";
+import { said, sentence, t } from "../../i18n";
+import { toast } from "../../ui/toasts";
+
+const LOOK_MS = 1500;
+/** More sentences than this are not read one by one. */
+const MANY = 2;
+
+/** What lies over the page. */
+export type Over =
+  | { is: "team"; team: string }
+  | { is: "leave"; team: string }
+  | { is: "approve"; team: string }
+  | { is: "move"; pairing: string }
+  | { is: "rule"; pairing: string }
+  | { is: "close" }
+  | { is: "paper"; paper: Paper };
+
+export const PAPERS = ["schedule", "results", "certificates", "links"] as const;
+/** What can be printed. */
+export type Paper = (typeof PAPERS)[number];
+
+/** A request as a part of the page makes it. */
+type Wish = AnyRequest extends infer R ? (R extends AnyRequest ? Omit<R, "secret"> : never) : never;
+
+export class Organiser {
+  readonly desk = new Desk();
+  readonly feed = new Feed();
+  readonly view = signal<OfficeView | null>(null);
+  readonly links = signal<TeamLinks | null>(null);
+  readonly over = signal<Over | null>(null);
+  /** Why the office does not answer; null: it does. */
+  readonly trouble = signal<Phrase | null>(null);
+  /** The teams that wait for a word, the oldest first. */
+  readonly waiting = computed<readonly TeamRow[]>(
+    () => this.view.value?.teams.filter(({ state }) => state === "waits" || state === "late") ?? [],
+  );
+  private readonly key = organiserKey() ?? "";
+  private timer = 0;
+
+  constructor() {
+    this.feed.start();
+    this.again(0);
+  }
+
+  /** Ask for something; what is refused is said, and comes back as null. */
+  async act<T = Said>(wish: Wish): Promise<T | null> {
+    try {
+      const answer = await this.desk.ask<T>({ ...wish, secret: this.key } as AnyRequest);
+      void this.look();
+      return answer;
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      toast(sentence(error.why), "no");
+      return null;
+    }
+  }
+
+  /** Ask for something, and say what was done. */
+  async do(wish: Wish): Promise<boolean> {
+    const answer = await this.act<Said>(wish);
+    const lines = answer?.said ?? [];
+    if (lines.length > MANY) toast(t("office.done", { count: lines.length }), "yes");
+    else for (const line of lines) toast(said(line), "yes");
+    return answer !== null;
+  }
+
+  /** What a decision would change; null: it was refused. */
+  preview(wish: Wish): Promise<Effect | null> {
+    return this.act<Effect>(wish);
+  }
+
+  close(): void {
+    this.over.value = null;
+  }
+
+  /** Get the links of teams, with their QR codes: of one team, or of all. */
+  async getLinks(team = ""): Promise<void> {
+    this.links.value = null;
+    try {
+      const wanted = { secret: this.key, team };
+      this.links.value = await this.desk.connection.ask<TeamLinks>("links", wanted);
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      toast(sentence(error.why), "no");
+    }
+  }
+
+  private again(afterMs: number): void {
+    clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => void this.look(), afterMs);
+  }
+
+  private async look(): Promise<void> {
+    clearTimeout(this.timer);
+    const known = this.view.peek()?.version ?? "";
+    try {
+      const wish: AnyRequest = { do: "overview", known, secret: this.key };
+      const { view } = await this.desk.ask<Overviewed>(wish);
+      if (view) this.view.value = view;
+      this.trouble.value = null;
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      // While the connection opens the banner says enough.
+      if (this.desk.connection.state.peek().open) this.trouble.value = error.why;
+    }
+    this.again(LOOK_MS);
+  }
+}

@@ -1,0 +1,156 @@
+/** What is printed, as it lies on paper: the browser prints it, also into a PDF. */
+
+import { useEffect } from "preact/hooks";
+import { places } from "../../core/contest/places";
+import type { ContestSheet } from "../../core/contest/sheet";
+import { type OfficeView, pictureUrl } from "../../core/desk";
+import { columns } from "../../core/timetable";
+import { language, said, t } from "../../i18n";
+import { Schedule } from "../contest/schedule";
+import { Tables } from "../contest/standings";
+import { stageTitle } from "../contest/words";
+import type { Organiser, Paper } from "./organiser";
+import { timeOf } from "./timetable";
+
+interface Props {
+  organiser: Organiser;
+  paper: Paper;
+}
+
+export function Papers({ organiser, paper }: Props) {
+  const view = organiser.view.value;
+  const sheet = organiser.feed.sheet.value;
+  useEffect(() => {
+    if (paper === "links") void organiser.getLinks();
+  }, [organiser, paper]);
+  return (
+    <main class="papers" data-paper={paper}>
+      <div class="paper-tools">
+        <button class="button" type="button" onClick={() => organiser.close()}>
+          {t("office.paper.back")}
+        </button>
+        <button class="button strong" type="button" onClick={() => print()}>
+          {t("contest.print")}
+        </button>
+        <p class="muted">{t("office.paper.hint")}</p>
+      </div>
+      {view && paper === "schedule" && <Times view={view} />}
+      {view && paper === "links" && <Links organiser={organiser} view={view} />}
+      {sheet && paper === "results" && <Results sheet={sheet} />}
+      {sheet && paper === "certificates" && <Certificates sheet={sheet} />}
+    </main>
+  );
+}
+
+/** When and where each match is played. */
+function Times({ view }: { view: OfficeView }) {
+  return (
+    <section class="sheet-of-paper">
+      <h1>{view.event.name}</h1>
+      <p>{t("office.paper.estimate")}</p>
+      {columns(view).map(({ court, slots }) => (
+        <table key={court}>
+          <caption>{t("contest.court", { court })}</caption>
+          <thead>
+            <tr>
+              <th scope="col">{t("office.time")}</th>
+              <th scope="col">{t("office.left")}</th>
+              <th scope="col">{t("office.right")}</th>
+              <th scope="col">{t("office.match")}</th>
+            </tr>
+          </thead>
+          <tbody>
+            {slots.map(({ pairing, at_ms, teams, fixture }) => (
+              <tr key={pairing}>
+                <td>{timeOf(at_ms)}</td>
+                <th scope="row">{teams[0]}</th>
+                <th scope="row">{teams[1]}</th>
+                <td>{said(fixture)}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      ))}
+    </section>
+  );
+}
+
+/** All tables and all results. */
+function Results({ sheet }: { sheet: ContestSheet }) {
+  return (
+    <section class="sheet-of-paper contest">
+      <h1>{sheet.name}</h1>
+      {sheet.stages.toReversed().map((view) => (
+        <section key={view.stage.name}>
+          <h2>{stageTitle(view.stage.name)}</h2>
+          <Tables view={view} />
+          <Schedule sheet={sheet} view={view} />
+        </section>
+      ))}
+    </section>
+  );
+}
+
+/** A page for each team. */
+function Certificates({ sheet }: { sheet: ContestSheet }) {
+  const all = places(sheet);
+  const day = new Date().toLocaleDateString(language.value, { dateStyle: "long" });
+  if (!all.length) return <p class="muted">{t("office.paper.noPlaces")}</p>;
+  return (
+    <>
+      {all.map(({ team, rank, stage, group, won }) => (
+        <section key={team} class="certificate" data-won={won || undefined}>
+          <p class="of">{sheet.name}</p>
+          <h1>{t("office.certificate")}</h1>
+          <p class="team">{team}</p>
+          <p class="place">
+            {won ? t("contest.winner") : t("office.place", { rank })}
+            {stage && (
+              <small>
+                {" "}
+                {stageTitle(stage)}
+                {group && ` · ${t("contest.group", { group: group.toUpperCase() })}`}
+              </small>
+            )}
+          </p>
+          <footer>
+            <span>{day}</span>
+            <span class="signature">{t("office.signature")}</span>
+          </footer>
+        </section>
+      ))}
+    </>
+  );
+}
+
+/** A card for each team with its link, and one for the door. */
+function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) {
+  const links = organiser.links.value;
+  if (!links) return <p class="muted">{t("contest.loading")}</p>;
+  return (
+    <div class="cards">
+      {view.event.open && (
+        <section class="card-of-paper">
+          <img src={pictureUrl(links.enter_qr)} alt={t("office.qrEnter")} />
+          <div>
+            <h2>{t("office.enterAt")}</h2>
+            <p class="address">{links.enter}</p>
+            <p>
+              {t("office.code")}: <b class="code">{view.code}</b>
+            </p>
+          </div>
+        </section>
+      )}
+      {links.teams.map(({ team, link, qr }) => (
+        <section key={team} class="card-of-paper">
+          <img src={pictureUrl(qr)} alt={t("office.qrOf", { team })} />
+          <div>
+            <h2>{team}</h2>
+            <p>{t("office.link")}</p>
+            <p class="address">{link}</p>
+          </div>
+        </section>
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,250 @@
+/** Decisions about a match: its result, another game, a void match, a team that did not come. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import {
+  type ContestSheet,
+  found,
+  howEnded,
+  isMatch,
+  type Match,
+  type StageView,
+  score,
+} from "../../core/contest/sheet";
+import type { Effect, Rule } from "../../core/desk";
+import { t } from "../../i18n";
+import { Dialog } from "../../ui/dialog";
+import { matchTitle } from "../contest/words";
+import { Effects, Reason } from "./dialogs";
+import { matches } from "./entries";
+import type { Organiser } from "./organiser";
+
+const KINDS = ["result", "replay", "no-show", "void"] as const;
+/** So many matches are listed. */
+const LISTED = 30;
+
+interface Props {
+  organiser: Organiser;
+}
+
+/** The matches that have, or can get, a result: those that were played last come first. */
+export function Rulings({ organiser }: Props) {
+  const wanted = useSignal("");
+  const sheet = organiser.feed.sheet.value;
+  if (!sheet) return null;
+  const all = sheet.stages
+    .flatMap((view) => view.matches.map((match) => ({ view, match })))
+    .filter(({ match }) => isMatch(match) && match.teams.every(Boolean))
+    .filter(({ match }) =>
+      [...match.teams, matchTitle(sheet, match.pairing.id)].some((text) =>
+        matches(text ?? "", wanted.value),
+      ),
+    );
+  const played = all.filter(({ match }) => match.state === "decided").toReversed();
+  const shown = [...played, ...all.filter(({ match }) => match.state !== "decided")];
+  return (
+    <section class="rulings" aria-labelledby="rulings-title">
+      <div class="bar">
+        <h2 id="rulings-title">{t("office.rulings")}</h2>
+        <input
+          type="search"
+          aria-label={t("office.findMatch")}
+          placeholder={t("office.findMatch")}
+          value={wanted.value}
+          onInput={(event) => {
+            wanted.value = event.currentTarget.value;
+          }}
+        />
+      </div>
+      <ul>
+        {shown.slice(0, LISTED).map(({ view, match }) => (
+          <li key={match.pairing.id} data-state={match.state}>
+            <Line sheet={sheet} view={view} match={match} />
+            <button
+              class="button quiet small"
+              type="button"
+              aria-label={t("office.decideOf", { versus: match.teams.join(" – ") })}
+              onClick={() => {
+                organiser.over.value = { is: "rule", pairing: match.pairing.id };
+              }}
+            >
+              {t("office.decide")}
+            </button>
+          </li>
+        ))}
+      </ul>
+      {shown.length > LISTED && (
+        <p class="muted">{t("contest.more", { count: shown.length - LISTED })}</p>
+      )}
+    </section>
+  );
+}
+
+interface LineProps {
+  sheet: ContestSheet;
+  view: StageView;
+  match: Match;
+}
+
+function Line({ sheet, view, match }: LineProps) {
+  const points = score(match, view);
+  const how = howEnded(match);
+  return (
+    <span class="line">
+      <b>{match.teams[0]}</b> <span class="score">{points ? points.join(" : ") : "–"}</span>{" "}
+      <b>{match.teams[1]}</b>{" "}
+      <span class="muted">
+        {matchTitle(sheet, match.pairing.id)}
+        {how && ` · ${t(`contest.how.${how}`)}`}
+      </span>
+    </span>
+  );
+}
+
+interface DialogProps extends Props {
+  pairing: string;
+}
+
+/** What is decided, with what it changes. */
+export function RuleDialog({ organiser, pairing }: DialogProps) {
+  const sheet = organiser.feed.sheet.value;
+  const there = sheet && found(sheet, pairing);
+  const kind = useSignal<Rule["kind"]>("result");
+  const game = useSignal(1);
+  const team = useSignal("");
+  const left = useSignal("");
+  const right = useSignal("");
+  const reason = useSignal("");
+  const effect = useSignal<Effect | null>(null);
+  const seats = there && seatsOf(there.match, game.value);
+  const isScore = kind.value === "result";
+  const scores: [number, number] = [Number(left.value), Number(right.value)];
+  const isWhole =
+    (!isScore || (left.value !== "" && right.value !== "" && scores.every(isPoints))) &&
+    (kind.value !== "no-show" || team.value !== "");
+  const wish = {
+    do: "rule",
+    kind: kind.value,
+    pairing,
+    game: game.value,
+    team: kind.value === "no-show" ? team.value : "",
+    scores: isScore ? scores : null,
+  } as const;
+  useEffect(() => {
+    effect.value = null;
+    if (!isWhole) return;
+    // The reason changes nothing, but a decision must have one.
+    void organiser.preview({ ...wish, reason: "–" }).then((seen) => {
+      effect.value = seen;
+    });
+  }, [organiser, isWhole, kind.value, game.value, team.value, left.value, right.value]);
+  if (!sheet || !there || !seats) return null;
+  const numbers = gamesOf(there.match);
+  return (
+    <Dialog title={matchTitle(sheet, pairing)} onClose={() => organiser.close()}>
+      <form
+        class="asks"
+        onSubmit={async (event) => {
+          event.preventDefault();
+          const done = await organiser.act({ ...wish, reason: reason.value.trim(), really: true });
+          if (done) organiser.close();
+        }}
+      >
+        <Line sheet={sheet} view={there.view} match={there.match} />
+        <fieldset>
+          <legend>{t("office.decision")}</legend>
+          {KINDS.map((one) => (
+            <label key={one} class="check">
+              <input
+                type="radio"
+                name="kind"
+                checked={kind.value === one}
+                onChange={() => {
+                  kind.value = one;
+                }}
+              />
+              {t(`office.decision.${one}`)}
+            </label>
+          ))}
+        </fieldset>
+        {(isScore || kind.value === "replay") && numbers.length > 1 && (
+          <label class="field">
+            <span>{t("office.game")}</span>
+            <select
+              value={game.value}
+              onChange={(event) => {
+                game.value = Number(event.currentTarget.value);
+              }}
+            >
+              {numbers.map((number) => (
+                <option key={number} value={number}>
+                  {number}
+                </option>
+              ))}
+            </select>
+          </label>
+        )}
+        {isScore && (
+          <div class="points">
+            {[left, right].map((points, place) => (
+              <label key={place} class="field">
+                <span>{t("office.pointsOf", { team: seats[place]! })}</span>
+                <input
+                  inputMode="numeric"
+                  value={points.value}
+                  onInput={(event) => {
+                    points.value = event.currentTarget.value.trim();
+                  }}
+                />
+              </label>
+            ))}
+          </div>
+        )}
+        {kind.value === "no-show" && (
+          <label class="field">
+            <span>{t("office.absent")}</span>
+            <select
+              value={team.value}
+              onChange={(event) => {
+                team.value = event.currentTarget.value;
+              }}
+            >
+              <option value="" disabled />
+              {seats.map((one) => (
+                <option key={one} value={one}>
+                  {one}
+                </option>
+              ))}
+            </select>
+          </label>
+        )}
+        <Reason reason={reason} />
+        <Effects effect={effect.value} />
+        <button
+          class="button strong"
+          type="submit"
+          disabled={!isWhole || !effect.value || !reason.value.trim()}
+        >
+          {t("office.decide.go")}
+        </button>
+      </form>
+    </Dialog>
+  );
+}
+
+/** The numbers of the games that have been played, and of the next one. */
+function gamesOf(match: Match): number[] {
+  const numbers = (match.games ?? []).map(({ number }) => number);
+  return match.next_game ? [...numbers, match.next_game] : numbers.length ? numbers : [1];
+}
+
+/** Who sat left and right in a game, or will sit there. */
+function seatsOf(match: Match, number: number): readonly [string, string] {
+  const game = match.games?.find((one) => one.number === number);
+  const teams = game?.teams ?? match.next_seats ?? match.teams;
+  return [teams[0] ?? "", teams[1] ?? ""];
+}
+
+function isPoints(value: number): boolean {
+  return Number.isInteger(value) && value >= 0;
+}

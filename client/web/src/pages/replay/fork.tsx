@@ -1,0 +1,46 @@
+/** What is said of a fork, and its origin beside it. */
+
+import type { ReadonlySignal } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import { type Match, scoresOf } from "../../core/match";
+import type { Recording } from "../../core/recording";
+import { t } from "../../i18n";
+
+interface Props {
+  recording: Recording;
+  /** The origin, while it is shown. */
+  beside: ReadonlySignal<Recording | null>;
+  /** Shows the origin, or puts it away; absent where it can't be got. */
+  onBeside?: () => void;
+}
+
+/** Nothing, unless the recording is a fork. */
+export function ForkNote({ recording, beside, onBeside }: Props) {
+  const { origin } = recording.record.header.setup;
+  if (!origin) return null;
+  return (
+    <div class="notes fork-note" role="note">
+      <p>{t("replay.fork", { match: origin.match_id, beat: origin.beat })}</p>
+      {onBeside && (
+        <button
+          class="button quiet"
+          type="button"
+          aria-pressed={beside.value !== null}
+          onClick={onBeside}
+        >
+          {t(beside.value ? "replay.alone" : "replay.beside")}
+        </button>
+      )}
+    </div>
+  );
+}
+
+/** Which of two lines a picture shows, and its score. */
+export function LineScore({ name, match }: { name: string; match: Match }) {
+  const scores = useMemo(() => scoresOf(match), [match]).value;
+  return (
+    <p class="line-score">
+      {name} <b>{scores?.split(" ").join(" : ")}</b>
+    </p>
+  );
+}

@@ -1,0 +1,138 @@
+/** A match as a broadcast shows it: the picture, and the score, clock and events over it. */
+
+import { computed, type ReadonlySignal } from "@preact/signals";
+import type { ComponentChildren } from "preact";
+import { useMemo } from "preact/hooks";
+import type { Match } from "../../core/match";
+import type { Quality } from "../../core/settings";
+import { t } from "../../i18n";
+import { team } from "../../i18n/words";
+import { type CameraName, type Shutter, View } from "../../scene/View";
+import { Board } from "../../ui/board";
+import { Countdown, OpeningCard, useOpening } from "../../ui/opening";
+import { ResultCard } from "../../ui/result";
+import { Hint, ScoreBug } from "../../ui/score";
+import { Thirds } from "../../ui/thirds";
+import "./broadcast.css";
+
+/** What is drawn has this size; on another screen it is scaled. */
+const WIDTH_PX = 1920;
+const HEIGHT_PX = 1080;
+
+/** How a broadcast is shown. */
+export interface Style {
+  camera: CameraName;
+  quality: Quality;
+  transparent: boolean;
+  /** Score, clock, events and cards. */
+  hud: boolean;
+  /** Two windows, each behind one of the robots. */
+  split: boolean;
+  /** Says when to draw, for a film. */
+  shutter?: Shutter;
+}
+
+interface Props {
+  match: Match;
+  style: Style;
+  /** Pixels of the window for one of the sheet of 1920 x 1080. */
+  scale: ReadonlySignal<number>;
+}
+
+/** What else a page shows over the picture. */
+interface More {
+  belowScore?: ComponentChildren;
+  inCentre?: ComponentChildren;
+}
+
+/** The scale that fits a sheet of 1920 x 1080 into the window. */
+export function scaleOfWindow(): number {
+  return Math.min(innerWidth / WIDTH_PX, innerHeight / HEIGHT_PX);
+}
+
+export function Broadcast({ match, style, scale, ...more }: Props & More) {
+  const seats = useMemo(() => computed(() => match.sheet.value?.seats.length ?? 0), [match]).value;
+  const isSplit = style.split && seats > 1;
+  return (
+    <>
+      {isSplit ? (
+        <Windows match={match} style={style} scale={scale} />
+      ) : (
+        <Whole match={match} style={style} scale={scale} />
+      )}
+      {style.hud && <Hud match={match} {...more} />}
+    </>
+  );
+}
+
+function Whole({ match, style, scale }: Props) {
+  const { camera, quality, transparent, hud, shutter } = style;
+  const edge = hud ? scale.value : 0;
+  const opening = useOpening(match);
+  return (
+    <div class="picture">
+      <View
+        source={match}
+        camera={camera}
+        quality={quality}
+        transparent={transparent}
+        inset={{ top: (opening ? 140 : 190) * edge, bottom: (opening ? 370 : 30) * edge }}
+        labels={hud}
+        label={t("watch.view")}
+        {...(shutter && { shutter })}
+      />
+    </div>
+  );
+}
+
+/** The workshop's server screen: each contestant's own window, side by side (Fig. 5-11). */
+function Windows({ match, style, scale }: Props) {
+  const { quality, transparent, hud, shutter } = style;
+  const sheet = match.sheet.value;
+  return (
+    <div class="windows">
+      {sheet?.seats.map((seat, index) => (
+        <section key={seat.id} class="window" data-seat={index} aria-label={team(sheet, index)}>
+          <View
+            source={match}
+            camera="chase"
+            seat={index}
+            quality={quality}
+            transparent={transparent}
+            inset={{ top: 140 * scale.value }}
+            label={team(sheet, index)}
+            {...(shutter && { shutter })}
+          />
+        </section>
+      ))}
+      {hud && sheet?.markers.length ? (
+        <div class="inset">
+          <Board match={match} />
+        </div>
+      ) : null}
+    </div>
+  );
+}
+
+function Hud({ match, belowScore, inCentre }: { match: Match } & More) {
+  return (
+    <div class="sheet-of-1080">
+      <header class="head">
+        <ScoreBug match={match} />
+        <Hint match={match} />
+        {belowScore}
+      </header>
+      <div class="centre">
+        <Countdown match={match} />
+        <ResultCard match={match} />
+        {inCentre}
+      </div>
+      <div class="before">
+        <OpeningCard match={match} />
+      </div>
+      <div class="lower">
+        <Thirds match={match} />
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,62 @@
+/** What the director shows: which court is on air and why, and the latest results between matches. */
+
+import { useMemo } from "preact/hooks";
+import type { Court } from "../core/court";
+import { phaseOf } from "../core/match";
+import { Phase, type ShownResult } from "../core/wire";
+import { type MessageName, said, t } from "../i18n";
+import "./on_air.css";
+
+const BETWEEN = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
+
+/** The court on air and the reason; nothing where the page follows one court. */
+export function OnAir({ court }: { court: Court }) {
+  const programme = court.programme.value;
+  if (!programme || programme.begins_s > 0) return null;
+  const why = t(`director.why.${programme.why}` as MessageName);
+  return (
+    <p class="on-air" data-court={programme.court} data-why={programme.why}>
+      <b>{t("director.onAir")}</b>
+      <span>
+        {t("director.court", { court: programme.court })}
+        {why && ` · ${why}`}
+      </span>
+    </p>
+  );
+}
+
+/** The newest results of all courts, while no match is on air. */
+export function LatestResults({ court }: { court: Court }) {
+  const phase = useMemo(() => phaseOf(court), [court]).value;
+  const results = court.programme.value?.results ?? [];
+  if (!results.length || !BETWEEN.has(phase)) return null;
+  return (
+    <section class="latest" aria-label={t("director.results")}>
+      <h2>{t("director.results")}</h2>
+      <ul>
+        {results.map((result) => (
+          <Row key={`${result.court}/${result.match}`} result={result} />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function Row({ result }: { result: ShownResult }) {
+  const [left, right] = result.teams;
+  const isVoid = result.phase === Phase.VOID;
+  return (
+    <li>
+      <p class="what">
+        {result.fixture ? said(result.fixture) : result.title}
+        {" · "}
+        {t("director.court", { court: result.court })}
+      </p>
+      <p class="sides">
+        <span>{left}</span>
+        <b>{isVoid ? t("director.void") : result.scores.join(" : ")}</b>
+        <span>{right}</span>
+      </p>
+    </li>
+  );
+}

@@ -1,0 +1,1 @@
+"""`lacoc replay`: what it does with physics: verify a record, fork it, say who would have won."""

@@ -1,0 +1,48 @@
+"""`lacoc replay odds`: the chance to win over the course of a match."""
+
+import typer
+
+from lacoc_server.commands.replay.curve import ArenaFolder, Every, File, Players, Times, odds_of
+from lacoc_shared.command import options, screen
+from lacoc_shared.words import say
+
+app = typer.Typer()
+
+
+@app.command(name="odds")
+def odds_command(
+    file: File,
+    players: Players = None,
+    times: Times = 6,
+    every: Every = 15.0,
+    arena: ArenaFolder = None,
+    jobs: options.Jobs = None,
+    json: options.Json = False,
+) -> None:
+    """Print the chance to win over the course of a match, from forks with bots in the seats.
+
+    The chance is that of two bots which take over at that moment, so it tells what the position is
+    worth, not who plays better. It is computed more closely where it changes most.
+
+    The odds are kept beside the record, as MATCH.odds.json; /replay shows them as a curve. Forks
+    that were played are not played again.
+    """
+    _, found = odds_of(file, players, times, every, arena, jobs)
+    if json:
+        screen.print_json(found)
+        return
+    left, right = found.seats
+    table = screen.table(
+        say("fact.clock-s"),
+        say("fact.beat"),
+        say("fact.chance", seat=left),
+        say("fact.chance", seat=right),
+        say("fact.margins"),
+    )
+    for one in found.moments:
+        percent = round(100 * one.chance)
+        margins = " ".join(f"{margin:+g}" for margin in one.margins)
+        table.add_row(
+            f"{one.clock_s:.1f}", str(one.beat), f"{percent} %", f"{100 - percent} %", margins
+        )
+    screen.show(table)

@@ -1,0 +1,121 @@
+"""`lacoc replay verify`: judge a record again, simulate its sections again, and compare."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.section import BOUND
+from lacoc_server.journal.verdict import Kind, Verdict, other_arithmetic
+from lacoc_server.world import arithmetic
+from lacoc_shared.command import options, screen
+from lacoc_shared.record.files import record_paths
+from lacoc_shared.record.reader import Record
+from lacoc_shared.words import Phrase, render, say
+
+app = typer.Typer()
+
+NOT_PROVEN = 1
+"""Exit code: the record differs from what its inputs give, or a part of it is lost."""
+
+
+@app.command(name="verify")
+def verify_command(
+    file: Annotated[Path, typer.Argument(help="The record: a .mcap file.")],
+    arena: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="The folder of a game that is not installed; its code is run.",
+            exists=True,
+            file_okay=False,
+        ),
+    ] = None,
+    bound: Annotated[
+        float,
+        typer.Option(
+            metavar="M",
+            help="How far the results of another machine may be from the record [m, rad].",
+            min=0.0,
+            max=1e-3,
+        ),
+    ] = BOUND,
+    json: options.Json = False,
+) -> None:
+    """Judge a record again, simulate it again section by section, and print one of three verdicts.
+
+    "same, bit for bit": this machine computes every bit of the record.
+
+    "same match, other arithmetic": another kind of machine recorded it, and only the last bits
+    differ. The games and the result are what the inputs give, and no robot is farther than --bound
+    from its recorded place.
+
+    "beat N differs": the record is not what its inputs give. The exit code is 1, also if a part of
+    the record is lost or damaged.
+
+    A fork ('lacoc replay fork') is verified as any record, and the first line says what it is a
+    fork of.
+
+    A folder that only the record names is never used, because its code would run.
+    """
+    record = Record.read(record_paths(file))
+    verdict: Verdict | None = None
+    with screen.progress() as progress:
+        task = progress.add_task("simulating", total=record.last_beat + 1)
+        for step in verify(record, arena, bound):
+            if isinstance(step, Verdict):
+                verdict = step
+            else:
+                progress.update(task, completed=step)
+    assert verdict is not None
+    proven = verdict.same and not record.lost
+    if json:
+        screen.print_json({"same": proven, **_told(record, verdict)})
+    else:
+        for line in _lines(record, verdict):
+            screen.show(line)
+    if not proven:
+        raise typer.Exit(NOT_PROVEN)
+
+
+def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
+    return {
+        "verdict": verdict.kind.value,
+        "lost": record.lost,
+        "fork_of": record.header.setup.origin,
+        "beats": verdict.beats,
+        "frames": verdict.frames,
+        "sections": verdict.sections,
+        "differs_at": verdict.differs_at,
+        "distance": verdict.distance,
+        "worst_section": verdict.worst,
+        "text": render(verdict.said),
+        "cut": render(record.cut) if record.cut else "",
+        "arithmetic": {"record": record.header.arithmetic, "here": dict(arithmetic.here())},
+    }
+
+
+def _lines(record: Record, verdict: Verdict) -> list[str]:
+    origin = record.header.setup.origin
+    lines: list[Phrase | str | None] = [
+        # Whoever reads only the first line must not take a fork for what a court played.
+        say("verdict.fork", match=origin.match_id, beat=origin.beat, hash=origin.record_hash)
+        if origin
+        else None,
+        # Whoever reads only the first line must not take a damaged record for a proven one.
+        say("verdict.lost", cut=record.cut) if record.lost else None,
+        say(
+            "verdict.line",
+            verdict=verdict.said,
+            beats=verdict.beats,
+            frames=verdict.frames,
+            sections=verdict.sections,
+        ),
+    ]
+    if verdict.kind is not Kind.SAME:
+        there = record.headers[-1].arithmetic
+        lines.append(other_arithmetic(there, arithmetic.here()))
+    if not record.lost:
+        lines.append(record.cut)
+    return [render(line) for line in lines if line]

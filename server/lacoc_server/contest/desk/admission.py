@@ -1,0 +1,78 @@
+"""Who is at the desk: the organiser, a team, or somebody with the event code; pure."""
+
+import hashlib
+import hmac
+from collections.abc import Callable
+
+from lacoc_shared.contest.codes import read_code
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.words import Phrase, say
+
+_GUESSES_HZ, _GUESSES_BURST = 20.0, 200
+"""Wrong secrets that are answered with what is wrong; a code has 31 to the power of 6 forms."""
+
+
+class Slower(UserError):
+    """Too many wrong secrets were shown; a right one is let in all the same."""
+
+
+class Admission:
+    """Looks at the secrets of requests.
+
+    Args:
+        organiser: the organiser's key.
+        code: the event code.
+        team_of: returns the team that has a token; None: nobody has it.
+    """
+
+    def __init__(self, organiser: str, code: str, team_of: Callable[[str], str | None]) -> None:
+        self._organiser = organiser
+        self._code = code
+        self._team_of = team_of
+        self._guesses = Allowance(_GUESSES_HZ, _GUESSES_BURST)
+        self.refused = 0
+        """Number of wrong secrets."""
+
+    def organiser(self, secret: str, now_s: float) -> None:
+        """Let the organiser in.
+
+        Raises:
+            UserError: if this is not the organiser's key.
+        """
+        if not _same(secret, self._organiser):
+            raise self._wrong(say("desk.not-organiser"), now_s)
+
+    def applicant(self, secret: str, now_s: float) -> None:
+        """Let somebody in who has the event code.
+
+        Raises:
+            UserError: if this is not the event code.
+        """
+        if not _same(read_code(secret), self._code):
+            raise self._wrong(say("desk.wrong-code"), now_s)
+
+    def team(self, secret: str, now_s: float) -> str:
+        """Let a team in; return its name.
+
+        Raises:
+            UserError: if no team has this token.
+        """
+        found = self._team_of(secret) if secret else None
+        if found is None:
+            raise self._wrong(say("desk.no-such-team"), now_s)
+        return found
+
+    def _wrong(self, why: Phrase, now_s: float) -> UserError:
+        self.refused += 1
+        if not self._guesses.take(1, now_s):
+            return Slower(say("desk.slower"))
+        return UserError(why)
+
+
+def _same(shown: str, wanted: str) -> bool:
+    """Compare two secrets in a time that tells nothing of the wanted one."""
+    digests = (
+        hashlib.blake2b(one.encode("utf-8", "surrogatepass")).digest() for one in (shown, wanted)
+    )
+    return hmac.compare_digest(*digests)

@@ -1,0 +1,100 @@
+"""What the desk works on: the facts of a contest, the applications, and the teams' tokens."""
+
+import unicodedata
+from datetime import datetime
+
+from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.kept.tokens import TeamTokens
+from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.draws import Team
+from lacoc_server.contest.league.facts import AnyFact
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_shared.messages.desk import EventInfo
+from lacoc_shared.mistakes import Mistake
+
+_REFUSED_KEPT = 50
+
+
+class Book:
+    """A contest as the desk knows it; one thread at a time uses it.
+
+    Args:
+        where: the contest.
+        store: its facts.
+        applications: the entries that wait.
+        tokens: the tokens of the teams.
+    """
+
+    def __init__(
+        self,
+        where: ContestFolder,
+        store: FactStore,
+        applications: Applications,
+        tokens: TeamTokens,
+    ) -> None:
+        self.where = where
+        self.store = store
+        self.applications = applications
+        self.tokens = tokens
+        self.refused: dict[str, tuple[Mistake, ...]] = {}
+        """Mistakes in the newest files of teams whose files were refused; not kept on the disk."""
+        self._facts: tuple[AnyFact, ...] = ()
+        self._contest: Contest | None = None
+
+    @property
+    def facts(self) -> tuple[AnyFact, ...]:
+        """All facts, also those that other programs have appended.
+
+        Raises:
+            UserError: if they can't be read.
+        """
+        return self.store.facts()
+
+    @property
+    def contest(self) -> Contest:
+        """The contest that follows from the facts.
+
+        Raises:
+            UserError: if they can't be read.
+        """
+        facts = self.facts
+        if self._contest is None or len(facts) != len(self._facts):
+            self._facts, self._contest = facts, compute(facts, FORMATS)
+        return self._contest
+
+    @property
+    def event(self) -> EventInfo:
+        """What everybody may know."""
+        closes_ms = milliseconds(self.where.contest.entries_close)
+        return EventInfo(
+            name=self.where.contest.name, open=not self.contest.closed, closes_ms=closes_ms
+        )
+
+    def team(self, name: str) -> Team | None:
+        """Return a team of the contest; None: it has not entered."""
+        return next((team for team in self.contest.teams if team.name == name), None)
+
+    def is_taken(self, name: str) -> bool:
+        """Return whether a team has this name, or one that looks like it."""
+        names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
+        return _look(name) in map(_look, names)
+
+    def note_refused(self, team: str, mistakes: tuple[Mistake, ...]) -> None:
+        """Note what is wrong with the files that a team handed in last; (): nothing is."""
+        self.refused.pop(team, None)
+        if mistakes:
+            self.refused[team] = mistakes
+        while len(self.refused) > _REFUSED_KEPT:
+            del self.refused[next(iter(self.refused))]
+
+
+def milliseconds(when: datetime | None) -> int:
+    """Return a time in milliseconds since 1970, UTC; 0 for None."""
+    return 0 if when is None else round(1000 * when.timestamp())
+
+
+def _look(name: str) -> str:
+    """Return a form of a name in which names that look alike, as "Bees" and "BEES", are equal."""
+    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())

@@ -1,0 +1,125 @@
+"""Decisions about a match after it was played: what they are, and what they would change."""
+
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple
+
+import msgspec
+
+from lacoc_server.contest.league.contest import Contest, changes, compute
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    NoShow,
+    Outcome,
+    Replaced,
+    Replay,
+    Voided,
+    new,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.matches import Match
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+Kind = Literal["replay", "result", "void", "no-show"]
+"""replay: the game is played again. result: it counts with another result. void: the match counts
+for nobody. no-show: a team did not come, and its opponent wins what is open."""
+
+
+class Wanted(NamedTuple):
+    """A decision as an organiser gives it."""
+
+    kind: Kind
+    pairing: str
+    game: int
+    """Number of the game; not for "void" and "no-show"."""
+    team: str
+    """The team that did not come; for "no-show"."""
+    scores: tuple[int, int] | None
+    """Points of the left and of the right seat; for "result"."""
+    reason: str
+
+
+def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
+    """Say what further facts would change: matches, then ranks.
+
+    Args:
+        facts: the facts of a contest, in their order.
+        more: facts that have no place yet.
+    """
+    last = facts[-1].number if facts else 0
+    placed = [
+        msgspec.structs.replace(fact, id=f"preview-{number}", number=number)
+        for number, fact in enumerate(more, last + 1)
+    ]
+    found = changes(compute(facts, FORMATS), compute((*facts, *placed), FORMATS))
+    lines: list[Phrase] = []
+    for before, after in found.matches:
+        match = after or before
+        assert match is not None
+        lines.append(
+            say(
+                "decide.match",
+                pairing=match.pairing.id,
+                teams=[team or "?" for team in match.teams],
+                state=match.state,
+                winner=match.winner or None,
+            )
+        )
+    for stage, team, old, now in found.ranks:
+        lines.append(say("decide.rank", stage=stage, team=team, before=old, after=now))
+    return (*lines,) or (say("decide.nothing"),)
+
+
+def decision(contest: Contest, wanted: Wanted) -> AnyFact:
+    """Return the fact of a decision.
+
+    Raises:
+        UserError: if there is no such match, game or team, or something is missing.
+    """
+    if not wanted.reason.strip():
+        raise UserError(say("decide.needs-reason"))
+    match = match_of(contest, wanted.pairing)
+    first, second = match.teams
+    if not first or not second:
+        raise UserError(say("decide.no-teams", pairing=wanted.pairing))
+    about = {"pairing": wanted.pairing, "reason": wanted.reason}
+    if wanted.kind == "no-show":
+        if wanted.team not in match.teams:
+            teams = [first, second]
+            raise UserError(say("decide.which-team", pairing=wanted.pairing, teams=teams))
+        return new(NoShow, team=wanted.team, **about)
+    if wanted.kind == "void":
+        return new(Voided, teams=(first, second), **about)
+    seats = _seats(match, wanted.game)
+    if wanted.kind == "replay":
+        return new(Replay, game=wanted.game, teams=seats, **about)
+    if wanted.scores is None:
+        raise UserError(say("decide.needs-score"))
+    left, right = wanted.scores
+    outcome: Outcome = "left" if left > right else "right" if right > left else "draw"
+    given = {"game": wanted.game, "teams": seats, "scores": wanted.scores, "outcome": outcome}
+    return new(Replaced, **given, **about)
+
+
+def match_of(contest: Contest, pairing: str) -> Match:
+    """Return the match of a pairing.
+
+    Raises:
+        UserError: if there is none.
+    """
+    matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    if pairing not in matches:
+        known = [*matches][:20]
+        raise UserError(say("decide.no-match", pairing=pairing, known=known or None))
+    return matches[pairing]
+
+
+def _seats(match: Match, game: int) -> tuple[str, str]:
+    """Return who sat left and right in a game, or will sit there."""
+    played = {one.number: one.teams for one in match.games}
+    if game in played:
+        return played[game]
+    if game == match.next_game and match.next_seats is not None:
+        return match.next_seats
+    numbers = [*played, *([match.next_game] if match.next_game else [])]
+    raise UserError(say("decide.no-game", pairing=match.pairing.id, game=game, known=numbers))

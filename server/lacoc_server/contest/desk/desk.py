@@ -1,0 +1,158 @@
+"""The desk: it looks at the secret of each request, and answers it."""
+
+import threading
+import time
+from collections.abc import Callable
+
+import msgspec
+
+from lacoc_server.contest.desk import entering, organising, overview
+from lacoc_server.contest.desk.admission import Admission, Slower
+from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.kept.entries import Entry, weigh
+from lacoc_server.contest.live.whereabouts import Known
+from lacoc_shared.messages import Refusal
+from lacoc_shared.messages.desk import (
+    DESK_MAX_BYTES,
+    Answer,
+    AnyRequest,
+    Apply,
+    Approve,
+    Change,
+    CloseEntries,
+    Decline,
+    Files,
+    Look,
+    Move,
+    Overview,
+    Overviewed,
+    Own,
+    Rule,
+    TakeOut,
+    Tokens,
+)
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import say
+
+_WEIGHED_AT_ONCE = 2
+_requests: msgspec.msgpack.Decoder[AnyRequest] = msgspec.msgpack.Decoder(AnyRequest)
+
+
+class Desk:
+    """Answers requests; any thread may ask.
+
+    Args:
+        book: the contest.
+        organiser: the organiser's key.
+        code: the event code.
+        known: returns what the office knows besides the facts.
+    """
+
+    def __init__(self, book: Book, organiser: str, code: str, known: Callable[[], Known]) -> None:
+        self.admission = Admission(organiser, code, book.tokens.team_of)
+        self._book = book
+        self._code = code
+        self._known = known
+        self._games = book.where.games
+        self._one = threading.Lock()
+        """Held while the book is used; nobody waits for a weigh-in."""
+        self._scales = threading.Semaphore(_WEIGHED_AT_ONCE)
+
+    def judge(self, payload: bytes) -> Answer | Refusal:
+        """Answer an encoded request, or refuse it.
+
+        Args:
+            payload: should be one of `AnyRequest`.
+        """
+        try:
+            return self.answer(read(payload))
+        except FileRefused as error:
+            mistakes = tuple(error.mistakes)
+            return Refusal(say("refused.mistakes", count=len(mistakes), first=None), mistakes)
+        except UserError as error:
+            return Refusal(error.phrase, again=isinstance(error, Slower))
+
+    def answer(self, asked: AnyRequest) -> Answer:
+        """Answer a request.
+
+        Raises:
+            FileRefused: with every mistake of every file that was handed in.
+            UserError: if the secret is wrong, or the request can't be done.
+        """
+        now_s = time.monotonic()
+        if isinstance(asked, Look):
+            with self._one:
+                return self._book.event
+        if isinstance(asked, Apply):
+            self.admission.applicant(asked.secret, now_s)
+            return self._apply(asked)
+        if isinstance(asked, Change | Own):
+            team = self.admission.team(asked.secret, now_s)
+            if isinstance(asked, Own):
+                with self._one:
+                    return entering.own(self._book, team)
+            entry = self._weighed(team, asked.files)
+            with self._one:
+                return entering.change(self._book, team, entry)
+        self.admission.organiser(asked.secret, now_s)
+        with self._one:
+            return self._organise(asked)
+
+    def _organise(
+        self, asked: Overview | Approve | Decline | CloseEntries | TakeOut | Rule | Move | Tokens
+    ) -> Answer:
+        book = self._book
+        match asked:
+            case Overview():
+                made = overview.view(book, self._code, self._known())
+                return Overviewed(view=None if made.version == asked.known else made)
+            case Approve():
+                return organising.approve(book, asked)
+            case Decline():
+                return organising.decline(book, asked.team)
+            case CloseEntries():
+                return organising.close(book)
+            case TakeOut():
+                return organising.take_out(book, asked)
+            case Rule():
+                return organising.rule(book, asked)
+            case Move():
+                return organising.move(book, asked)
+            case Tokens():
+                return organising.tokens(book)
+
+    def _apply(self, asked: Apply) -> Answer:
+        with self._one:
+            team = entering.newcomer(self._book, asked.team)
+        entry = self._weighed(team, asked.files)
+        with self._one:
+            return entering.apply(self._book, team, entry)
+
+    def _weighed(self, team: str, files: Files) -> Entry:
+        """Weigh files in; note for the organiser what is wrong with them."""
+        contest = self._book.where.contest
+        entry = entering.entry_of(files, contest.robot)
+        try:
+            with self._scales:
+                weigh(entry, self._games, contest.limits)
+        except FileRefused as error:
+            with self._one:
+                self._book.note_refused(team, tuple(error.mistakes))
+            raise
+        with self._one:
+            self._book.note_refused(team, ())
+        return entry
+
+
+def read(payload: bytes) -> AnyRequest:
+    """Decode a request.
+
+    Raises:
+        UserError: if it is none, or too long.
+    """
+    try:
+        if len(payload) > DESK_MAX_BYTES:
+            raise msgspec.DecodeError(f"{len(payload)} bytes, at most {DESK_MAX_BYTES} are read")
+        return _requests.decode(payload)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise UserError(say("desk.bad-request", error=str(error)[:200])) from None

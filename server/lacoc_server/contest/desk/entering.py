@@ -1,0 +1,106 @@
+"""What a team asks of the desk: to take part, to use other files, how its entry stands."""
+
+from typing import Literal
+
+from lacoc_robots.library import find_robot
+from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.organiser import close_in_time, enter_weighed, team_name
+from lacoc_shared.messages.desk import Files, OwnEntry
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+APPLICATIONS_MOST = 300
+"""Most teams that wait for the organiser."""
+
+
+def entry_of(files: Files, robot: str) -> Entry:
+    """Make an entry of the files that a team hands in.
+
+    Args:
+        files: the files.
+        robot: the contest's robot, for a team that brings none.
+
+    Raises:
+        UserError: if there is no gait file.
+    """
+    if files.postures is None and files.locomotion is None:
+        raise UserError(say("desk.no-files"))
+    return Entry(
+        robot=files.robot.data if files.robot else find_robot(robot)[1],
+        postures=files.postures.data if files.postures else None,
+        locomotion=files.locomotion.data if files.locomotion else None,
+    )
+
+
+def newcomer(book: Book, text: str) -> str:
+    """Check whether a team can apply; return its name as it is kept.
+
+    Raises:
+        UserError: if entries are closed, or the name is wrong or taken.
+    """
+    close_in_time(book.where, book.store)
+    team = team_name(text)
+    if book.contest.closed:
+        raise UserError(say("league.closed", team=team))
+    if book.is_taken(team):
+        raise UserError(say("desk.name-taken", team=team))
+    if len(book.applications.waiting) >= APPLICATIONS_MOST:
+        raise UserError(say("desk.many-applications", most=APPLICATIONS_MOST))
+    return team
+
+
+def apply(book: Book, team: str, entry: Entry) -> OwnEntry:
+    """Let a weighed entry of a new team wait for the organiser.
+
+    Raises:
+        UserError: as `newcomer`, or if it can't be written.
+    """
+    team = newcomer(book, team)  # somebody else may have taken the name while this was weighed
+    book.applications.put(team, entry)
+    return own(book, team)
+
+
+def change(book: Book, team: str, entry: Entry) -> OwnEntry:
+    """Let a team use other files at once, or, when entries are closed, ask the organiser.
+
+    Raises:
+        UserError: if the team has left, or the files can't be written.
+    """
+    close_in_time(book.where, book.store)
+    there = book.team(team)
+    if there is not None and there.gone:
+        raise UserError(say("desk.left", team=team))
+    if there is None and book.contest.closed:
+        raise UserError(say("league.closed", team=team))
+    if there is not None and not book.contest.closed:
+        enter_weighed(book.where, book.store, team, entry, "")
+        book.applications.drop(team)
+    elif there is not None and there.files == entry.hash:
+        book.applications.drop(team)  # back to what it has
+    else:
+        book.applications.put(team, entry)
+    return own(book, team)
+
+
+def own(book: Book, team: str) -> OwnEntry:
+    """Say how a team's own entry stands.
+
+    Raises:
+        UserError: if the facts can't be read, or a new token can't be written.
+    """
+    there = book.team(team)
+    waiting = book.applications.waiting.get(team)
+    token = book.tokens.of(team)
+    files = waiting.entry.hash if waiting else there.files if there else ""
+    state: Literal["waits", "in", "late", "left", "none"] = "waits" if waiting else "none"
+    if there is not None:
+        state = "left" if there.gone else "late" if waiting else "in"
+    return OwnEntry(
+        event=book.event,
+        team=team,
+        token=token,
+        state=state,
+        files=files,
+        at_ms=waiting.at_ms if waiting else 0,
+    )

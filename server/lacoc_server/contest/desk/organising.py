@@ -1,0 +1,132 @@
+"""What the organiser asks of the desk: to approve, decline, close, take out, rule and move."""
+
+from collections.abc import Iterable
+
+from lacoc_server.contest import organiser
+from lacoc_server.contest.desk import deciding
+from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.league.facts import AnyFact, Closed, Moved, new
+from lacoc_shared.messages.desk import (
+    Approve,
+    Effect,
+    Move,
+    Rule,
+    Said,
+    TakeOut,
+    TeamTokenList,
+)
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+
+def approve(book: Book, asked: Approve) -> Said:
+    """Let teams take part, or use their late files.
+
+    Raises:
+        UserError: if a team has not applied, entries are closed, or a reason is missing; the teams
+            before it are in.
+    """
+    said: list[Phrase] = []
+    for team in asked.teams:
+        waiting = book.applications.waiting.get(team)
+        if waiting is None:
+            raise UserError(say("desk.no-application", team=team))
+        done = organiser.enter_weighed(book.where, book.store, team, waiting.entry, asked.reason)
+        book.applications.drop(team)
+        said.append(done)
+    return Said(said=tuple(said))
+
+
+def decline(book: Book, team: str) -> Said:
+    """Turn an application down. A team that is in keeps its token.
+
+    Raises:
+        UserError: if there is none.
+    """
+    if team not in book.applications.waiting and team not in book.refused:
+        raise UserError(say("desk.no-application", team=team))
+    book.applications.drop(team)
+    book.note_refused(team, ())
+    if book.team(team) is None:
+        book.tokens.forget(team)  # whoever takes the name next is somebody else
+    return Said(said=(say("desk.declined", team=team),))
+
+
+def close(book: Book) -> Said:
+    """Close entries, so that the office draws.
+
+    Raises:
+        UserError: if there are fewer than two teams, or entries are closed already.
+    """
+    organiser.check_teams(book.where, book.contest)
+    if book.contest.closed:
+        raise UserError(say("desk.closed-already"))
+    book.store.append(new(Closed))
+    here = sum(not team.gone for team in book.contest.teams)
+    return Said(said=(say("desk.closed", teams=here),))
+
+
+def take_out(book: Book, asked: TakeOut) -> Effect:
+    """Take a team out, or say what that would change.
+
+    Raises:
+        UserError: if the team has not entered.
+    """
+    leaving = organiser.leaving(
+        book.contest, asked.team, asked.reason, disqualified=asked.disqualify
+    )
+    return _decided(book, leaving, asked.really)
+
+
+def rule(book: Book, asked: Rule) -> Effect:
+    """Decide about a match, or say what that would change.
+
+    Raises:
+        UserError: if there is no such match, game or team, or something is missing.
+    """
+    wanted = deciding.Wanted(
+        asked.kind, asked.pairing, asked.game, asked.team, asked.scores, asked.reason
+    )
+    return _decided(book, [deciding.decision(book.contest, wanted)], asked.really)
+
+
+def move(book: Book, asked: Move) -> Said:
+    """Move a match to another court or time.
+
+    Raises:
+        UserError: if there is no such match or court, or the match is decided.
+    """
+    match = deciding.match_of(book.contest, asked.pairing)
+    if asked.before:
+        deciding.match_of(book.contest, asked.before)
+    if asked.before == asked.pairing:
+        raise UserError(say("desk.before-itself"))
+    if match.decided:
+        raise UserError(say("desk.match-over", pairing=asked.pairing))
+    courts = [*book.where.contest.courts]
+    if asked.court and asked.court not in courts:
+        raise UserError(say("desk.no-court", court=asked.court, courts=courts))
+    where = {"court": asked.court, "before": asked.before, "not_before_ms": asked.not_before_ms}
+    book.store.append(new(Moved, pairing=asked.pairing, **where))
+    teams = [team or "?" for team in match.teams]
+    return Said(said=(say("desk.moved", teams=teams, court=asked.court or None),))
+
+
+def tokens(book: Book) -> TeamTokenList:
+    """Return the tokens of all teams of people that are in or wait.
+
+    Raises:
+        UserError: if a new one can't be written.
+    """
+    people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]
+    waiting = [team for team in book.applications.waiting if team not in people]
+    return TeamTokenList(tokens={team: book.tokens.of(team) for team in (*people, *waiting)})
+
+
+def _decided(book: Book, facts: Iterable[AnyFact], really: bool) -> Effect:
+    """Say what facts change, and append them if that is wanted."""
+    more = [*facts]
+    lines = deciding.effect(book.facts, more)
+    if really:
+        book.store.append(*more)
+    return Effect(lines=lines, done=really)

@@ -1,0 +1,110 @@
+"""Entries that wait for the organiser: they were weighed in, but nothing follows from them yet.
+
+They are no facts. Whoever has the event code can apply, and facts are never deleted; what the
+organiser approves becomes a fact.
+"""
+
+import sqlite3
+import time
+from pathlib import Path
+from typing import NamedTuple, Self
+
+import msgspec
+
+from lacoc_server.contest.kept.entries import Entry
+from lacoc_shared.command import database
+from lacoc_shared.command.database import Damaged
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import say
+
+_APPLICATION, _VERSION = 0x4C434150, 1
+"""Numbers in the file's header: "LCAP" in ASCII, and the version of `_TABLES`."""
+_TABLES = (
+    "CREATE TABLE applications (team TEXT PRIMARY KEY, at_ms INTEGER NOT NULL, entry BLOB NOT NULL)"
+    " WITHOUT ROWID",
+)
+
+
+class Application(NamedTuple):
+    """The newest files of a team that wait."""
+
+    team: str
+    at_ms: int
+    """When they were handed in, in milliseconds since 1970, UTC."""
+    entry: Entry
+
+
+class Applications:
+    """The applications of a contest on the disk; used as a context manager.
+
+    Args:
+        path: the file; it is made if there is none.
+
+    Raises:
+        UserError: if it is damaged, a database of something else, or can't be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            self._db = database.connect(path, _APPLICATION, _VERSION, _TABLES, alone=False)
+        except Damaged as damage:
+            raise self._damaged(str(damage)) from None
+        self._known = {one.team: one for one in self._read()}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._db.close()
+
+    @property
+    def waiting(self) -> dict[str, Application]:
+        """The applications by team, the oldest first."""
+        return dict(sorted(self._known.items(), key=lambda one: one[1].at_ms))
+
+    def put(self, team: str, entry: Entry) -> None:
+        """Keep the files of a team in place of those that it handed in before.
+
+        Raises:
+            UserError: if they can't be written.
+        """
+        at_ms = time.time_ns() // 1_000_000
+        row = (team, at_ms, msgspec.msgpack.encode(entry))
+        self._write("INSERT OR REPLACE INTO applications VALUES (?, ?, ?)", row)
+        self._known[team] = Application(team, at_ms, entry)
+
+    def drop(self, team: str) -> None:
+        """Forget the files of a team; nothing happens if none wait.
+
+        Raises:
+            UserError: if that can't be written.
+        """
+        self._write("DELETE FROM applications WHERE team = ?", (team,))
+        self._known.pop(team, None)
+
+    def _write(self, statement: str, values: tuple[object, ...]) -> None:
+        try:
+            with self._db:
+                self._db.execute(statement, values)
+        except sqlite3.Error as error:
+            raise self._problem(error) from None
+
+    def _read(self) -> list[Application]:
+        try:
+            rows = self._db.execute("SELECT team, at_ms, entry FROM applications").fetchall()
+            return [
+                Application(team, at_ms, msgspec.msgpack.decode(entry, type=Entry))
+                for team, at_ms, entry in rows
+            ]
+        except sqlite3.Error as error:
+            raise self._problem(error) from None
+        except msgspec.MsgspecError as error:
+            raise self._damaged(str(error)) from None
+
+    def _problem(self, error: sqlite3.Error) -> UserError:
+        found = database.problem(self._path, error)
+        return found if isinstance(found, UserError) else self._damaged(str(found))
+
+    def _damaged(self, why: str) -> UserError:
+        return UserError(say("contest.facts-damaged", file=text_of(self._path), why=why))

@@ -1,0 +1,302 @@
+"""What the rules saw and decided, so that one event can be taken back (rules 4.1).
+
+A match keeps every observation since its first event that can be taken back. To take an event back,
+it judges the game again from there, without the event's claim. Paths, clock and all other decisions
+stay as they were, and nothing is deleted from the log.
+
+Observations are kept as packed numbers. What else belongs to a tick is kept only where there is
+something: a match of three minutes takes a megabyte.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from struct import Struct
+from typing import Any
+
+import msgspec
+from msgspec.structs import replace
+
+from lacoc_arenas.game import AnyGame, Claim, GameEvent, Observation, Place, RobotView
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.seat import BEAT_S
+from lacoc_shared.words import Phrase
+
+_VIEW_NUMBERS = 7
+"""Numbers of a `RobotView` that every tick has; the others are seldom there."""
+_VIEW = Struct(f"<{_VIEW_NUMBERS}d")
+
+
+class SetMarker(msgspec.Struct, frozen=True):
+    """A referee's change of a marker, between two ticks; `struck`: it was taken back."""
+
+    marker: int
+    value: int
+    struck: bool = False
+
+
+class Note(msgspec.Struct, frozen=True):
+    """What a step has besides the numbers of an observation."""
+
+    changed: SetMarker | None = None
+    """The change of a marker; None: the step is an observation."""
+    placed: tuple[Place | None, ...] = ()
+    """For each robot where it was put; empty: all of them walked."""
+    touched: tuple[tuple[int, ...], ...] = ()
+    """For each robot the markers that it touched; empty: none did."""
+    events: tuple[GameEvent, ...] = ()
+    """What the rules made of the observation."""
+    numbers: tuple[int, ...] = ()
+    """Numbers of those events in the log; for a change of a marker, the number of its decision."""
+    struck: frozenset[Claim] = frozenset()
+
+
+_PLAIN = Note()
+
+
+class SavedHistory(msgspec.Struct, frozen=True):
+    """A history as it is saved; states of the game are msgpack."""
+
+    state: msgspec.Raw
+    over: Phrase | None
+    first: msgspec.Raw
+    first_over: Phrase | None
+    views: int
+    count: int
+    seen: bytes
+    notes: dict[int, Note]
+
+
+@dataclass(frozen=True)
+class Fold:
+    """Result of a take-back, before it is accepted."""
+
+    notes: dict[int, Note]
+    """Notes of all steps, as judged again."""
+    state: Any
+    over: Phrase | None
+    """Why the game is over; None: it is not."""
+    vanished: tuple[tuple[int, GameEvent], ...]
+    """Events that disappear, with their numbers."""
+    appeared: tuple[tuple[int, int, GameEvent], ...]
+    """New events, with the index of their step and their index in that step."""
+
+
+class History:
+    """The judged ticks of a match, and the state of its game."""
+
+    def __init__(self, game: AnyGame) -> None:
+        self._game = game
+        self.state: Any = game.start()
+        """The game's state now."""
+        self.over: Phrase | None = None
+        """Why the game was over after the newest tick; None: it was not."""
+        self._judged: Any = None
+        """The newest state of which `over` is known."""
+        self._step_of: dict[int, int] = {}
+        """For each event that can be taken back, the index of its step."""
+        self._views = 0
+        """Number of robots in an observation."""
+        # The steps since `_first`, which is the state before the first of them.
+        self._first: Any = self.state
+        self._first_over: Phrase | None = None
+        self._count = 0
+        self._seen = bytearray()
+        self._notes: dict[int, Note] = {}
+
+    def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
+        """Judge one tick and return its events; they get the numbers from `next_number` on."""
+        self.state, events = self._game.step(self.state, observation, BEAT_S)
+        if self.state is not self._judged:
+            self._judged, self.over = self.state, self._game.over(self.state)
+        if events:
+            numbers = tuple(range(next_number, next_number + len(events)))
+            self._keep(_note(observation, events, numbers), numbers)
+        elif self._step_of:
+            self._keep(_note(observation), ())
+        else:
+            self._forget()
+            return []
+        self._views = len(observation)
+        for view in observation:
+            self._seen += _VIEW.pack(*view[:_VIEW_NUMBERS])
+        return list(events)
+
+    def set(self, marker: int, value: int, number: int) -> None:
+        """Set a marker, by a referee's decision.
+
+        Args:
+            marker: index of the marker.
+            value: its new state.
+            number: event number of the decision.
+
+        Raises:
+            NoSuchState: if the marker has no such state.
+        """
+        self.state = self._game.set(self.state, marker, value)
+        self._keep(Note(SetMarker(marker, value), numbers=(number,)), (number,))
+
+    def knows(self, number: int) -> bool:
+        """Return whether an event can be taken back.
+
+        The game or `set` must have made it, and no take-back may have removed it.
+        """
+        return number in self._step_of
+
+    def without(self, number: int) -> Fold:
+        """Judge the game again without one event; the history stays as it is.
+
+        Raises:
+            KeyError: if the event can't be taken back (see `knows`).
+        """
+        first = self._step_of[number]
+        state, over = self._first, self._first_over
+        notes: dict[int, Note] = {}
+        vanished: list[tuple[int, GameEvent]] = []
+        appeared: list[tuple[int, int, GameEvent]] = []
+        for index, old, observation in self._steps():
+            note = _strike(old, number) if index == first else old
+            if observation is None:
+                assert note.changed is not None
+                if not note.changed.struck:
+                    state = self._game.set(state, note.changed.marker, note.changed.value)
+                notes[index] = note
+                continue
+            events: tuple[GameEvent, ...] = ()
+            if not over:
+                state, events = self._game.step(state, observation, BEAT_S, note.struck)
+                over = self._game.over(state)
+            if events or note is not _PLAIN:
+                before = dict(zip(old.events, old.numbers, strict=True))
+                numbers = tuple(before.get(event, 0) for event in events)
+                notes[index] = replace(note, events=events, numbers=numbers)
+                appeared += [
+                    (index, place, event)
+                    for place, event in enumerate(events)
+                    if event not in before
+                ]
+                vanished += [
+                    (old_number, event)
+                    for event, old_number in before.items()
+                    if event not in events
+                ]
+        return Fold(notes, state, over, tuple(vanished), tuple(appeared))
+
+    def accept(self, fold: Fold, next_number: int) -> None:
+        """Replace the history by a fold; number its new events from `next_number` on."""
+        self._notes = dict(fold.notes)
+        for number, (index, place, _) in enumerate(fold.appeared, next_number):
+            note = self._notes[index]
+            numbers = (*note.numbers[:place], number, *note.numbers[place + 1 :])
+            self._notes[index] = replace(note, numbers=numbers)
+        self.state, self.over, self._judged = fold.state, fold.over, None
+        self._find_steps()
+
+    def save(self, take_backs: bool = True) -> SavedHistory:
+        """Return the whole history as a value.
+
+        Args:
+            take_backs: False: leave out the judged ticks. After `load`, events from before can't be
+                taken back; all else is the same.
+        """
+        state, first = (msgspec.Raw(encode(which)) for which in (self.state, self._first))
+        if not take_backs:
+            return SavedHistory(state, self.over, state, self.over, self._views, 0, b"", {})
+        return SavedHistory(
+            state,
+            self.over,
+            first,
+            self._first_over,
+            self._views,
+            self._count,
+            bytes(self._seen),
+            self._notes,
+        )
+
+    def load(self, saved: SavedHistory) -> None:
+        """Go on from a saved history of the same game.
+
+        Raises:
+            BadMessage: if a state is not one of this game.
+        """
+        kind = self._game.state_type
+        self.state, self.over = decode(bytes(saved.state), kind), saved.over
+        self._first, self._first_over = decode(bytes(saved.first), kind), saved.first_over
+        self._judged = None
+        self._views, self._count = saved.views, saved.count
+        self._seen, self._notes = bytearray(saved.seen), dict(saved.notes)
+        self._find_steps()
+
+    def _keep(self, note: Note, numbers: tuple[int, ...]) -> None:
+        """Count a new step and keep its note; the events of `numbers` can be taken back."""
+        for number in numbers:
+            self._step_of[number] = self._count
+        if note is not _PLAIN:
+            self._notes[self._count] = note
+        self._count += 1
+
+    def _forget(self) -> None:
+        """Let judging again begin with the present state.
+
+        It begins at an event; before the first one nothing need be kept. A practice has no events
+        and may go on for days.
+        """
+        self._first, self._first_over = self.state, self.over
+        if self._count:
+            self._count, self._seen, self._notes = 0, bytearray(), {}
+
+    def _steps(self) -> Iterator[tuple[int, Note, Observation | None]]:
+        """Yield each step: its index, its note, and its observation, or None if it has none."""
+        size = _VIEW.size * self._views
+        seen = memoryview(self._seen)
+        offset = 0
+        for index in range(self._count):
+            note = self._notes.get(index, _PLAIN)
+            if note.changed is not None:
+                yield index, note, None
+                continue
+            yield index, note, _observation(seen[offset : offset + size], self._views, note)
+            offset += size
+
+    def _find_steps(self) -> None:
+        self._step_of = {
+            number: index
+            for index, note in self._notes.items()
+            for number in note.numbers
+            if note.changed is None or not note.changed.struck
+        }
+
+
+def _note(
+    observation: Observation, events: tuple[GameEvent, ...] = (), numbers: tuple[int, ...] = ()
+) -> Note:
+    """Return the note of an observation; `_PLAIN` if its numbers are all of it."""
+    placed = touched = False
+    for view in observation:
+        placed = placed or view.placed is not None
+        touched = touched or bool(view.touched)
+    if not (placed or touched or events):
+        return _PLAIN
+    return Note(
+        None,
+        tuple(view.placed for view in observation) if placed else (),
+        tuple(view.touched for view in observation) if touched else (),
+        events,
+        numbers,
+    )
+
+
+def _observation(packed: memoryview, views: int, note: Note) -> Observation:
+    placed = note.placed or (None,) * views
+    touched = note.touched or ((),) * views
+    return tuple(
+        RobotView._make((*numbers, place, touch))
+        for numbers, place, touch in zip(_VIEW.iter_unpack(packed), placed, touched, strict=True)
+    )
+
+
+def _strike(note: Note, number: int) -> Note:
+    """Return a step's note with one more of its events struck, or its change."""
+    if note.changed is not None:
+        return replace(note, changed=replace(note.changed, struck=True))
+    event = note.events[note.numbers.index(number)]
+    return replace(note, struck=note.struck | {(event.seat, event.marker)})

@@ -1,0 +1,142 @@
+"""A match between two beats as bytes: all that its later beats depend on (`Match.save`)."""
+
+from typing import Any
+
+import msgspec
+
+from lacoc_server.match.drive import DriveState
+from lacoc_server.match.entry import Entry, weigh_in
+from lacoc_server.match.kept.history import SavedHistory
+from lacoc_server.match.physics import Fault
+from lacoc_server.match.seat import Seat
+from lacoc_server.match.staging import Places
+from lacoc_server.match.state import MatchState
+from lacoc_shared.codec import decode, encode, message_hash
+from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.seat import No, Phase
+from lacoc_shared.words import Phrase
+
+_FORMAT = 1
+"""Version of the layout; bytes of another one are refused."""
+
+
+class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
+    """The fields of a `Seat` that change; robot and gait come from the join's files."""
+
+    join: JoinSeat | None
+    coming: JoinSeat | None
+    ready: bool
+    silent: bool
+    left: bool
+    state: DriveState | None
+    locked_until: int
+    frozen_until: int
+    applied: tuple[int, int]
+    refused: tuple[int, No]
+    restarting: bool
+    strays: int
+
+
+class _Saved(msgspec.Struct, frozen=True, array_like=True):
+    """A whole match; the fields without a comment are those of `MatchState`."""
+
+    format: int
+    made_of: bytes
+    """Hash of what its setup says of the game."""
+    physics: bytes | None
+    """The state of physics; None: no robots are on the field."""
+    places: Places
+    history: SavedHistory
+    seats: tuple[_SavedSeat, ...]
+    phase: Phase
+    beats: int
+    entered_beat: int
+    countdown_beats: int
+    ticks: int
+    silent_beats: int
+    clock_offset: int
+    adjustments: dict[int, tuple[int, int]]
+    declared: str | None
+    ended: Phrase | None
+    advice: tuple[Phrase | str, ...]
+    next_wanted: bool
+    fault: Fault | None
+    event_count: int
+    sheet_is_new: bool
+    told_result: tuple[str, tuple[int, ...]] | None
+
+
+_SEAT_FIELDS = _SavedSeat.__struct_fields__
+_PLAIN_FIELDS = tuple(
+    name
+    for name in _Saved.__struct_fields__
+    if name not in ("format", "made_of", "physics", "places", "history", "seats")
+)
+_MOST_BYTES = 1 << 28
+"""Longer bytes are refused; a match of three minutes is 1 MB."""
+
+
+def save(match: MatchState, take_backs: bool) -> bytes:
+    """Return the match as bytes; see `Match.save`."""
+    return encode(
+        _Saved(
+            _FORMAT,
+            _made_of(match),
+            match.physics.save() if _has_robots(match) else None,
+            match.staging.save(),
+            match.history.save(take_backs),
+            tuple(_SavedSeat(*(getattr(seat, f) for f in _SEAT_FIELDS)) for seat in match.seats),
+            *(getattr(match, name) for name in _PLAIN_FIELDS),
+        )
+    )
+
+
+def load(match: MatchState, data: bytes) -> None:
+    """Let the match go on from bytes; see `Match.load`."""
+    saved = decode(data, _Saved, _MOST_BYTES)
+    if (saved.format, saved.made_of) != (_FORMAT, _made_of(match)):
+        raise ValueError("a match with another arena, other settings or other limits was saved")
+    entries = [_entry(match, *pair) for pair in zip(match.seats, saved.seats, strict=True)]
+    stays = entries == [seat.entry for seat in match.seats] and _has_robots(match)
+    for seat, was, entry in zip(match.seats, saved.seats, entries, strict=True):
+        for name in _SEAT_FIELDS:
+            setattr(seat, name, getattr(was, name))
+        seat.entry = entry
+    if saved.physics is None:
+        match.staging.clear()
+        for seat in match.seats:
+            seat.drive = None
+    else:
+        if not stays:
+            match.staging.build(match.seats)
+            match.begin_drives()
+            for seat, was in zip(match.seats, saved.seats, strict=True):
+                seat.state, seat.strays = was.state, was.strays
+        match.staging.load(saved.places, saved.physics)
+    match.history.load(saved.history)
+    for name in _PLAIN_FIELDS:
+        setattr(match, name, getattr(saved, name))
+
+
+def _has_robots(match: MatchState) -> bool:
+    return any(seat.drive for seat in match.seats)
+
+
+def _made_of(match: MatchState) -> bytes:
+    setup = match.setup
+    return message_hash(encode((setup.arena, setup.settings, setup.limits)))
+
+
+def _entry(match: MatchState, seat: Seat, saved: _SavedSeat) -> Entry | None:
+    """Return the robot and gait of a saved seat; the present ones if the files are the same."""
+    join: Any = saved.join
+    if join is None:
+        return None
+    if seat.join == join:
+        return seat.entry
+    files = (join.robot, join.postures, join.locomotion)
+    try:
+        return weigh_in(*files, match.limits, match.rules.open_levels)
+    except FileRefused as refused:
+        raise ValueError(str(refused)) from None

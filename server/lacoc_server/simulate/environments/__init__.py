@@ -1,0 +1,41 @@
+"""Environments for those who train: both games and a walking robot (docs/environments.md).
+
+Importing this package registers `lacoc/Othello-v0`, `lacoc/FlagStrike-v0` and `lacoc/Walk-v0` with
+Gymnasium.
+"""
+
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+try:
+    import gymnasium
+    import pettingzoo  # noqa: F401
+except ImportError:
+    raise UserError(say("environment.not-installed")) from None
+
+from lacoc_server.simulate.environments.parallel import LacocParallelEnv
+from lacoc_server.simulate.environments.single import LacocEnv
+from lacoc_server.simulate.environments.vector import LacocVectorEnv
+from lacoc_server.simulate.environments.walk import WalkEnv
+
+__all__ = ["LacocEnv", "LacocParallelEnv", "LacocVectorEnv", "WalkEnv", "parallel_env", "register"]
+
+parallel_env = LacocParallelEnv
+"""The name under which libraries look for a `ParallelEnv`."""
+
+
+def register() -> None:
+    """Register the environments with Gymnasium; a second call changes nothing."""
+    for name, arena in (("Othello", "othello"), ("FlagStrike", "flag-strike")):
+        if f"lacoc/{name}-v0" not in gymnasium.registry:
+            gymnasium.register(
+                f"lacoc/{name}-v0",
+                entry_point=f"{__name__}.single:LacocEnv",
+                vector_entry_point=f"{__name__}.vector:LacocVectorEnv",
+                kwargs={"arena": arena},
+            )
+    if "lacoc/Walk-v0" not in gymnasium.registry:
+        gymnasium.register("lacoc/Walk-v0", entry_point=f"{__name__}.walk:WalkEnv")
+
+
+register()

@@ -1,0 +1,180 @@
+"""What the environments of a game share: who plays with what, spaces, actions and rewards."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.bot import Key
+from lacoc_arenas.learned.network import press
+from lacoc_arenas.learned.senses import BODY, CLOCK, SEAT, Senses
+from lacoc_server.match.entry import weigh_in
+from lacoc_server.match.physics import MakePhysics
+from lacoc_server.simulate.environments.episode import Begun, Episode
+from lacoc_server.simulate.environments.opening import Opening, draw, places
+from lacoc_server.simulate.headless import seated
+from lacoc_server.world.world import World
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.words import say
+
+Actions = Literal["keys", "angles"]
+Angles = npt.NDArray[np.float64]
+
+_FAR_M = 20.0
+"""Bound of positions in the spaces [m]; no field is larger."""
+_MOST = 1e4
+"""Bound of points, and of times without a limit."""
+
+
+class Court:
+    """A game with its robots, and the form of what agents see and do.
+
+    Args:
+        arena: name or folder of the arena.
+        settings: entries that replace those of the arena file, such as
+            {"match": {"duration_s": 60}}.
+        robots: for each seat an installed robot, or a robot file with its gait beside it; one name
+            for all seats.
+        actions: "keys": an action is the key of level B that is held; "angles": the joint angles to
+            move to.
+        restart: whether [x] is one more action, the last.
+        beats: beats of 20 ms in a step.
+
+    Raises:
+        UserError: if the arena, a robot or a setting is wrong.
+    """
+
+    def __init__(
+        self,
+        arena: str,
+        settings: dict[str, Any] | None = None,
+        robots: str | Sequence[str] = "hexapod",
+        actions: Actions = "keys",
+        restart: bool = False,
+        beats: int = 1,
+    ) -> None:
+        loaded = arenas.load(arena, settings)
+        self._check(loaded, actions, beats)
+        names = [robots] * len(loaded.seats) if isinstance(robots, str) else list(robots)
+        if len(names) != len(loaded.seats):
+            raise UserError(say("simulate.players", seats=len(loaded.seats)))
+        self.arena = loaded
+        self.seats = tuple(seat.id for seat in loaded.seats)
+        joins = [
+            seated(loaded, seat, "straight", name, team=self.seats[seat]).join
+            for seat, name in enumerate(names)
+        ]
+        levels = loaded.match.open_levels
+        self.entries = [
+            weigh_in(one.robot, one.postures, one.locomotion, levels=levels) for one in joins
+        ]
+        self.begun = Begun(loaded, joins, actions == "angles")
+        self.actions = actions
+        self.beats = beats
+        self.digits = tuple(
+            (*entry.gait.keys(Level.LOCOMOTION), *((RESTART_KEY,) if restart else ()))
+            for entry in self.entries
+        )
+        """For each seat the digit of each action."""
+
+    @staticmethod
+    def _check(arena: Arena, actions: str, beats: int) -> None:
+        if actions not in ("keys", "angles"):
+            raise UserError(say("environment.actions", found=str(actions)[:40]))
+        if beats < 1:
+            raise UserError(say("environment.beats", found=beats))
+        if Level.LOCOMOTION not in arena.match.open_levels:
+            raise UserError(say("environment.level", arena=arena.name))
+        if arena.match.start != "referee" or not arena.match.duration_s:
+            raise UserError(say("environment.no-end", arena=arena.name))
+
+    def episode(self, make_physics: MakePhysics = World) -> Episode:
+        """Return an episode in its first opening."""
+        episode = Episode(self.begun, make_physics)
+        episode.begin(Opening())
+        return episode
+
+    def draw(self, chance: np.random.Generator, options: dict[str, Any] | None) -> Opening:
+        """Draw an opening; entries of `options` replace what was drawn.
+
+        Raises:
+            UserError: if one of these options does not fit.
+        """
+        drawn = draw(self.arena, chance)
+        return drawn if not options else _with_options(drawn, options, self)
+
+    def action_space(self, seat: int) -> "spaces.Space[Any]":
+        """Return the actions of a seat."""
+        if self.actions == "keys":
+            return spaces.Discrete(len(self.digits[seat]))
+        joints = self.entries[seat].robot.joints
+        return spaces.Box(-1.0, 1.0, (joints,), np.float32)
+
+    def observation_space(self, senses: Senses, seat: int) -> spaces.Box:
+        """Return the bounds of what a seat sees; see `Senses` for the order."""
+        game, order = self.arena.game, [seat, *(s for s in range(len(self.seats)) if s != seat)]
+        body = {"x_m": _FAR_M, "y_m": _FAR_M, "z_m": _FAR_M}
+        duration_s = self.arena.match.duration_s
+        high: list[float] = []
+        for one in order:
+            high += [body.get(name, 1.0) for name in BODY]
+            high += [np.pi] * self.entries[one].robot.joints
+        numbers = {"key": 9.0, "posture": 1000.0, "locked_s": duration_s}
+        for _ in order:
+            high += [numbers.get(name, _MOST) for name in SEAT]
+        high += [duration_s for _ in CLOCK]
+        high += [1.0] * len(game.markers)
+        top = np.array(high, np.float32)
+        assert top.size == senses.size
+        return spaces.Box(-top, top, dtype=np.float32)
+
+    @cached_property
+    def _ranges_rad(self) -> list[tuple[Angles, Angles]]:
+        """For each seat the middle and half the width of each joint's range [rad]."""
+        found = []
+        for entry in self.entries:
+            limits = np.radians(np.array(entry.robot.ranges_deg))
+            found.append(((limits[:, 0] + limits[:, 1]) / 2, (limits[:, 1] - limits[:, 0]) / 2))
+        return found
+
+    def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
+        """Return the key that an action presses; steer the robot if actions are angles."""
+        if self.actions == "keys":
+            return press(episode.frame, seat, self.digits[seat][action])
+        middle, half = self._ranges_rad[seat]
+        share = np.clip(np.asarray(action, np.float64), -1.0, 1.0)
+        episode.steer(seat, tuple((middle + half * share).tolist()))
+        return None
+
+
+def lead(frame: Frame, seat: int) -> int:
+    """Return by how many points a seat leads the best other seat."""
+    others = [one.score for index, one in enumerate(frame.seats) if index != seat]
+    return frame.seats[seat].score - max(others, default=0)
+
+
+def _with_options(drawn: Opening, options: dict[str, Any], court: Court) -> Opening:
+    """Return an opening with the entries of `options` that it knows; others are for wrappers."""
+    late, place = options.get("late_ticks", drawn.late_ticks), options.get("place", drawn.place)
+    seat = options.get("seat", drawn.seat)
+    try:
+        seat = court.seats.index(seat) if isinstance(seat, str) else int(seat)
+        opening = Opening(int(place), tuple(int(ticks) for ticks in late), seat)
+    except (TypeError, ValueError):
+        raise UserError(say("environment.options", found=str(options)[:200])) from None
+    if (
+        len(opening.late_ticks) != len(court.seats)
+        or min(opening.late_ticks) < 0
+        or not 0 <= opening.place < places(court.arena)
+        or not 0 <= opening.seat < len(court.seats)
+    ):
+        raise UserError(say("environment.options", found=str(options)[:200]))
+    return opening

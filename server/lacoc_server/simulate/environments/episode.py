@@ -1,0 +1,298 @@
+"""An episode: one match from its first beat of play to its end, driven by keys or angles.
+
+It is the match that a court would play with the same inputs. So its record is proven as any other.
+"""
+
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+from struct import Struct
+from typing import Any
+
+import msgspec
+
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.bot import Key
+from lacoc_server.journal.journal import Journal
+from lacoc_server.match.match import Match
+from lacoc_server.match.physics import Fault, MakePhysics
+from lacoc_server.simulate.environments.opening import Opening, begun_at, places
+from lacoc_server.simulate.environments.steered import Steered
+from lacoc_server.simulate.headless import closing, to_play
+from lacoc_server.world.world import World
+from lacoc_shared.codec import BadMessage, decode, encode
+from lacoc_shared.gait.tables import Posture
+from lacoc_shared.inputs import Input, JoinSeat, KeySeat
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.pack import pack
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
+
+COURT = "environment"
+"""Name of the court in records of episodes."""
+_PRESSED = Struct("<IBBB")
+"""A key that was pressed: beat, seat, level, digit."""
+_MOST_BYTES = 1 << 28
+
+
+class _Saved(msgspec.Struct, frozen=True, array_like=True):
+    opening: Opening
+    angles: bool
+    match: bytes
+    pressed: bytes
+    seqs: tuple[int, ...]
+    extra: bytes
+
+
+class Begun:
+    """Matches at their first beat of play, by start place; many episodes can share them.
+
+    Args:
+        arena: the arena.
+        joins: a join for each seat.
+        angles: whether the robots follow angles instead of keys.
+    """
+
+    def __init__(self, arena: Arena, joins: Sequence[JoinSeat], angles: bool = False) -> None:
+        self.arena = arena
+        self.joins = tuple(joins)
+        self.angles = angles
+        self.arena_at = functools.cache(lambda place: begun_at(arena, place))
+        self._saved: dict[int, bytes] = {}
+
+    def setup(self, place: int, match_id: str = "") -> Setup:
+        """Return what a match is made from that begins at a start place."""
+        arena = self.arena_at(place)
+        return Setup(
+            match_id=match_id,
+            court=COURT,
+            match=1,
+            arena=arena.name,
+            settings=arena.settings,
+            limits={},
+        )
+
+    def has(self, place: int) -> bool:
+        """Say whether a match has begun at a start place before."""
+        return place in self._saved
+
+    def begin(self, match: Match, place: int) -> None:
+        """Lead a match to its first beat of play.
+
+        Raises:
+            UserError: if a robot does not stay on its start place, or physics stops.
+            FileRefused: if a file has mistakes.
+        """
+        if place not in self._saved:
+            for _ in to_play(match, self.joins, match.beat):
+                if self.angles and match.phase is Phase.READY:
+                    _steer(match)
+            if match.phase is not Phase.PLAYING:
+                raise UserError(say("environment.no-start", phase=match.phase.word))
+            self._saved[place] = match.save(take_backs=False)
+        match.load(self._saved[place])
+
+
+class Episode:
+    """Plays one episode after another.
+
+    Args:
+        begun: matches at their first beat of play.
+        make_physics: makes the physics of the episode's matches.
+    """
+
+    def __init__(self, begun: Begun, make_physics: MakePhysics = World) -> None:
+        self.begun = begun
+        self._make_physics = make_physics
+        self._matches: dict[int, Match] = {}
+        self.opening = Opening()
+        self.late_ticks: tuple[int, ...] = ()
+        """For each seat the ticks of play before its first key counts."""
+        self._pressed = bytearray()
+        self._seqs = [0] * len(begun.joins)
+        self.match = self._match(0)
+        """The match that is played; before `begin` it has no beat."""
+        self.frame: Frame
+        """The newest frame; there is none before `begin`."""
+
+    def begin(self, opening: Opening) -> Frame:
+        """Begin an episode; return the frame of its first beat of play."""
+        if not self.begun.has(opening.place):
+            self._matches.pop(opening.place, None)  # one that was loaded is not a new match
+        self._open(opening)
+        self.begun.begin(self.match, opening.place)
+        if self.begun.angles:
+            _steer(self.match)
+        self._pressed = bytearray()
+        self._seqs = [0] * len(self._seqs)
+        self.frame = self.match.frame()
+        return self.frame
+
+    @property
+    def is_on(self) -> bool:
+        """True while the match is played."""
+        return self.match.phase is Phase.PLAYING
+
+    @property
+    def ended(self) -> bool:
+        """True if the match has ended by its rules."""
+        return self.match.phase is Phase.FINISHED
+
+    @property
+    def stopped(self) -> bool:
+        """True if physics stopped."""
+        return self.match.phase is Phase.HALTED
+
+    def pass_beats(self, keys: Sequence[Key | None], beats: int = 1) -> None:
+        """Let beats pass, at most to the end of the match.
+
+        Args:
+            keys: for each seat the key that it presses in the first beat; None: it presses none.
+            beats: how many beats.
+        """
+        match = self.match
+        self.frame = match.beat(self._inputs(keys)).frame
+        for _ in range(beats - 1):
+            if match.phase is not Phase.PLAYING:
+                return
+            self.frame = match.beat().frame
+
+    def open_beat(self, keys: Sequence[Key | None]) -> list[Posture] | None:
+        """Let the first half of a beat pass; see `Match.open_beat` and `pass_beats`."""
+        return self.match.open_beat(self._inputs(keys))
+
+    def close_beat(self, fault: Fault | None) -> None:
+        """Let the second half of a beat pass; see `Match.close_beat`."""
+        self.frame = self.match.close_beat(fault).frame
+
+    def outcome(self, seat: int) -> dict[str, Any]:
+        """Say how the match ended for a seat."""
+        match = self.match
+        winner = match.winner() if self.ended else "void"
+        return {"scores": match.scores(), "winner": winner, "won": winner == match.seats[seat].id}
+
+    def steer(self, seat: int, target: Posture) -> None:
+        """Set the angles that a robot moves to from the next beat on [rad], by joint id."""
+        drive = self.match.seats[seat].drive
+        assert isinstance(drive, Steered)
+        drive.target = target
+
+    def save(self, extra: bytes = b"") -> bytes:
+        """Return the whole episode; `load` goes on from it bit for bit.
+
+        Args:
+            extra: what the caller keeps with it.
+        """
+        return encode(
+            _Saved(
+                self.opening,
+                self.begun.angles,
+                self.match.save(take_backs=False),
+                bytes(self._pressed),
+                tuple(self._seqs),
+                extra,
+            )
+        )
+
+    def load(self, data: bytes) -> bytes:
+        """Go on from a saved episode.
+
+        Returns:
+            What the caller kept with it.
+
+        Raises:
+            UserError: if the bytes are not an episode of this arena, these robots and settings.
+        """
+        try:
+            saved = decode(data, _Saved, _MOST_BYTES)
+            if saved.angles != self.begun.angles:
+                raise BadMessage("one of both is steered by angles")
+            if not 0 <= saved.opening.place < places(self.begun.arena):
+                raise BadMessage("the arena has no such start place")
+            before = self.opening
+            self._open(saved.opening)
+            try:
+                self.match.load(saved.match)
+            except ValueError:
+                self._open(before)
+                raise
+        except ValueError as error:
+            raise UserError(say("environment.other-save", error=str(error)[:200])) from None
+        if self.begun.angles:
+            _steer(self.match)
+        self._pressed, self._seqs = bytearray(saved.pressed), list(saved.seqs)
+        self.frame = self.match.frame()
+        return saved.extra
+
+    def write_record(self, file: Path) -> None:
+        """Write the record of the episode so far: the match is played again from its inputs.
+
+        The result of an episode that has not ended is void.
+
+        Args:
+            file: the record; its name without ".mcap" is the id of the match.
+
+        Raises:
+            UserError: if the robots follow angles, if the file exists or if it can't be written.
+        """
+        if self.begun.angles:
+            raise UserError(say("environment.no-record"))
+        if file.suffix != ".mcap":
+            raise UserError(say("environment.record-name", file=str(file)))
+        if file.exists():
+            raise UserError(say("record.exists", file=str(file)))
+        keys: dict[int, list[Input]] = {}
+        seqs = [0] * len(self._seqs)
+        for beat, seat, level, digit in _PRESSED.iter_unpack(self._pressed):
+            seqs[seat] += 1
+            keys.setdefault(beat, []).append(KeySeat(seat, seqs[seat], level, digit))
+        setup = self.begun.setup(self.opening.place, file.stem)
+        arena = self.begun.arena
+        match = Match(setup, World, arena.folder)
+        journal = Journal(match, file.parent)
+        assert journal.writer is not None
+        try:
+            for _ in to_play(match, self.begun.joins, lambda items: journal.beat(items)[0]):
+                pass
+            while match.beats < self.match.beats:
+                journal.beat(keys.get(match.beats + 1, ()))
+            journal.beat([closing(match)])
+        except BaseException:  # Ctrl-C too: the record can be written again
+            journal.close()
+            journal.writer.path.unlink()
+            raise
+        journal.close()
+        pack([journal.writer.path], file)
+
+    def _inputs(self, keys: Sequence[Key | None]) -> list[Input]:
+        """Return the inputs of the next beat, and note the keys."""
+        inputs: list[Input] = []
+        match = self.match
+        for seat, key in enumerate(keys):
+            if key is None or match.ticks <= self.late_ticks[seat]:
+                continue
+            self._seqs[seat] += 1
+            level, digit = int(key.level), key.key
+            self._pressed += _PRESSED.pack(match.beats + 1, seat, level, digit)
+            inputs.append(KeySeat(seat, self._seqs[seat], level, digit))
+        return inputs
+
+    def _open(self, opening: Opening) -> None:
+        self.opening = opening
+        self.late_ticks = opening.late_ticks or (0,) * len(self._seqs)
+        self.match = self._match(opening.place)
+
+    def _match(self, place: int) -> Match:
+        if place not in self._matches:
+            folder = self.begun.arena.folder
+            self._matches[place] = Match(self.begun.setup(place), self._make_physics, folder)
+        return self._matches[place]
+
+
+def _steer(match: Match) -> None:
+    """Let the robots of a match follow angles."""
+    for seat in match.seats:
+        if seat.entry is not None and not isinstance(seat.drive, Steered):
+            seat.drive = Steered(seat.entry)

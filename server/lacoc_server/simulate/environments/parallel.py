@@ -1,0 +1,190 @@
+"""Both seats of a match as agents of a PettingZoo environment."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+from pettingzoo import ParallelEnv
+
+from lacoc_arenas.learned.senses import Numbers, Senses
+from lacoc_server.simulate.environments.court import Actions, Court, lead
+from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
+    """A match of two seats; both see, act and are rewarded at the same time.
+
+    The reward of a step is by how many points the agent's lead grew in it. So the rewards of an
+    episode add up to the final lead minus the first one, and those of both agents to zero.
+
+    Args:
+        arena: name or folder of the arena.
+        render_mode: "rgb_array", or None.
+        settings: entries that replace those of the arena file.
+        robots: the robot of each seat; see `Court`.
+        actions: "keys" or "angles"; see `Court`.
+        restart: whether [x] is one more action.
+        beats: beats of 20 ms in a step.
+
+    Raises:
+        UserError: if one of these is wrong.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 (the library's own form)
+        "name": "lacoc_othello_v0",
+        "render_modes": ["rgb_array"],
+        "render_fps": 50,
+    }
+
+    def __init__(
+        self,
+        arena: str = "othello",
+        render_mode: str | None = None,
+        settings: dict[str, Any] | None = None,
+        robots: str | tuple[str, ...] = "hexapod",
+        actions: Actions = "keys",
+        restart: bool = False,
+        beats: int = 1,
+    ) -> None:
+        self.court = Court(arena, settings, robots, actions, restart, beats)
+        self.metadata = {
+            **type(self).metadata,
+            "name": f"lacoc_{self.court.arena.name.replace('-', '_')}_v0",
+            "render_fps": 50 / beats,
+        }
+        if len(self.court.seats) != 2:
+            raise UserError(say("environment.two-seats", arena=self.court.arena.name))
+        self.render_mode = render_mode
+        self.possible_agents = list(self.court.seats)
+        self.agents: list[str] = []
+        self._episode = self.court.episode()
+        self._senses = Senses(self._episode.match.sheet())
+        self._drawn = Drawn(render_mode)
+        self.observation_spaces = {
+            agent: self.court.observation_space(self._senses, seat)
+            for seat, agent in enumerate(self.possible_agents)
+        }
+        self.action_spaces = {
+            agent: self.court.action_space(seat) for seat, agent in enumerate(self.possible_agents)
+        }
+        self._chance = np.random.default_rng()
+        self._leads: list[int] = [0, 0]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What each number is that an agent sees."""
+        return self._senses.names
+
+    def observation_space(self, agent: str) -> "spaces.Space[Numbers]":
+        """Return what an agent sees; the same object each time."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> "spaces.Space[Any]":
+        """Return what an agent can do; the same object each time."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Numbers], dict[str, dict[str, Any]]]:
+        """Begin an episode.
+
+        Args:
+            seed: chooses the opening of this episode and of those after it; None: go on drawing.
+            options: "place" and "late_ticks" replace what the seed would choose.
+
+        Returns:
+            What each agent sees, and for each agent the opening.
+        """
+        if seed is not None:
+            self._chance = np.random.default_rng(seed)
+        opening = self.court.draw(self._chance, options)
+        frame = self._episode.begin(opening)
+        self.agents = list(self.possible_agents)
+        self._leads = [lead(frame, 0), lead(frame, 1)]
+        info = {"place": opening.place, "late_ticks": opening.late_ticks}
+        return self._seen(), {agent: dict(info) for agent in self.agents}
+
+    def step(
+        self, actions: dict[str, Any]
+    ) -> tuple[
+        dict[str, Numbers],
+        dict[str, float],
+        dict[str, bool],
+        dict[str, bool],
+        dict[str, dict[str, Any]],
+    ]:
+        """Let the beats of a step pass.
+
+        Args:
+            actions: the action of each agent; an agent that is missing presses nothing.
+
+        Returns:
+            What each agent sees; rewards; whether the match is over; whether physics stopped; and
+            at the end, for each agent, the scores and whether it won.
+        """
+        if not self.agents:
+            return {}, {}, {}, {}, {}
+        episode, court = self._episode, self.court
+        keys = [
+            None if (action := actions.get(agent)) is None else court.act(episode, seat, action)
+            for seat, agent in enumerate(self.possible_agents)
+        ]
+        episode.pass_beats(keys, court.beats)
+        frame = episode.frame
+        left, right = frame.seats
+        now = left.score - right.score
+        gain = float(now - self._leads[0])
+        self._leads = [now, -now]
+        agents = self.agents
+        first, second = agents
+        ended, stopped = episode.ended, episode.stopped
+        infos: dict[str, dict[str, Any]] = {first: {}, second: {}}
+        if ended or stopped:
+            self.agents = []
+            infos = {agent: episode.outcome(seat) for seat, agent in enumerate(agents)}
+        return (
+            self._seen(),
+            {first: gain, second: -gain},
+            {first: ended, second: ended},
+            {first: stopped, second: stopped},
+            infos,
+        )
+
+    def save(self) -> bytes:
+        """Return the whole environment between two steps; only its seed is not in it."""
+        return self._episode.save(b"on" if self.agents else b"over")
+
+    def load(self, saved: bytes) -> None:
+        """Go on from saved bytes, of this environment or of one with the same arguments.
+
+        Raises:
+            UserError: if they are of another one; the environment is then as it was.
+        """
+        extra = self._episode.load(saved)
+        frame = self._episode.frame
+        self._leads = [lead(frame, 0), lead(frame, 1)]
+        self.agents = list(self.possible_agents) if extra == b"on" else []
+
+    def observe(self, agent: str) -> Numbers:
+        """Return what an agent sees now, such as after `load`."""
+        return self._senses.see(self._episode.frame)[self.possible_agents.index(agent)]
+
+    def write_record(self, file: str | Path) -> None:
+        """Write the record of the episode so far; see `Episode.write_record`."""
+        self._episode.write_record(Path(file))
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """Return a picture of the field, (height, width, 3); None without a render mode."""
+        match = self._episode.match
+        return self._drawn.draw(match.physics, match.game, self._episode.frame.markers)
+
+    def close(self) -> None:
+        """Free what draws pictures."""
+        self._drawn.close()
+
+    def _seen(self) -> dict[str, Numbers]:
+        return dict(zip(self.possible_agents, self._senses.see(self._episode.frame), strict=True))

@@ -1,0 +1,211 @@
+"""One seat of a match as a Gymnasium environment; a bot has the other seat."""
+
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_arenas import brains
+from lacoc_arenas.bot import Brain, Key
+from lacoc_arenas.learned.senses import Numbers, Senses
+from lacoc_server.match.physics import MakePhysics
+from lacoc_server.simulate.environments.court import Actions, Court, lead
+from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.opening import Opening
+from lacoc_server.world.world import World
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.gait.tables import Posture
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+class LacocEnv(gymnasium.Env[Numbers, Any]):
+    """A match against a bot. The seed of an episode chooses the learner's seat too.
+
+    Spaces, rewards and arguments are those of `LacocParallelEnv`, for one agent.
+
+    Args:
+        arena: name or folder of the arena.
+        opponent: a bot, as in `lacoc simulate`; it must be pure, as all bots should be.
+        render_mode: "rgb_array", or None.
+        settings: entries that replace those of the arena file.
+        robots: the robot of both seats.
+        actions: "keys"; a bot presses keys, so angles are for `LacocParallelEnv` and `WalkEnv`.
+        restart: whether [x] is one more action.
+        beats: beats of 20 ms in a step.
+        court: the game, if several environments share one; then most other arguments are its own.
+        make_physics: makes the physics of the matches.
+
+    Raises:
+        UserError: if one of these is wrong.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 (the library's own form)
+        "render_modes": ["rgb_array"],
+        "render_fps": 50,
+    }
+
+    def __init__(
+        self,
+        arena: str = "othello",
+        opponent: str = "straight",
+        render_mode: str | None = None,
+        settings: dict[str, Any] | None = None,
+        robots: str = "hexapod",
+        actions: Actions = "keys",
+        restart: bool = False,
+        beats: int = 1,
+        court: Court | None = None,
+        make_physics: MakePhysics = World,
+    ) -> None:
+        if actions != "keys":
+            raise UserError(say("environment.bot-keys"))
+        self.court = court or Court(arena, settings, robots, actions, restart, beats)
+        self.metadata = {**type(self).metadata, "render_fps": 50 / self.court.beats}
+        if len(self.court.seats) != 2:
+            raise UserError(say("environment.two-seats", arena=self.court.arena.name))
+        self.render_mode = render_mode
+        self.episode = self.court.episode(make_physics)
+        self._sheet = self.episode.match.sheet()
+        self._senses = Senses(self._sheet)
+        self._bot = brains.find(self.court.arena, opponent)
+        self._drawn = Drawn(render_mode)
+        self.observation_space = self.court.observation_space(self._senses, 0)
+        self.action_space = self.court.action_space(0)
+        self._brain: Brain
+        self._lead = 0
+        self._shown: list[bytes] = []
+        """Frames that the bot saw in this episode."""
+        self.begin(Opening())
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What each number is that the learner sees."""
+        return self._senses.names
+
+    @property
+    def digits(self) -> tuple[int, ...]:
+        """The digit of each action; 10 is [x]."""
+        return self.court.digits[0]
+
+    @property
+    def seat(self) -> int:
+        """Index of the learner's seat."""
+        return self.episode.opening.seat
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Numbers, dict[str, Any]]:
+        """Begin an episode.
+
+        Args:
+            seed: chooses the opening of this episode and of those after it; None: go on drawing.
+            options: "place", "late_ticks" and "seat" replace what the seed would choose.
+
+        Returns:
+            What the learner sees, and the opening.
+        """
+        super().reset(seed=seed)
+        opening = self.court.draw(self.np_random, options)
+        self.begin(opening)
+        info = {
+            "place": opening.place,
+            "late_ticks": opening.late_ticks,
+            "seat": self.court.seats[opening.seat],
+        }
+        return self.observe(), info
+
+    def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
+        """Let the beats of a step pass.
+
+        Returns:
+            What the learner sees, the reward, whether the match is over, whether physics stopped,
+            and at the end the scores and whether the learner won.
+        """
+        if not self.episode.is_on:
+            raise UserError(say("environment.over"))
+        physics = self.episode.match.physics
+        for beat in range(self.court.beats):
+            angles = self.open_beat(action if beat == 0 else None)
+            self.episode.close_beat(None if angles is None else physics.step(angles))
+            if not self.episode.is_on:
+                break
+        return self.close_step()
+
+    def open_beat(self, action: Any) -> list[Posture] | None:
+        """Let the first half of a beat pass; see `Match.open_beat`.
+
+        Args:
+            action: the learner's action; None: it keeps its key.
+        """
+        episode, seat = self.episode, self.seat
+        other = 1 - seat
+        keys: list[Key | None] = [None, None]
+        if action is not None:
+            keys[seat] = self.court.act(episode, seat, action)
+        if episode.match.ticks > episode.late_ticks[other]:
+            self._shown.append(encode(episode.frame))
+            keys[other] = self._brain(episode.frame)
+        return episode.open_beat(keys)
+
+    def close_step(self) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
+        """Return the results of a step after its last beat; see `step`."""
+        episode, seat = self.episode, self.seat
+        now = lead(episode.frame, seat)
+        gain, self._lead = float(now - self._lead), now
+        ended, stopped = episode.ended, episode.stopped
+        info = episode.outcome(seat) if ended or stopped else {}
+        return self.observe(), gain, ended, stopped, info
+
+    def observe(self) -> Numbers:
+        """Return what the learner sees now, such as after `load`."""
+        return self._senses.see(self.episode.frame)[self.seat]
+
+    def save(self) -> bytes:
+        """Return the whole environment between two steps; only its seed is not in it.
+
+        A bot may remember what it saw. So the frames that it saw are saved, and the bytes grow with
+        the episode: 330 bytes a beat.
+        """
+        return self.episode.save(encode(self._shown))
+
+    def load(self, saved: bytes) -> None:
+        """Go on from saved bytes, of this environment or of one with the same arguments.
+
+        A new brain of the bot sees all frames again, so this takes longer late in an episode.
+
+        Raises:
+            UserError: if they are of another one; the environment is then as it was.
+        """
+        shown = decode(self.episode.load(saved), list[bytes], 1 << 28)
+        self._start()
+        for frame in shown:
+            self._brain(decode(frame, Frame))
+        self._shown = shown
+
+    def write_record(self, file: str | Path) -> None:
+        """Write the record of the episode so far; see `Episode.write_record`."""
+        self.episode.write_record(Path(file))
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """Return a picture of the field, (height, width, 3); None without a render mode."""
+        match = self.episode.match
+        return self._drawn.draw(match.physics, match.game, self.episode.frame.markers)
+
+    def close(self) -> None:
+        """Free what draws pictures."""
+        self._drawn.close()
+
+    def begin(self, opening: Opening) -> None:
+        """Begin an episode with an opening."""
+        self.episode.begin(opening)
+        self._start()
+
+    def _start(self) -> None:
+        """Make a new brain for the bot, which has seen nothing."""
+        self._brain = self._bot(self._sheet, 1 - self.seat)
+        self._lead = lead(self.episode.frame, self.seat)
+        self._shown = []

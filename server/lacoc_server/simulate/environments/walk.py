@@ -1,0 +1,279 @@
+"""One robot that learns to walk: by joint angles, step by step, or by a whole table at once."""
+
+import math
+from typing import Any, Literal
+
+import gymnasium
+import msgspec
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from lacoc_arenas.learned.senses import Numbers
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.match.entry import weigh_in
+from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.steered import Steered
+from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course, practice_field
+from lacoc_server.trial.figures import measure
+from lacoc_server.trial.walk import Press
+from lacoc_server.world.sensed import SensedWorld
+from lacoc_shared.codec import decode, encode, pack_states
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import say
+
+_FORWARD = 2
+"""The key that a table is tried with, as in the sample gaits."""
+_MOST_TURN_RAD = math.radians(15)
+"""A seed turns each joint of the first posture by at most this much."""
+_FIGURES = ("speed_m_s", "lateral_m_s", "drift_rad_s", "upright", "slip_m_s", "belly_share")
+"""What is seen after a table was tried."""
+
+
+class _Saved(msgspec.Struct, frozen=True, array_like=True):
+    model: str
+    world: bytes
+    target: Posture
+    angles: Posture
+    steps: int
+    over: bool
+    begun: tuple[float, ...]
+    """Position and quaternion of the body, and joint angles, as the episode began."""
+    seen: tuple[float, ...]
+
+
+class WalkEnv(gymnasium.Env[Numbers, Numbers]):
+    """A robot on an open floor.
+
+    With actions "angles" a step is 20 ms times `beats`. An action is one number for each joint, by
+    joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move
+    there at the robot's own speed (AngMin). The reward is how far the robot came in the step [m] in
+    the direction in which it stood. An episode ends when the robot lies on its back, and is cut
+    after `seconds`. What is seen, in this order: how far the body's middle is ahead and to the left
+    of its start [m], its height [m], the two level parts of its forward direction, how upright it
+    is, its velocity ahead, to the left and up [m/s], joint angles [rad], commanded angles [rad].
+
+    With actions "table" an action is the table of key 2: a row for each posture, a number for each
+    joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed
+    forward [m/s]; 0 if the robot fell on its back. What is seen are figures of the trial: speed
+    ahead and to the left [m/s], turning to the left [rad/s], smallest uprightness, slip of the feet
+    [m/s], and the share of ticks in which the belly carries weight.
+
+    Args:
+        robot: an installed robot, or a robot file with its gait beside it.
+        actions: "angles" or "table".
+        seconds: length of an episode with angles [s].
+        beats: beats of 20 ms in a step.
+        postures: number of postures of a table.
+        render_mode: "rgb_array", or None.
+
+    Raises:
+        UserError: if one of these is wrong.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 (the library's own form)
+        "render_modes": ["rgb_array"],
+        "render_fps": 50,
+    }
+
+    def __init__(
+        self,
+        robot: str = "hexapod",
+        actions: Literal["angles", "table"] = "angles",
+        seconds: float = 20.0,
+        beats: int = 1,
+        postures: int = 4,
+        render_mode: str | None = None,
+    ) -> None:
+        if actions not in ("angles", "table"):
+            raise UserError(say("environment.walk-actions", found=str(actions)[:40]))
+        if beats < 1 or not 1 <= postures <= 100 or not 0 < seconds <= 3600:
+            raise UserError(say("environment.walk-numbers"))
+        self.render_mode = render_mode
+        self.metadata = {**type(self).metadata, "render_fps": 50 / beats}
+        entry = weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
+        self._entry, self._spec = entry, entry.robot
+        self._tables = actions == "table"
+        self._beats = beats
+        self._most_steps = math.ceil(seconds * BEATS_PER_S / beats)
+        arena = practice_field()
+        self._world = SensedWorld(arena, entry)
+        self._course = Course(self._world, self._spec, arena)
+        self._begin = self._world.save()
+        limits = np.radians(np.array(self._spec.ranges_deg))
+        self._middle = (limits[:, 0] + limits[:, 1]) / 2
+        self._half = (limits[:, 1] - limits[:, 0]) / 2
+        self._drawn = Drawn(render_mode)
+        joints = self._spec.joints
+        shape = (postures, joints) if self._tables else (joints,)
+        self.action_space = spaces.Box(-1.0, 1.0, shape, np.float32)
+        high = [10.0] * len(_FIGURES)
+        if not self._tables:
+            high = [20.0, 20.0, 20.0, 1.0, 1.0, 1.0, 100.0, 100.0, 100.0, *[np.pi] * (2 * joints)]
+        top = np.array(high, np.float32)
+        self.observation_space = spaces.Box(-top, top, dtype=np.float32)
+        self._start()
+
+    def _start(self) -> None:
+        self._world.load(self._begin)
+        self._drive = Steered(self._entry)
+        self._state = self._drive.begin(Level.LOCOMOTION)
+        self._steps, self._over = 0, False
+        self._from = self._world.pose()
+        self._seen = np.zeros(len(_FIGURES), np.float32)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Numbers, dict[str, Any]]:
+        """Begin an episode; the robot has settled in its first posture.
+
+        Args:
+            seed: chooses the first posture of this episode and of those after it, near the robot's
+                start posture. A table is tried in the same way with all seeds.
+            options: none are known.
+        """
+        super().reset(seed=seed)
+        self._start()
+        if self._tables:
+            return self._seen.copy(), {}
+        turned = self.np_random.uniform(-_MOST_TURN_RAD, _MOST_TURN_RAD, self._spec.joints)
+        low, high = self._middle - self._half, self._middle + self._half
+        first = np.clip(np.array(self._spec.start_posture) + turned, low, high)
+        self._drive.target = tuple(first.tolist())
+        for _ in range(SETTLE_TICKS):
+            self._tick()
+        self._from = self._world.pose()
+        return self.observe(), {}
+
+    def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
+        """Let the beats of a step pass, or try a table; see the class.
+
+        Returns:
+            What is seen, the reward, whether the robot lies on its back (always after a table),
+            whether time is up or physics stopped, and with a table all its figures.
+        """
+        if self._over:
+            raise UserError(say("environment.over"))
+        share = np.clip(np.asarray(action, np.float64), -1.0, 1.0)
+        target = self._middle + self._half * share
+        if self._tables:
+            return self._try(target)
+        self._drive.target = tuple(target.tolist())
+        before = self._ahead_m()
+        for _ in range(self._beats):
+            stopped = not self._tick()
+            if stopped:
+                break
+        self._steps += 1
+        fell = _up(self._world.pose()) < 0
+        cut = stopped or self._steps >= self._most_steps
+        self._over = fell or cut
+        return self.observe(), self._ahead_m() - before, fell, cut, {}
+
+    def observe(self) -> Numbers:
+        """Return what is seen now, such as after `load`."""
+        if self._tables:
+            return self._seen.copy()
+        pose = self._world.pose()
+        _, _, z, qw, qx, qy, qz = pose[:7].tolist()
+        forward = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
+        ahead, left = self._way(pose[:2] - self._from[:2])
+        speed = self._world.velocity()
+        seen = (ahead, left, z, *self._way(np.array(forward)), _up(pose), *self._way(speed[:2]))
+        return np.concatenate([seen, speed[2:], pose[7:], self._state.angles]).astype(np.float32)
+
+    def save(self) -> bytes:
+        """Return the whole environment between two steps; only its seed is not in it."""
+        return encode(
+            _Saved(
+                self._world.model_hash,
+                self._world.save(),
+                self._drive.target,
+                self._state.angles,
+                self._steps,
+                self._over,
+                tuple(self._from.tolist()),
+                tuple(self._seen.tolist()),
+            )
+        )
+
+    def load(self, saved: bytes) -> None:
+        """Go on from saved bytes, of this environment or of one with the same arguments.
+
+        Raises:
+            UserError: if they are of another one; the environment is then as it was.
+        """
+        try:
+            was = decode(saved, _Saved, 1 << 20)
+            if was.model != self._world.model_hash:
+                raise ValueError("another robot was saved")
+            self._world.load(was.world)
+        except ValueError as error:
+            raise UserError(say("environment.other-save", error=str(error)[:200])) from None
+        self._drive.target = was.target
+        self._state = msgspec.structs.replace(self._state, angles=was.angles)
+        self._steps, self._over = was.steps, was.over
+        self._from, self._seen = np.array(was.begun), np.array(was.seen, np.float32)
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """Return a picture of the robot, (height, width, 3); None without a render mode."""
+        game = self._course.arena.game
+        return self._drawn.draw(self._world, game, pack_states((0,) * len(game.markers)))
+
+    def close(self) -> None:
+        """Free what draws pictures."""
+        self._drawn.close()
+
+    def _tick(self) -> bool:
+        """Let a tick pass; return whether it passed."""
+        state = self._drive.tick(self._state)
+        if self._world.step([state.angles]) is not None:
+            return False
+        self._state = state
+        return True
+
+    def _way(self, vector: Any) -> tuple[float, float]:
+        """Return the parts of a level vector ahead and to the left, as the robot first stood."""
+        _, _, _, qw, qx, qy, qz = self._from[:7].tolist()
+        x, y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
+        length = math.hypot(x, y)
+        x, y = x / length, y / length
+        return float(vector[0] * x + vector[1] * y), float(vector[1] * x - vector[0] * y)
+
+    def _ahead_m(self) -> float:
+        return self._way(self._world.pose()[:2] - self._from[:2])[0]
+
+    def _try(
+        self, target: npt.NDArray[np.float64]
+    ) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
+        rows = tuple(tuple(row) for row in target.tolist())
+        stand = (self._spec.start_posture,)
+        gait = Gait(None, LocomotionTable((stand, stand, rows)))
+        press = Press(SETTLE_TICKS, Level.LOCOMOTION, _FORWARD)
+        figures = measure(self._course.walk(gait, [press], cycles=CYCLES))
+        self._over = True
+        self._seen = np.clip(
+            np.array(
+                [
+                    figures.speed_mm_s / 1000,
+                    figures.lateral_mm_s / 1000,
+                    math.radians(figures.drift_deg_s),
+                    figures.upright,
+                    figures.slip_mm_s / 1000,
+                    figures.belly_share,
+                ],
+                np.float32,
+            ),
+            self.observation_space.low,
+            self.observation_space.high,
+        )
+        reward = figures.speed_mm_s / 1000 if figures.upright > 0 else 0.0
+        return self._seen.copy(), reward, True, False, {"figures": msgspec.to_builtins(figures)}
+
+
+def _up(pose: npt.NDArray[np.float64]) -> float:
+    """Return how upright a robot is: 1 upright, -1 on its back."""
+    return float(1 - 2 * (pose[4] ** 2 + pose[5] ** 2))

@@ -1,0 +1,1 @@
+"""Forks of a record: a match that goes on from any of its beats, as it was or with a change."""

@@ -1,0 +1,295 @@
+"""The odds of a record: computed from forks in other processes, and kept beside the record.
+
+The forks of a moment are named by a hash of all that decides how they go: the match until then, the
+bots and the software. So whoever asks again, or for more of them, gets those that are known.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
+from functools import lru_cache
+from itertools import islice
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.replay import resume
+from lacoc_server.match.match import Match
+from lacoc_server.simulate.forks import odds
+from lacoc_server.simulate.forks.jobs import bots_of, opened
+from lacoc_server.simulate.forks.line import Change, Line, of_bot
+from lacoc_server.simulate.forks.odds import Moment
+from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.software import software
+from lacoc_shared.codec import decode
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.schema import Result
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
+from lacoc_shared.words import Phrase, say
+
+FORMAT = 1
+"""Version of the layout of a file of odds."""
+_AT_ONCE = 4
+"""So many swings are looked into at a time."""
+_LEAST_BEATS = BEATS_PER_S
+"""Moments are at least this far apart."""
+
+
+class Odds(msgspec.Struct, frozen=True, kw_only=True):
+    """The odds of a match over its course."""
+
+    format: int = FORMAT
+    match_id: str
+    record_hash: str
+    """Hash of the record (`origin.Source.hash`)."""
+    seats: tuple[str, str]
+    bots: tuple[str, str]
+    """Who plays the forks, by seat."""
+    moments: tuple[Moment, ...]
+    """In their order; the last one is the end, whose chance is the result."""
+
+
+class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):
+    """The forks of one moment, which a process plays."""
+
+    file: str
+    beat: int
+    bots: tuple[str, str]
+    variants: tuple[int, ...]
+    arena: str | None = None
+    """Folder of the arena, if it is not installed."""
+
+
+class Engine(Protocol):
+    """What plays forks: processes of this machine (`studio.workers`)."""
+
+    def submit(
+        self, function: Callable[[ChanceJob], tuple[float, ...] | Phrase], job: ChanceJob, /
+    ) -> "Future[tuple[float, ...] | Phrase]":
+        """Call the function with a job when a process is free."""
+
+
+class Wish(msgspec.Struct, frozen=True, kw_only=True):
+    """Which odds of a record are wanted."""
+
+    file: str
+    bots: tuple[str, str]
+    forks: int
+    """Forks of each moment."""
+    step_s: float
+    """Seconds of play between two moments."""
+    closer: int = 0
+    """So many moments more, where the odds change most."""
+    arena: str | None = None
+
+
+def compute(
+    wish: Wish, engine: Engine, known: Odds | None, progress: Callable[[int, int], None]
+) -> Iterator[Odds]:
+    """Compute the odds of a record.
+
+    Args:
+        wish: which.
+        engine: plays the forks.
+        known: odds from before; what still holds in them is not computed again.
+        progress: told how many moments are done, and how many there are.
+
+    Yields:
+        The odds so far, each time some more are known; at last all of them.
+
+    Raises:
+        UserError: if the record can't be forked, has no two seats or no play, or a bot has a
+            mistake.
+    """
+    source = opened(wish.file)
+    first, second = _two_seats(source)
+    course = Course(source)
+    kept = _still_known(source, wish, known)
+    moments: dict[int, Moment] = {}
+    ends = course.end
+    if ends is not None:
+        moments[ends.beat] = ends
+
+    def result(names: Sequence[Moment]) -> Odds:
+        return Odds(
+            match_id=source.match_id,
+            record_hash=source.hash,
+            seats=(first, second),
+            bots=wish.bots,
+            moments=tuple(sorted(names, key=lambda moment: moment.beat)),
+        )
+
+    wanted = odds.grid(course.playing, round(wish.step_s * BEATS_PER_S))
+    count = len(wanted) + wish.closer + len(moments)
+    while wanted:
+        jobs = {beat: _job(wish, beat, kept) for beat in wanted}
+        futures = {beat: engine.submit(margins, job) for beat, job in jobs.items() if job.variants}
+        for beat in wanted:
+            before = kept[beat].margins if beat in kept else ()
+            found = futures[beat].result() if beat in futures else ()
+            if isinstance(found, Phrase):
+                raise UserError(found)
+            moments[beat] = _moment(source, wish, course, beat, (*before, *found))
+            progress(len(moments), count)
+        yield result([*moments.values()])
+        wanted = _closer(course, moments, count)
+
+
+class Course:
+    """The course of a recorded match: when it was played, and when the game told something.
+
+    Args:
+        source: the record.
+
+    Raises:
+        UserError: if it has no beat of play.
+    """
+
+    def __init__(self, source: Source) -> None:
+        record = source.record
+        frames = [decode(encoded, Frame) for _, encoded in record.frames]
+        clocks = {one.beat: one.clock_ticks for one in frames if one.phase == Phase.PLAYING}
+        self.clocks = clocks
+        """Ticks of the clock by beat of play."""
+        self.playing = sorted(clocks)
+        if not self.playing:
+            raise UserError(say("odds.no-play", match=source.match_id))
+        self.told = [event.beat for event in record.events if "marker" in event.data]
+        """Beats with an event of the game."""
+        self.end = _end(record.result, source, self.playing[-1] + 1)
+        """The end of the match; None: it has no result."""
+
+    def clock_s(self, beat: int) -> float:
+        """Return the seconds of play before a beat."""
+        return (self.clocks.get(beat, 0) or self.clocks[self.playing[-1]]) * BEAT_S
+
+
+def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
+    """Play the forks of one moment, one after the other; return their margins.
+
+    An error that a user can correct is returned.
+    """
+    try:
+        return tuple(_margins(job))
+    except UserError as error:
+        return error.phrase
+
+
+def key(source: Source, beat: int, bots: tuple[str, str]) -> str:
+    """Return the hash of all that decides how the forks of a moment go.
+
+    Args:
+        source: the record.
+        beat: first beat of the forks' own.
+        bots: who plays them; a bot in a file counts with its content.
+    """
+    digest = hashlib.blake2b(digest_size=16)
+    for topic, number, data in source.messages:
+        if number < beat and topic in ("/lacoc/header", "/lacoc/input"):
+            digest.update(data)
+    content = [(name, _content(name)) for name in bots]
+    digest.update(msgspec.msgpack.encode((beat, content, software())))
+    return digest.hexdigest()
+
+
+def margin(result: Result, seats: Sequence[str]) -> float:
+    """Return by how many points the first seat won; a winner by another rule has one at least."""
+    points = float(result.scores[0] - result.scores[1])
+    if result.computed == seats[0]:
+        return max(1.0, points)
+    if result.computed == seats[1]:
+        return min(-1.0, points)
+    return points if not result.computed else 0.0
+
+
+def _margins(job: ChanceJob) -> Iterator[float]:
+    source = opened(job.file)
+    folder = Path(job.arena) if job.arena else None
+    seats = _two_seats(source)
+    match = _match_at(job.file, job.beat, job.arena)
+    bots = bots_of(source, job.bots, folder)
+    saved = match.save(take_backs=False)
+    for variant in job.variants:
+        match.load(saved)
+        change = Change(players={i: of_bot(bot, i, variant) for i, bot in enumerate(bots)})
+        line = Line(source.record, match, change)
+        journal = Journal(match, None)
+        while True:
+            beat, _ = journal.beat(line.inputs())
+            line.see(beat.frame)
+            if line.is_over:
+                break
+        yield margin(match.result(), seats)
+
+
+@lru_cache(maxsize=1)
+def _match_at(file: str, beat: int, arena: str | None) -> Match:
+    """Return a record's match as it was before a beat."""
+    before = opened(file).record.until(beat - 1)
+    match = resume(before, folder=Path(arena) if arena else None).match
+    while match.beats < beat - 1:  # beats in which nothing was recorded
+        match.beat()
+    return match
+
+
+def _two_seats(source: Source) -> tuple[str, str]:
+    if len(source.seats) != 2:
+        raise UserError(say("odds.two-seats", seats=source.seats))
+    return source.seats[0], source.seats[1]
+
+
+def _still_known(source: Source, wish: Wish, known: Odds | None) -> dict[int, Moment]:
+    """Return the moments whose forks would go the same way if they were played again."""
+    if known is None or known.bots != wish.bots:
+        return {}
+    return {
+        moment.beat: moment
+        for moment in known.moments
+        if moment.key and moment.key == key(source, moment.beat, wish.bots)
+    }
+
+
+def _job(wish: Wish, beat: int, kept: dict[int, Moment]) -> ChanceJob:
+    done = len(kept[beat].margins) if beat in kept else 0
+    variants = tuple(range(done + 1, wish.forks + 1))
+    return ChanceJob(file=wish.file, beat=beat, bots=wish.bots, variants=variants, arena=wish.arena)
+
+
+def _moment(
+    source: Source, wish: Wish, course: Course, beat: int, ended: tuple[float, ...]
+) -> Moment:
+    return Moment(
+        beat=beat,
+        clock_s=course.clock_s(beat),
+        margins=ended,
+        chance=odds.chance(ended),
+        key=key(source, beat, wish.bots),
+    )
+
+
+def _closer(course: Course, moments: dict[int, Moment], count: int) -> list[int]:
+    """Return where to look next: into the largest swings that are still long."""
+    room = min(_AT_ONCE, count - len(moments))
+    found = (
+        odds.between(course.playing, course.told, swing, _LEAST_BEATS)
+        for swing in odds.swings([*moments.values()])
+    )
+    return list(islice((beat for beat in found if beat is not None), max(0, room)))
+
+
+def _end(result: Result | None, source: Source, beat: int) -> Moment | None:
+    if result is None or not result.computed:
+        return None
+    winner = result.official if result.official not in ("", "void") else result.computed
+    won = {source.seats[0]: 1.0, "draw": 0.5}.get(winner, 0.0)
+    points = float(result.scores[0] - result.scores[1])
+    return Moment(beat=beat, clock_s=result.clock_s, margins=(points,), chance=won)
+
+
+def _content(bot: str) -> bytes:
+    """Return the source of a bot that is a file; empty: it is part of the software."""
+    path = Path(bot).expanduser()
+    return path.read_bytes() if bot.endswith(".py") and path.is_file() else b""

@@ -1,0 +1,142 @@
+"""Plays a fork of a record, and writes it as a record of its own."""
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.replay import resume
+from lacoc_server.match.match import Beat, Match
+from lacoc_server.simulate.forks.line import REFEREE, Change, Line
+from lacoc_server.simulate.forks.origin import Source, stem
+from lacoc_shared.inputs import Decide, Input
+from lacoc_shared.messages import DecisionReply, Refusal
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.files import packed_path
+from lacoc_shared.record.pack import read, write
+from lacoc_shared.record.schema import Result
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase, say
+
+
+@dataclass(frozen=True)
+class Forked:
+    """A fork that was played."""
+
+    result: Result
+    phase: Phase
+    """The phase in which the fork ended; play is over in FINISHED and later ones."""
+    beats: int
+    """Beats of the fork's own."""
+    decided_beat: int | None
+    """Beat in which the change's decisions fell; None: it had none."""
+    changes: tuple[Phrase, ...]
+    """Events that a take-back removed or made new."""
+    left_out: int
+    """Recorded take-backs that were left out (`Line.left_out`)."""
+    record: Path | None
+    """The fork's record; None: none was wanted."""
+
+
+def fork(
+    source: Source,
+    beat: int,
+    change: Change | None = None,
+    *,
+    match_id: str = "fork",
+    folder: Path | None = None,
+    seconds: float | None = None,
+    arena: Path | None = None,
+) -> Forked:
+    """Go on with a recorded match from one of its beats.
+
+    Args:
+        source: the record.
+        beat: first beat of the fork's own; the one after the last is allowed.
+        change: what is other than in the record; None: nothing.
+        match_id: id of the fork.
+        folder: folder of the fork's record; None: none is written.
+        seconds: how long the fork goes on at most [s]; None: until play ends.
+        arena: folder of the arena, if it is not installed.
+
+    Raises:
+        UserError: if the record has no such beat, if it can't be proven up to there on this
+            machine (`journal.replay.resume`), if the match would refuse the change, or if the
+            fork's record exists already or can't be written.
+    """
+    before = stem(source, beat, match_id)
+    out = packed_path(folder, match_id) if folder else None
+    if out is not None and out.exists():
+        raise UserError(say("record.exists", file=str(out)))
+    match = resume(before.record, folder=arena).match
+    with tempfile.TemporaryDirectory() as scratch:
+        segment = before.record.headers[-1].segment + 1
+        journal = Journal(match, Path(scratch) if out else None, segment)
+        try:
+            while match.beats < beat - 1:  # beats in which nothing was recorded
+                journal.beat()
+            forked = _played(source, journal, change or Change(), seconds, out)
+        finally:
+            journal.close()
+        if out is not None and journal.writer is not None:
+            # The fork's own beats are one more segment of the record that it goes on from.
+            write([*before.messages, *read([journal.writer.path])], out)
+    return forked
+
+
+def _check_phase(match: Match, change: Change) -> None:
+    """Check that players can take over in the match's phase.
+
+    Raises:
+        UserError: if it has not begun, or play is over.
+    """
+    if change.players and not (match.has_begun and match.phase is not Phase.FINISHED):
+        raise UserError(say("fork.not-in-play", beat=match.beats + 1, phase=match.phase.word))
+
+
+def _played(
+    source: Source, journal: Journal, change: Change, seconds: float | None, out: Path | None
+) -> Forked:
+    match, first = journal.match, journal.match.beats + 1
+    _check_phase(match, change)
+    line = Line(source.record, match, change, seconds)
+    changes: list[Phrase] = []
+    for _, replies in _beats(line, journal):
+        for reply in replies:
+            changes += reply.changes
+    return Forked(
+        match.result(),
+        match.phase,
+        match.beats + 1 - first,
+        line.decided_beat,
+        tuple(changes),
+        line.left_out,
+        out,
+    )
+
+
+def _beats(line: Line, journal: Journal) -> Iterator[tuple[Beat, list[DecisionReply]]]:
+    """Play a fork; yield each beat with the replies to the change's decisions.
+
+    Raises:
+        UserError: if the match refuses a decision of the change.
+    """
+    while True:
+        inputs = line.inputs()
+        beat, _ = journal.beat(inputs)
+        yield beat, _replies(inputs, beat)
+        line.see(beat.frame)
+        if line.is_over:
+            return
+
+
+def _replies(inputs: list[Input], beat: Beat) -> list[DecisionReply]:
+    found: list[DecisionReply] = []
+    for item, outcome in zip(inputs, beat.outcomes, strict=True):
+        if isinstance(item, Decide) and item.by == REFEREE:
+            if isinstance(outcome, Refusal):
+                raise UserError(say("fork.refused", beat=beat.frame.beat, why=outcome.why))
+            assert isinstance(outcome, DecisionReply)
+            found.append(outcome)
+    return found

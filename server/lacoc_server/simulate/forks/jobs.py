@@ -1,0 +1,109 @@
+"""A fork as a job that another process can take."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+
+import msgspec
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas import brains
+from lacoc_arenas.bot import BotFactory
+from lacoc_server.simulate.forks.fork import Forked, fork
+from lacoc_server.simulate.forks.line import Change, Press, of_bot
+from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.simulate.forks.script import of_script
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+RECORDED = "-"
+"""Stands for a bot where a seat goes on with its recorded keys."""
+
+
+class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
+    """A fork to play."""
+
+    file: str
+    """The record."""
+    beat: int
+    take_back: int | None = None
+    restart: tuple[str, ...] = ()
+    scripts: dict[str, tuple[str, ...]] = {}
+    """Lines of a key script, by seat id."""
+    bots: tuple[str, ...] = ()
+    """The bot of each seat, or `RECORDED`; empty: all seats go on with their recorded keys."""
+    variant: int = 0
+    """See `line.of_bot`."""
+    seconds: float | None = None
+    match_id: str = "fork"
+    folder: str | None = None
+    """Folder of the fork's record; None: there is none."""
+    arena: str | None = None
+    """Folder of the arena, if it is not installed."""
+
+
+def play(job: ForkJob) -> Forked:
+    """Play a fork.
+
+    Raises:
+        UserError: as `fork.fork` does; or if there is no such seat or bot, or a script has a
+            mistake.
+    """
+    source = opened(job.file)
+    folder = Path(job.folder) if job.folder else None
+    arena = Path(job.arena) if job.arena else None
+    return fork(
+        source,
+        job.beat,
+        _change(job, source, arena),
+        match_id=job.match_id,
+        folder=folder,
+        seconds=job.seconds,
+        arena=arena,
+    )
+
+
+def attempt(job: ForkJob) -> Forked | Phrase:
+    """Play a fork in a worker process; an error that a user can correct is returned."""
+    try:
+        return play(job)
+    except UserError as error:
+        return error.phrase
+
+
+@lru_cache(maxsize=1)
+def opened(file: str) -> Source:
+    """Read a record; the newest one is kept, because many forks begin with the same.
+
+    Raises:
+        UserError: as `origin.read_source` does.
+    """
+    return read_source(Path(file))
+
+
+def bots_of(source: Source, names: tuple[str, ...], folder: Path | None) -> list[BotFactory]:
+    """Find bots for a record's arena.
+
+    Raises:
+        UserError: if there is no such bot.
+    """
+    setup = source.record.header.setup
+    arena = arenas.from_settings(setup.arena, setup.settings, folder)
+    return [brains.find(arena, name) for name in names]
+
+
+def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
+    seats = source.seats
+    for seat in (*job.restart, *job.scripts):
+        if seat not in seats:
+            raise UserError(say("fork.no-seat", seat=seat, seats=seats))
+    if job.bots and len(job.bots) != len(seats):
+        raise UserError(say("fork.players", seats=seats, given=len(job.bots)))
+    players: dict[int, Callable[[], Press]] = {}
+    for index, name in enumerate(job.bots):
+        if name != RECORDED:
+            (bot,) = bots_of(source, (name,), folder)
+            players[index] = of_bot(bot, index, job.variant)
+    for seat, lines in job.scripts.items():
+        players[seats.index(seat)] = of_script(lines, seats.index(seat))
+    return Change(job.take_back, job.restart, players)

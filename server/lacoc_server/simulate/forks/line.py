@@ -1,0 +1,242 @@
+"""The inputs of a fork, beat by beat: recorded ones, and what a change puts in their place; pure.
+
+A change is made by the rules of a court. So an event can only be taken back in a halt, and a fork
+in play is halted and resumed for that. What was recorded later comes later by as much.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_server.match.match import Match
+from lacoc_shared.decisions import Decision, Halt, Restart, Resume, TakeBack
+from lacoc_shared.inputs import Advice, Decide, HeardSeat, Input, KeySeat, SilentSeat
+from lacoc_shared.messages import Frame
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.words import say
+
+REFEREE = "fork"
+"""Name of the referee who decides what a change asks for."""
+_SEARCH_BEATS = BEATS_PER_S
+"""A take-back waits at most this long for a beat without recorded inputs."""
+_SILENT_BEATS = BEATS_PER_S
+"""A seat is silent this long after its record ended, as it would be at a court."""
+_LATE_TICKS = BEATS_PER_S
+_REACTION_TICKS = BEATS_PER_S // 5
+_IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
+_OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
+
+Press = Callable[[Match, Frame], Key | None]
+"""Called with the match and its frame after each beat; returns the key for the next beat."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is other in a fork than in its record; by default nothing is."""
+
+    take_back: int | None = None
+    """Number of an event that is taken back; None: none."""
+    restart: tuple[str, ...] = ()
+    """Ids of the seats whose robots are put back at a start place."""
+    players: Mapping[int, Callable[[], Press]] = field(default_factory=dict)
+    """Who plays a seat from now on, by its index; all others press their recorded keys."""
+
+    @property
+    def is_none(self) -> bool:
+        """True if nothing changes."""
+        return self.take_back is None and not self.restart and not self.players
+
+
+class Line:
+    """Gives a fork its inputs.
+
+    Args:
+        record: the record of the match, whole.
+        match: the match, after the last beat before the fork.
+        change: what is other than in the record.
+        seconds: how long the fork goes on at most [s]; None: until play ends.
+    """
+
+    def __init__(
+        self, record: Record, match: Match, change: Change, seconds: float | None = None
+    ) -> None:
+        self.match = match
+        self.decided_beat: int | None = None
+        """Beat in which the change's decisions fell; None: they have not yet, or there are none."""
+        self.left_out = 0
+        """Recorded take-backs that were left out: they name events of the record, which have other
+        numbers in the fork.
+        """
+        self._change = change
+        self._first = match.beats + 1
+        self._first_number = match.next_number
+        self._recorded = dict(self._kept(record))
+        self._last_recorded = record.last_beat if self._kept_seats else match.beats
+        self._shift = 0
+        self._limit = None if seconds is None else match.beats + round(seconds * BEATS_PER_S)
+        self._decides_at = self._free_beat() if change.take_back is not None else self._first
+        self._players = {seat: make() for seat, make in change.players.items()}
+        self._seqs = {seat: match.seats[seat].applied[0] for seat in self._players}
+        self._pressed: list[Input] = []
+
+    @property
+    def is_over(self) -> bool:
+        """True if the fork ends after the beats so far."""
+        match = self.match
+        if self._limit is not None and match.beats >= self._limit:
+            return True
+        if match.beats < max(self._first, self._decides_at):
+            return False
+        if not self._change.is_none and match.phase is Phase.FINISHED:
+            return True  # a fork with a change is nobody's official result
+        if match.beats < self._last_recorded + self._shift:
+            return match.phase in _OVER and not self._change.is_none
+        ends = bool(match.duration_ticks) or self._limit is not None
+        return match.phase not in _IN_PLAY or not ends
+
+    def inputs(self) -> list[Input]:
+        """Return the inputs of the next beat."""
+        match, beat = self.match, self.match.beats + 1
+        found: list[Input] = []
+        if beat == self._first:
+            found += (HeardSeat(seat) for seat in self._players if match.seats[seat].silent)
+        if beat <= self._decides_at:
+            found += self._recorded.get(beat, ())
+        else:
+            source = beat - self._shift
+            found += self._recorded.get(source, ()) if source > self._decides_at else ()
+        if beat == self._decides_at:
+            found += self._decisions()
+        if beat == self._last_recorded + self._shift + _SILENT_BEATS:
+            found += (
+                SilentSeat(seat)
+                for seat in self._kept_seats
+                if match.seats[seat].join and not match.seats[seat].silent
+            )
+        found += self._pressed
+        self._pressed = []
+        return found
+
+    def see(self, frame: Frame) -> None:
+        """Show the players the frame of a beat."""
+        match = self.match
+        if match.phase is not Phase.PLAYING:
+            return
+        for seat, press in self._players.items():
+            key = press(match, frame)
+            if key is not None:
+                self._seqs[seat] += 1
+                self._pressed.append(KeySeat(seat, self._seqs[seat], int(key.level), key.key))
+
+    @property
+    def _kept_seats(self) -> list[int]:
+        """The seats that press their recorded keys."""
+        return [seat.index for seat in self.match.seats if seat.index not in self._change.players]
+
+    def _kept(self, record: Record) -> Iterator[tuple[int, list[Input]]]:
+        """Yield the recorded inputs that the fork keeps, by beat."""
+        for beat, items in record.inputs.items():
+            if beat >= self._first and (kept := [item for item in items if self._keeps(item)]):
+                yield beat, kept
+
+    def _keeps(self, item: Input) -> bool:
+        if isinstance(item, Decide) and isinstance(item.decision, TakeBack):
+            is_later = item.decision.event >= self._first_number
+            if is_later and not self._change.is_none:
+                self.left_out += 1
+                return False
+        if isinstance(item, Decide | Advice):
+            # Without a recorded seat, nothing is left that the referee decided about.
+            return bool(self._kept_seats)
+        return item.seat not in self._change.players
+
+    def _free_beat(self) -> int:
+        """Return the first beat of the fork without recorded inputs.
+
+        A halt refuses the keys of its beat. So it is put where nobody pressed one, and the robots
+        go the same ways as in the record.
+        """
+        beats = range(self._first, self._first + _SEARCH_BEATS)
+        return next((beat for beat in beats if beat not in self._recorded), self._first)
+
+    def _decisions(self) -> Sequence[Input]:
+        """Return the decisions of the change, and note how much later everything else comes."""
+        match, change = self.match, self._change
+        decisions: list[Decision] = []
+        halts = change.take_back is not None and match.phase in _IN_PLAY
+        if halts:
+            decisions.append(Halt())
+            countdown = round(match.rules.countdown_s * BEATS_PER_S)
+            left = match.countdown_beats if match.phase is Phase.COUNTDOWN else 1
+            # Play goes on when the countdown ends, in the beat of the record's next tick.
+            self._shift = countdown + 1 - left
+        if change.take_back is not None:
+            decisions.append(TakeBack(change.take_back))
+        decisions += (Restart(seat) for seat in change.restart)
+        if halts or (match.phase is Phase.HALTED and not self._kept_seats):
+            decisions.append(Resume())
+        found = [Decide(REFEREE, say("reason.fork"), decision) for decision in decisions]
+        if found:
+            self.decided_beat = match.beats + 1
+        return found
+
+
+def of_bot(bot: BotFactory, seat: int, variant: int = 0) -> Callable[[], Press]:
+    """Return a player that lets a bot play.
+
+    Args:
+        bot: the bot.
+        seat: index of its seat.
+        variant: each number but 0 lets the bot react in its own way: it sees its first frame up to
+            a second late, and each of its keys takes up to 0.2 s. A match has no other chance in
+            it, so this is what makes forks from one beat differ.
+    """
+
+    def make() -> Press:
+        return _BotPress(bot, seat, variant)
+
+    return make
+
+
+class _BotPress:
+    """The keys of a bot."""
+
+    def __init__(self, bot: BotFactory, seat: int, variant: int) -> None:
+        self._bot = bot
+        self._seat = seat
+        self._variant = variant
+        self._drawn = 0
+        self._brain: Brain | None = None
+        self._waits = self._draw(_LATE_TICKS)
+        self._pending: Key | None = None
+        self._pending_ticks = 0
+
+    def __call__(self, match: Match, frame: Frame) -> Key | None:
+        if self._waits > 0:
+            self._waits -= 1
+            return None
+        if self._brain is None:
+            self._brain = self._bot(match.sheet(), self._seat)
+        key = self._brain(frame)
+        if key is not None:
+            if self._pending is None:
+                self._pending_ticks = self._draw(_REACTION_TICKS)
+            self._pending = key
+        elif self._pending is None:
+            return None
+        if self._pending_ticks > 0:
+            self._pending_ticks -= 1
+            return None
+        key, self._pending = self._pending, None
+        return key
+
+    def _draw(self, most: int) -> int:
+        """Return the next number from 0 to `most` of this variant and seat; 0 for variant 0."""
+        if not self._variant:
+            return 0
+        self._drawn += 1
+        text = f"{self._variant} {self._seat} {self._drawn}"
+        number = hashlib.blake2b(text.encode(), digest_size=4).digest()
+        return int.from_bytes(number, "little") % (most + 1)

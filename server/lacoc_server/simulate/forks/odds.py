@@ -1,0 +1,136 @@
+"""The odds of a match over its course, from how its forks ended; pure.
+
+At some moments forks go on with bots in the seats. Their margins are few and jump from one to the
+next, so the chance is not the share of forks that were won. It is the chance that one more fork
+would be won, if margins are spread normally: Student's distribution around their mean.
+"""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import msgspec
+
+PRIOR_SPREAD = 1.0
+"""Spread of margins [points] that is assumed before any fork is seen."""
+PRIOR_WEIGHT = 2
+"""So many forks that assumption is worth."""
+
+
+class Moment(msgspec.Struct, frozen=True, kw_only=True):
+    """A moment of a match, and how its forks ended."""
+
+    beat: int
+    """First beat of the forks' own."""
+    clock_s: float
+    """Seconds played until then."""
+    margins: tuple[float, ...]
+    """Points of the first seat less those of the second, at the end of each fork."""
+    chance: float
+    """Chance of the first seat to win, from 0 to 1; a draw counts half."""
+    key: str = ""
+    """Hash of all that decides how these forks go (`chances.key`); "": the match was over."""
+
+
+class Swing(NamedTuple):
+    """A stretch of a match in which the odds changed."""
+
+    before: Moment
+    after: Moment
+
+    @property
+    def change(self) -> float:
+        """How much the chance of the first seat grew; negative: it fell."""
+        return self.after.chance - self.before.chance
+
+
+def chance(margins: Sequence[float]) -> float:
+    """Return the chance of the first seat to win one more fork, from 0 to 1.
+
+    Args:
+        margins: how the forks ended, at least one (`Moment.margins`).
+    """
+    count = len(margins)
+    mean = math.fsum(margins) / count
+    squares = math.fsum((margin - mean) ** 2 for margin in margins)
+    freedom = PRIOR_WEIGHT + count - 1
+    spread = math.sqrt((PRIOR_WEIGHT * PRIOR_SPREAD**2 + squares) / freedom)
+    return student(mean / (spread * math.sqrt(1 + 1 / count)), freedom)
+
+
+def student(t: float, freedom: int) -> float:
+    """Return Student's distribution function.
+
+    Args:
+        t: the value.
+        freedom: degrees of freedom, at least 1.
+    """
+    # The closed form for whole degrees of freedom (Abramowitz and Stegun 26.7.3 and 26.7.4).
+    angle = math.atan2(t, math.sqrt(freedom))
+    cos, sin = math.cos(angle), math.sin(angle)
+    if freedom % 2:
+        term, total = cos, 0.0
+        for number in range(1, freedom - 1, 2):
+            total += term
+            term *= cos * cos * (number + 1) / (number + 2)
+        inside = 2 / math.pi * (angle + sin * total)
+    else:
+        term, total = 1.0, 0.0
+        for number in range(0, freedom - 1, 2):
+            total += term
+            term *= cos * cos * (number + 1) / (number + 2)
+        inside = sin * total
+    return min(1.0, max(0.0, (1 + inside) / 2))
+
+
+def swings(moments: Sequence[Moment]) -> list[Swing]:
+    """Return the stretches between moments, the largest change first."""
+    ordered = sorted(moments, key=lambda moment: moment.beat)
+    found = [Swing(*pair) for pair in pairwise(ordered)]
+    return sorted(found, key=lambda swing: (-abs(swing.change), swing.before.beat))
+
+
+def grid(playing: Sequence[int], step: int) -> list[int]:
+    """Return the moments with which a curve begins.
+
+    Args:
+        playing: all beats in which play went on, in order.
+        step: beats of play between two moments.
+    """
+    return list(playing[::step])
+
+
+def between(playing: Sequence[int], told: Sequence[int], swing: Swing, least: int) -> int | None:
+    """Return where to look into a swing, so that one sees what caused it.
+
+    That is just after the event in the stretch that is nearest to its middle; without an event it
+    is the middle.
+
+    Args:
+        playing: all beats in which play went on, in order.
+        told: beats in which the game told something, in order.
+        swing: the stretch.
+        least: beats of play that stay between two moments.
+
+    Returns:
+        A beat; None: the stretch is too short.
+    """
+    inner = [beat for beat in playing if swing.before.beat < beat < swing.after.beat]
+    inner = inner[least - 1 : len(inner) - least + 1]
+    if not inner:
+        return None
+    middle = inner[len(inner) // 2]
+    after = [beat + 1 for beat in told if inner[0] <= beat + 1 <= inner[-1]]
+    return min(after, key=lambda beat: abs(beat - middle), default=middle)
+
+
+def highlights(moments: Sequence[Moment], most: int = 8, least: float = 0.05) -> list[Swing]:
+    """Return the stretches in which the odds changed most, the largest change first.
+
+    Args:
+        moments: moments of a match.
+        most: largest number of stretches.
+        least: smallest change.
+    """
+    return [swing for swing in swings(moments) if abs(swing.change) >= least][:most]

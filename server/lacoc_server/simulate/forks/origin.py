@@ -1,0 +1,157 @@
+"""What a fork goes on from: a record up to a beat, under the fork's own name."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from msgspec.structs import replace
+
+from lacoc_server.journal.judge import last_beat
+from lacoc_shared import codec
+from lacoc_shared.messages import Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.pack import Message
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Header, Origin, Result, Setup
+from lacoc_shared.words import say
+
+COURT = "fork"
+"""Name of the court in records of forks: no court of this name ever played them."""
+_CALL = "fork"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A record to fork."""
+
+    record: Record
+    messages: tuple[Message, ...]
+    """All its messages as they are in the file."""
+
+    @property
+    def match_id(self) -> str:
+        """Id of the recorded match."""
+        return self.record.header.match_id
+
+    @property
+    def last_beat(self) -> int:
+        """The last beat that was answered."""
+        return last_beat(self.record)
+
+    @property
+    def seats(self) -> tuple[str, ...]:
+        """Ids of the seats."""
+        return tuple(str(seat["id"]) for seat in self.record.header.setup.settings["seat"])
+
+    @cached_property
+    def hash(self) -> str:
+        """Hash of the messages, hexadecimal; packing segments into one file does not change it."""
+        digest = hashlib.blake2b(digest_size=16)
+        for topic, beat, data in self.messages:
+            digest.update(f"{topic} {beat} {len(data)}\n".encode())
+            digest.update(data)
+        return digest.hexdigest()
+
+
+def read_source(path: Path) -> Source:
+    """Read a record that is to be forked.
+
+    Args:
+        path: a packed file, or any segment of a match.
+
+    Raises:
+        UserError: if it can't be read, or if a part of it is lost or damaged.
+    """
+    messages: list[Message] = []
+    record = Record.read(path, lambda *message: messages.append(message))
+    if record.lost:
+        raise UserError(say("fork.damaged", file=str(path), cut=record.cut))
+    return Source(record, tuple(messages))
+
+
+@dataclass(frozen=True)
+class Stem:
+    """A record up to the beat before a fork, under the fork's name."""
+
+    record: Record
+    """Header, sheets and results have the fork's id; everything else is as it was recorded."""
+    messages: tuple[Message, ...]
+    """The same as messages, for the fork's own record."""
+    setup: Setup
+    """Setup of the fork."""
+
+
+def stem(source: Source, beat: int, match_id: str) -> Stem:
+    """Return what a fork goes on from.
+
+    Args:
+        source: the record.
+        beat: first beat of the fork's own.
+        match_id: id of the fork.
+
+    Raises:
+        UserError: if the record has no such beat.
+    """
+    first, last = 1, source.last_beat + 1
+    if not first <= beat <= last:
+        raise UserError(say("fork.no-beat", beat=beat, first=first, last=last))
+    setup = _setup(source, beat, match_id)
+    before = source.record.until(beat - 1)
+    headers = [_header(header, setup) for header in before.headers]
+    before.headers = headers
+    before.sheets = [(number, _sheet(sheet, setup)) for number, sheet in before.sheets]
+    before.results = [_result(result, setup) for result in before.results]
+    return Stem(before, tuple(_messages(source, beat, setup)), setup)
+
+
+def _setup(source: Source, beat: int, match_id: str) -> Setup:
+    """Return a fork's setup: nothing in it can be taken for the match that was played."""
+    was = source.record.header.setup
+    origin = Origin(match_id=was.match_id or source.match_id, beat=beat, record_hash=source.hash)
+    assigned = was.assigned
+    if assigned is not None and assigned.call:
+        # The call would make this the game of a contest. Seats and files stay, because the match
+        # asks for them when a team comes back.
+        said = say("fixture.fork", match=origin.match_id, beat=beat)
+        assigned = replace(assigned, call=_CALL, fixture=said)
+    return replace(was, match_id=match_id, court=COURT, assigned=assigned, origin=origin)
+
+
+def _messages(source: Source, beat: int, setup: Setup) -> list[Message]:
+    """Return all messages before a beat, with those that name the match changed to the fork's."""
+    found: list[Message] = []
+    for topic, number, data in source.messages:
+        # A result has the number of beats so far, which is one more than its beat's number.
+        if number >= beat + (topic == "/lacoc/result"):
+            continue
+        match topic:
+            case "/lacoc/health":
+                continue  # it was measured at a court, over more than these beats
+            case "/lacoc/header":
+                data = codec.encode(_header(codec.decode(data, Header, len(data)), setup))
+            case "/lacoc/sheet":
+                data = codec.encode(_sheet(codec.decode(data, Sheet, len(data)), setup))
+            case "/lacoc/result":
+                data = codec.encode(_result(codec.decode(data, Result, len(data)), setup))
+        found.append((topic, number, data))
+    return found
+
+
+def _header(header: Header, setup: Setup) -> Header:
+    return replace(header, match_id=setup.match_id, setup=setup)
+
+
+def _sheet(sheet: Sheet, setup: Setup) -> Sheet:
+    assigned = setup.assigned
+    return replace(
+        sheet,
+        match_id=setup.match_id,
+        court=setup.court,
+        call=assigned.call if assigned else sheet.call,
+        fixture=assigned.fixture if assigned else sheet.fixture,
+    )
+
+
+def _result(result: Result, setup: Setup) -> Result:
+    return replace(result, match_id=setup.match_id, court=setup.court)

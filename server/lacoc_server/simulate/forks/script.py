@@ -1,0 +1,73 @@
+"""A seat of a fork that is played by a person's script (`gait.key_script` has its form)."""
+
+from collections.abc import Callable, Sequence
+
+from lacoc_arenas.bot import Key
+from lacoc_server.match.match import Match
+from lacoc_server.simulate.forks.line import Press
+from lacoc_shared.gait.key_script import ARROWS, KeyScript
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import BEAT_S, RESTART_KEY
+
+
+def of_script(lines: Sequence[str], seat: int) -> Callable[[], Press]:
+    """Return a player that presses the keys of a script; its times count from the fork.
+
+    Args:
+        lines: the script.
+        seat: index of the seat.
+
+    Raises:
+        UserError: if a line has a mistake.
+    """
+    _script(lines)
+
+    def make() -> Press:
+        return _ScriptPress(_script(lines), seat)
+
+    return make
+
+
+def _script(lines: Sequence[str]) -> KeyScript:
+    script = KeyScript()
+    for line in lines:
+        if wrong := script.add(line):
+            raise UserError(wrong)
+    return script
+
+
+class _ScriptPress:
+    """The keys of a script."""
+
+    def __init__(self, script: KeyScript, seat: int) -> None:
+        self._script = script
+        self._seat = seat
+        self._begun: int | None = None
+        self._level: Level | None = None
+
+    def __call__(self, match: Match, frame: Frame) -> Key | None:
+        if self._begun is None:
+            state = match.seats[self._seat].state
+            self._begun = match.ticks
+            self._level = state.level if state else match.rules.open_levels[0]
+        pressed: Key | None = None
+        for name in self._script.due((match.ticks - self._begun) * BEAT_S, True):
+            pressed = self._key(match, name) or pressed
+        return pressed
+
+    def _key(self, match: Match, name: str) -> Key | None:
+        """Return the key of a name; None if it only changes the level, or is not for the robot."""
+        assert self._level is not None
+        if name.isdecimal():
+            return Key(self._level, int(name))
+        if name == "x":
+            return Key(self._level, RESTART_KEY)
+        if name in ARROWS and self._level is Level.LOCOMOTION:
+            return Key(self._level, ARROWS[name])
+        if name == "tab":
+            levels = match.rules.open_levels
+            following = levels.index(self._level) + 1 if self._level in levels else 0
+            self._level = levels[following % len(levels)]
+        return None

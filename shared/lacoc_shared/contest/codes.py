@@ -1,0 +1,26 @@
+"""Short codes that people type, such as that of a class or of an event."""
+
+import hashlib
+import secrets
+import unicodedata
+
+_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
+"""None looks like another one."""
+_LENGTH = 6
+
+
+def new_code() -> str:
+    """Make a random code, such as "K7QM3X"."""
+    return "".join(secrets.choice(_LETTERS) for _ in range(_LENGTH))
+
+
+def code_of(secret: str) -> str:
+    """Make the code that belongs to a secret: the same at each start."""
+    digest = hashlib.blake2b(secret.encode(), digest_size=_LENGTH, person=b"lacoc event code")
+    return "".join(_LETTERS[byte % len(_LETTERS)] for byte in digest.digest())
+
+
+def read_code(text: str) -> str:
+    """Return a typed code in its usual form: "ｋ7q m3x" becomes "K7QM3X"."""
+    wide = unicodedata.normalize("NFKC", text).upper()
+    return "".join(letter for letter in wide if letter.isalnum())

@@ -1,0 +1,98 @@
+"""A script of keys: a small language, so that a file or a program can play.
+
+A line holds keys: `2`, or `tab 1`, or `1 2 3 4` (also `1234`), one after another. A number with a
+point before them is a time: `1.5 3` presses 3 a second and a half after the keys before. Time runs
+only while the match is played; keys that move the robot wait until then. `#` begins a comment.
+"""
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+from lacoc_shared.words import Phrase, say
+
+NAMED = ("tab", "space", "up", "down", "left", "right")
+MOVING = frozenset("0123456789x") | {"up", "down", "left", "right"}
+"""Keys that have an effect only while the match is played."""
+ARROWS = {"up": 2, "left": 1, "right": 3, "down": 0}
+"""The digit of each arrow, at level B."""
+_LETTERS = frozenset("xzrq")
+
+
+class _Step(NamedTuple):
+    wait_s: float
+    key: str
+
+
+class KeyScript:
+    """Holds the keys of a script, and returns each when it is due."""
+
+    def __init__(self) -> None:
+        self._steps: deque[_Step] = deque()
+        self._since_s = 0.0
+        """Seconds of play at which the last key was due; times count from there."""
+        self._moved_s = -1.0
+        """Seconds of play at which the last key that moves the robot was pressed."""
+        self._lines = 0
+
+    def add(self, line: str) -> Phrase | None:
+        """Take in a line.
+
+        Returns:
+            What is wrong with the line, which is then left out; else None.
+        """
+        self._lines += 1
+        words = line.partition("#")[0].lower().split()
+        wait_s = _number(words[0]) if len(words) > 1 else None
+        keys = [key for word in words[wait_s is not None :] for key in _keys(word)]
+        wrong = next((key for key in keys if not _known(key)), None)
+        if wrong is not None:
+            return say("script.no-key", line=self._lines, key=wrong)
+        if wait_s is not None and not 0 <= wait_s < math.inf:
+            return say("script.no-time", line=self._lines, time=words[0])
+        for index, key in enumerate(keys):
+            self._steps.append(_Step(0.0 if index else wait_s or 0.0, key))
+        return None
+
+    def due(self, playing_s: float, playing: bool) -> list[str]:
+        """Return the keys that are due, with at most one among them that moves the robot.
+
+        Args:
+            playing_s: how long the match has been played [s].
+            playing: whether it is being played.
+        """
+        keys: list[str] = []
+        while self._steps:
+            wait_s, key = self._steps[0]
+            if playing_s < self._since_s + wait_s:
+                break
+            if key in MOVING and not (playing and playing_s > self._moved_s):
+                break
+            self._steps.popleft()
+            keys.append(key)
+            if key in MOVING:
+                self._moved_s = playing_s
+            self._since_s = self._since_s + wait_s if wait_s else max(self._since_s, playing_s)
+        return keys
+
+    @property
+    def empty(self) -> bool:
+        """True if no key is waiting."""
+        return not self._steps
+
+
+def _keys(word: str) -> list[str]:
+    return [word] if word in NAMED or len(word) == 1 else list(word)
+
+
+def _known(key: str) -> bool:
+    return key in MOVING or key in _LETTERS or key in NAMED
+
+
+def _number(word: str) -> float | None:
+    if "." not in word:  # without a point these are keys: "1 2 3 4"
+        return None
+    try:
+        return float(word)
+    except ValueError:
+        return None

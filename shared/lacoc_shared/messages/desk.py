@@ -1,0 +1,286 @@
+"""What the pages of an organiser and of teams ask of a contest's office (docs/contest.md 12).
+
+A gateway passes these requests on unread: the office alone looks at their secret. Whoever has the
+organiser's key decides; the event code lets a team apply; a team's token opens its own entry.
+"""
+
+from typing import Annotated, Literal
+
+import msgspec
+
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import Phrase
+
+DESK_MAX_BYTES = 98_304
+"""Longest request that is read."""
+REPLY_MAX_BYTES = 2 << 20
+"""Longest answer that is read."""
+
+_Name = Annotated[str, msgspec.Meta(max_length=64)]
+_Text = Annotated[str, msgspec.Meta(max_length=500)]
+
+
+class Files(
+    msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
+):
+    """The files that a team hands in; None: it hands none in."""
+
+    robot: SentFile | None = None
+    """Robot file; None: the contest's robot."""
+    postures: SentFile | None = None
+    locomotion: SentFile | None = None
+
+
+class DeskRequest(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    forbid_unknown_fields=True,
+    omit_defaults=True,
+    tag_field="do",
+):
+    """What all requests have."""
+
+    secret: Annotated[str, msgspec.Meta(max_length=200)] = ""
+    """The organiser's key, the event code, or the team's token."""
+
+
+# Everybody
+
+
+class Look(DeskRequest, frozen=True, kw_only=True, tag="look"):
+    """Ask what is known of the event without a secret."""
+
+
+# With the event code
+
+
+class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
+    """Ask to take part; the organiser decides."""
+
+    team: _Name
+    files: Files
+
+
+# With a team's token
+
+
+class Change(DeskRequest, frozen=True, kw_only=True, tag="change"):
+    """Hand in other files. When entries are closed, the organiser decides."""
+
+    files: Files
+
+
+class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
+    """Ask how the team's own entry stands."""
+
+
+# With the organiser's key
+
+
+class Overview(DeskRequest, frozen=True, kw_only=True, tag="overview"):
+    """Ask for everything that the organiser's page shows."""
+
+    known: str = ""
+    """Version that the page has already: then the answer is empty."""
+
+
+class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
+    """Let teams take part that have applied, or let them use their late files."""
+
+    teams: tuple[_Name, ...]
+    reason: _Text = ""
+    """For late files; everybody can read it."""
+
+
+class Decline(DeskRequest, frozen=True, kw_only=True, tag="decline"):
+    """Turn an application down, and forget it."""
+
+    team: _Name
+
+
+class CloseEntries(DeskRequest, frozen=True, kw_only=True, tag="close"):
+    """Close entries: the office draws and calls the first games."""
+
+
+class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
+    """Take a team out of the contest."""
+
+    team: _Name
+    reason: _Text = ""
+    disqualify: bool = False
+    really: bool = False
+    """False: only say what would change."""
+
+
+class Rule(DeskRequest, frozen=True, kw_only=True, tag="rule"):
+    """Decide about a match."""
+
+    kind: Literal["replay", "result", "void", "no-show"]
+    pairing: _Name
+    game: Annotated[int, msgspec.Meta(ge=1, le=200)] = 1
+    """Number of the game; not for "void" and "no-show"."""
+    team: _Name = ""
+    """The team that did not come; for "no-show"."""
+    scores: tuple[int, int] | None = None
+    """Points of the left and of the right seat; for "result"."""
+    reason: _Text = ""
+    really: bool = False
+    """False: only say what would change."""
+
+
+class Move(DeskRequest, frozen=True, kw_only=True, tag="move"):
+    """Move a match to another court or time; the newest move of a match counts."""
+
+    pairing: _Name
+    court: _Name = ""
+    """"": any court."""
+    before: _Name = ""
+    """Pairing of the match before which it comes; "": as the schedule has it."""
+    not_before_ms: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 0
+    """In milliseconds since 1970, UTC."""
+
+
+class Tokens(DeskRequest, frozen=True, kw_only=True, tag="tokens"):
+    """Ask for the tokens of all teams of people, to hand out their links."""
+
+
+AnyRequest = (
+    Look
+    | Apply
+    | Change
+    | Own
+    | Overview
+    | Approve
+    | Decline
+    | CloseEntries
+    | TakeOut
+    | Rule
+    | Move
+    | Tokens
+)
+"""Every request to the desk."""
+
+
+# Answers
+
+
+class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
+    """What everybody may know before the first match."""
+
+    name: str
+    open: bool
+    """Whether teams can apply, and change their files."""
+    closes_ms: int
+    """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them."""
+
+
+class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
+    """How a team's own entry stands."""
+
+    event: EventInfo
+    team: str
+    token: str
+    """The team's token for the whole contest."""
+    state: Literal["waits", "in", "late", "left", "none"]
+    """waits: the organiser has not approved it. in: it takes part. late: it takes part, and the
+    organiser has not approved its newest files. left: it was taken out. none: there is none."""
+    files: str = ""
+    """Hash of the files with which it plays, or will play once approved."""
+    at_ms: int = 0
+    """When files that wait were handed in, in milliseconds since 1970, UTC; 0: none wait."""
+
+
+class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A team on the organiser's page."""
+
+    team: str
+    state: Literal["refused", "waits", "late", "in", "withdrawn", "disqualified"]
+    """refused: its newest files had mistakes, and it has not entered. Others: see `OwnEntry`."""
+    files: str = ""
+    bot: str = ""
+    """The bot that plays for it; "": people play."""
+    at_ms: int = 0
+    mistakes: tuple[Mistake, ...] = ()
+    """What is wrong with the files that it handed in last."""
+
+
+class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A court on the organiser's page."""
+
+    court: str
+    here: bool
+    """Whether it was heard lately."""
+
+
+class Moved(msgspec.Struct, frozen=True):
+    """How a match was moved: see `Move`."""
+
+    court: str
+    before: str
+    not_before_ms: int
+
+
+class Slot(msgspec.Struct, frozen=True, kw_only=True):
+    """A match that is played, or can be played, and where and when."""
+
+    pairing: str
+    fixture: Phrase
+    teams: tuple[str, str]
+    court: str
+    at_ms: int
+    """When it began, or probably begins; in milliseconds since 1970, UTC."""
+    running: bool = False
+    begun: bool = False
+    """Whether its game at the court has begun: it can't be moved now."""
+    moved: Moved | None = None
+    """How it was moved; None: it was not."""
+    held: Phrase | None = None
+    """Why a court refused its game; None: none did."""
+
+
+class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that the organiser's page shows, besides the sheet of the contest."""
+
+    version: str
+    """Changes with the rest."""
+    event: EventInfo
+    code: str
+    """The event code."""
+    drawn: bool
+    """Whether a stage is drawn."""
+    teams: tuple[TeamRow, ...]
+    courts: tuple[CourtRow, ...]
+    slots: tuple[Slot, ...]
+    """By court, and by time."""
+
+
+class Overviewed(msgspec.Struct, frozen=True, kw_only=True):
+    """The answer to `Overview`."""
+
+    view: OfficeView | None
+    """None: the page has the newest one."""
+
+
+class Effect(msgspec.Struct, frozen=True, kw_only=True):
+    """What a decision changes, or would change."""
+
+    lines: tuple[Phrase, ...]
+    done: bool
+
+
+class Said(msgspec.Struct, frozen=True, kw_only=True):
+    """What was done."""
+
+    said: tuple[Phrase, ...]
+
+
+class TeamTokenList(msgspec.Struct, frozen=True, kw_only=True):
+    """The tokens of teams, by name."""
+
+    tokens: dict[str, str]
+
+
+Answer = EventInfo | OwnEntry | Overviewed | Effect | Said | TeamTokenList
+"""Every answer of the desk; which one it is follows from the request."""

@@ -1,0 +1,237 @@
+"""Read a record as numpy arrays, with units in the names; for notebooks and programs of one's own.
+
+    from lacoc_shared.record import notebook
+
+    match = notebook.read("recordings/20260501-100000-main-001.mcap")
+    left = match.robots[0]
+    print(left.team, match.score[-1], left.position_m[match.playing])
+
+docs/notebook.md describes every array. Arrays of one object have one length, and are in the order
+of time. `columns` gives them by name, as a table for pandas or a spreadsheet.
+"""
+
+import dataclasses
+import math
+import struct
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lacoc_shared import codec
+from lacoc_shared.inputs import KeySeat
+from lacoc_shared.messages import ROOT_FLOATS, Frame, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.export.kinematics import euler_zyx, joints_per_seat, split_poses
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import BEAT_S, Phase
+from lacoc_shared.words import render, say
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+Texts = NDArray[np.str_]
+
+
+@dataclass(frozen=True)
+class Robot:
+    """The robot of a seat in each frame; NaN where the field has none."""
+
+    seat: str
+    team: str
+    """The team that had the seat last."""
+    position_m: Floats
+    """Centre of the body in the world: x, y, z; (frames, 3)."""
+    quaternion: Floats
+    """Orientation, body to world: w, x, y, z; (frames, 4)."""
+    roll_pitch_yaw_rad: Floats
+    """The same orientation as Euler angles ZYX (rules 2); (frames, 3)."""
+    joints_rad: Floats
+    """Joint angles by joint id; (frames, joints). If the team changed its robot, the columns are
+    those of the robot with the most joints."""
+
+
+@dataclass(frozen=True)
+class Keys:
+    """The keys that the court gave to the match, of all seats."""
+
+    beat: Numbers
+    """Beat at which the key took effect."""
+    time_s: Floats
+    seat: Numbers
+    """Index of the seat in `Match.robots`."""
+    level: Numbers
+    """0: level A, 1: level B."""
+    key: Numbers
+    """Digit; 10 is [x]."""
+    held_ms: Floats
+    """Time by which the court delayed the key, to make the links equal."""
+    late_ms: Floats
+    """Time between the end of the common delay and the effect."""
+
+
+@dataclass(frozen=True)
+class Events:
+    """What happened."""
+
+    number: Numbers
+    beat: Numbers
+    time_s: Floats
+    clock_s: Floats
+    kind: Texts
+    """phase, flip, capture, strike, decision and others (docs/protocol.md)."""
+    seat: Numbers
+    """Index of the seat that the event is about; -1: none."""
+    text: Texts
+    """The sentence, in the language of the process."""
+
+
+@dataclass(frozen=True)
+class Match:
+    """A match as arrays. Arrays without a note have one entry for each frame."""
+
+    match_id: str
+    arena: str
+    beat: Numbers
+    """Beat of each frame. The court leaves out frames while nothing moves, before and after play.
+    """
+    time_s: Floats
+    """Time since beat 0."""
+    clock_s: Floats
+    """Time that was used on the clock of play."""
+    phase: Texts
+    """Name of the phase: "PLAYING"."""
+    playing: Flags
+    """True in the phase PLAYING: `match.time_s[match.playing]`."""
+    score: Numbers
+    """Points; (frames, seats)."""
+    markers: NDArray[np.uint8]
+    """State of each marker: 0 neutral, 1 left, 2 right, 3 down; (frames, markers)."""
+    marker_names: Texts
+    """(markers,)."""
+    marker_position_m: Floats
+    """x, y in the world; (markers, 2)."""
+    robots: tuple[Robot, ...]
+    """One for each seat."""
+    keys: Keys
+    events: Events
+    winner: str
+    """Seat id of the official winner, else of the winner by the rules; "draw", "void"; "": none."""
+    cut: str
+    """Where the record ends too early, and why; "": it is whole."""
+
+
+def read(path: str | Path | Iterable[str | Path]) -> Match:
+    """Read a match.
+
+    Args:
+        path: the .mcap file of a match or one of its segments, as a text or a Path; or several
+            segments, in order.
+
+    Raises:
+        UserError: if it is no record, holds no frame, or its messages contradict each other.
+    """
+    paths = Path(path) if isinstance(path, str | Path) else [Path(one) for one in path]
+    record = Record.read(paths)
+    if not record.frames or not record.sheets:
+        raise UserError(say("notebook.no-frames", match=record.header.match_id[:80]))
+    try:
+        return _match(record)
+    except (ValueError, ArithmeticError, LookupError, TypeError, struct.error) as error:
+        match = record.header.match_id[:80]
+        raise UserError(say("replay.damaged-copy", match=match, error=str(error)[:80])) from None
+
+
+def columns(table: Keys | Events) -> dict[str, NDArray[Any]]:
+    """Return the columns of a table by name: `pandas.DataFrame(columns(match.events))`."""
+    return {field.name: getattr(table, field.name) for field in dataclasses.fields(table)}
+
+
+def _match(record: Record) -> Match:
+    frames = [codec.decode(encoded, Frame) for _, encoded in record.frames]
+    beats = np.array([beat for beat, _ in record.frames], dtype=np.int64)
+    sheet = record.sheets[-1][1]
+    seats = len(sheet.seats)
+    count = len(sheet.markers)
+    result = record.result
+    return Match(
+        match_id=record.header.match_id,
+        arena=record.header.setup.arena,
+        beat=beats,
+        time_s=_times(beats),
+        clock_s=_times(np.array([frame.clock_ticks for frame in frames], dtype=np.int64)),
+        phase=np.array([Phase(frame.phase).name for frame in frames]),
+        playing=np.array([frame.phase == Phase.PLAYING for frame in frames]),
+        score=np.array(
+            [[seat.score for seat in frame.seats] for frame in frames], dtype=np.int64
+        ).reshape(len(frames), seats),
+        markers=np.array(
+            [codec.unpack_states(frame.markers, count) for frame in frames], dtype=np.uint8
+        ).reshape(len(frames), count),
+        marker_names=np.array([marker.name for marker in sheet.markers], dtype=np.str_),
+        marker_position_m=np.array(
+            [(marker.x_m, marker.y_m) for marker in sheet.markers], dtype=np.float64
+        ).reshape(count, 2),
+        robots=_robots(record, frames, sheet),
+        keys=_keys(record),
+        events=_events(record),
+        winner=(result.official or result.computed) if result is not None else "",
+        cut=render(record.cut) if record.cut else "",
+    )
+
+
+def _robots(record: Record, frames: list[Frame], last: Sheet) -> tuple[Robot, ...]:
+    joints_of = {beat: joints_per_seat(sheet) for beat, sheet in record.sheets}
+    most = [max(column) for column in zip(*joints_of.values(), strict=True)]
+    poses = [np.full((len(frames), ROOT_FLOATS + joints), math.nan) for joints in most]
+    starts = np.array(list(joints_of))
+    for row, (beat, _) in enumerate(record.frames):
+        valid = int(np.searchsorted(starts, beat, side="right")) - 1
+        if valid < 0 or not frames[row].poses:
+            continue
+        joints = joints_of[int(starts[valid])]
+        for seat, pose in enumerate(split_poses(frames[row].poses, joints)):
+            poses[seat][row, : len(pose)] = pose
+    return tuple(
+        Robot(
+            seat=seat.id,
+            team=seat.team,
+            position_m=pose[:, :3],
+            quaternion=pose[:, 3:ROOT_FLOATS],
+            roll_pitch_yaw_rad=euler_zyx(pose[:, 3:ROOT_FLOATS]),
+            joints_rad=pose[:, ROOT_FLOATS:],
+        )
+        for seat, pose in zip(last.seats, poses, strict=True)
+    )
+
+
+def _keys(record: Record) -> Keys:
+    found = [
+        (beat, item.seat, item.level, item.key, item.held, item.late)
+        for beat, inputs in record.inputs.items()
+        for item in inputs
+        if isinstance(item, KeySeat)
+    ]
+    beat, seat, level, key, held, late = np.array(found, dtype=np.int64).reshape(-1, 6).T
+    return Keys(beat, _times(beat), seat, level, key, 1000 * _times(held), 1000 * _times(late))
+
+
+def _events(record: Record) -> Events:
+    events = record.events
+    beat = np.array([event.beat for event in events], dtype=np.int64)
+    return Events(
+        number=np.array([event.number for event in events], dtype=np.int64),
+        beat=beat,
+        time_s=_times(beat),
+        clock_s=_times(np.array([event.clock_ticks for event in events], dtype=np.int64)),
+        kind=np.array([event.kind for event in events], dtype=np.str_),
+        seat=np.array([event.seat for event in events], dtype=np.int64),
+        text=np.array([render(event.said) for event in events], dtype=np.str_),
+    )
+
+
+def _times(beats: Numbers) -> Floats:
+    return np.asarray(beats * BEAT_S, dtype=np.float64)

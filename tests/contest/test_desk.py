@@ -1,0 +1,333 @@
+"""Tests of the desk of an office: entries by page, decisions, moves, and who may do what."""
+
+from pathlib import Path
+
+import pytest
+
+from lacoc_robots.library import sample_gait_files
+from lacoc_server.contest import organiser
+from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.desk.desk import Desk
+from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import note_plans
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.kept.tokens import TeamTokens
+from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, Played, new
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.schedule import due, playable
+from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.live.whereabouts import Known, Pace
+from lacoc_shared.codec import encode
+from lacoc_shared.contest.tokens import new_token
+from lacoc_shared.messages import Refusal, SentFile
+from lacoc_shared.messages.desk import (
+    AnyRequest,
+    Apply,
+    Approve,
+    Change,
+    CloseEntries,
+    Decline,
+    Effect,
+    EventInfo,
+    Files,
+    Look,
+    Move,
+    OfficeView,
+    Overview,
+    Overviewed,
+    Own,
+    OwnEntry,
+    Rule,
+    TakeOut,
+    TeamTokenList,
+    Tokens,
+)
+
+NOW_MS = 1_800_000_000_000
+KEY, CODE = "organiser", "K7QM3X"
+_FILE = """
+[office]
+token = "{token}"
+[stage.cup]
+format = "round-robin"
+[court.north]
+arena = "othello"
+listen = ["127.0.0.1:0"]
+referee.token = "{referee}"
+[court.south]
+arena = "othello"
+listen = ["127.0.0.1:0"]
+referee.token = "{other}"
+"""
+
+
+def sample(change: bytes = b"") -> Files:
+    """Give the files of a team; another `change` gives another hash."""
+    postures, locomotion = sample_gait_files("hexapod")
+    assert locomotion is not None
+    locomotion = SentFile(locomotion.name, locomotion.data.rstrip() + b"\n" + change)
+    return Files(postures=postures, locomotion=locomotion)
+
+
+class Room:
+    """A contest with its desk."""
+
+    def __init__(self, folder: Path) -> None:
+        self.file = folder / "contest.toml"
+        tokens = {name: new_token() for name in ("token", "referee", "other")}
+        self.file.write_text(_FILE.format(**tokens))
+        self.where = ContestFolder(self.file)
+        self.store = FactStore(self.where.facts)
+        note_plans(self.store, self.where.plans)
+        self.applications = Applications(self.where.applications)
+        self.tokens = TeamTokens(self.where.tokens)
+        self.book = Book(self.where, FactStore(self.where.facts), self.applications, self.tokens)
+        courts = {"north": Seen(NOW_MS), "south": Seen(NOW_MS)}
+        known = Known(courts, Pace(NOW_MS, 60_000), {})
+        self.desk = Desk(self.book, KEY, CODE, lambda: known)
+
+    def ask(self, request: AnyRequest) -> object:
+        """Ask as the network does: encoded."""
+        return self.desk.judge(encode(request))
+
+    @property
+    def facts(self) -> tuple[AnyFact, ...]:
+        return self.store.facts()
+
+    @property
+    def view(self) -> OfficeView:
+        answer = self.ask(Overview(secret=KEY))
+        assert isinstance(answer, Overviewed)
+        assert answer.view is not None
+        return answer.view
+
+    def states(self) -> dict[str, str]:
+        return {row.team: row.state for row in self.view.teams}
+
+    def draw(self) -> None:
+        """Do what the office does when entries are closed."""
+        self.store.decide(lambda facts: filter(None, [due(compute(facts, FORMATS), FORMATS)]))
+
+    def enter(self, *teams: str) -> None:
+        for team in teams:
+            organiser.enter(self.file, team, None, "", "")
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Room:
+    return Room(tmp_path)
+
+
+def said(answer: object) -> str:
+    assert isinstance(answer, Refusal), answer
+    return answer.why.code
+
+
+def test_a_team_enters_by_page(room: Room) -> None:
+    """It applies, the organiser approves, and the fact is that of the command."""
+    applied = room.ask(Apply(secret="k7q m3x", team=" Bees ", files=sample()))
+    assert isinstance(applied, OwnEntry)
+    assert (applied.team, applied.state) == ("Bees", "waits")
+    assert [type(fact).__name__ for fact in room.facts] == ["Planned"], "no fact before a word"
+    assert room.states() == {"Bees": "waits"}
+
+    room.ask(Approve(secret=KEY, teams=("Bees",)))
+
+    (entered,) = (fact for fact in room.facts if type(fact).__name__ == "Entered")
+    assert entered.files == applied.files  # type: ignore[union-attr]
+    assert room.where.entries.load(applied.files).locomotion == sample().locomotion.data  # type: ignore[union-attr]
+    own = room.ask(Own(secret=applied.token))
+    assert isinstance(own, OwnEntry)
+    assert (own.state, own.token) == ("in", applied.token), "one token for the whole event"
+
+
+def test_files_are_replaced_until_entries_close_then_with_a_reason(room: Room) -> None:
+    """Before, a team changes its files itself; after, the organiser decides, and says why."""
+    room.enter("Ants")
+    applied = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(applied, OwnEntry)
+    again = room.ask(Change(secret=applied.token, files=sample(b"\n")))
+    assert isinstance(again, OwnEntry)
+    assert again.state == "waits"
+    room.ask(Approve(secret=KEY, teams=("Bees",)))
+    early = room.ask(Change(secret=applied.token, files=sample(b"\n\n")))
+    assert isinstance(early, OwnEntry)
+    assert early.state == "in"
+
+    room.ask(CloseEntries(secret=KEY))
+    late = room.ask(Change(secret=applied.token, files=sample(b"\n\n\n")))
+    assert isinstance(late, OwnEntry)
+    assert late.state == "late"
+    assert room.states()["Bees"] == "late"
+    assert compute(room.facts, FORMATS).teams[1].files == early.files, "nothing has changed yet"
+    assert said(room.ask(Approve(secret=KEY, teams=("Bees",)))) == "contest.needs-reason"
+    room.ask(Approve(secret=KEY, teams=("Bees",), reason="motor limit was misread"))
+    assert compute(room.facts, FORMATS).teams[1].files == late.files
+    assert room.facts[-1].reason == "motor limit was misread"  # type: ignore[union-attr]
+
+
+def test_all_mistakes_are_told_and_the_organiser_sees_them(room: Room) -> None:
+    """A refused team gets every mistake of its files; nothing is kept of it on the disk."""
+    broken = SentFile("LocoTra-data.txt", b"1\t2\nx\ty\n")
+    answer = room.ask(Apply(secret=CODE, team="Bees", files=Files(locomotion=broken)))
+    assert isinstance(answer, Refusal)
+    assert answer.mistakes
+    (row,) = room.view.teams
+    assert (row.state, row.mistakes) == ("refused", answer.mistakes)
+    assert not room.applications.waiting
+    assert isinstance(room.ask(Apply(secret=CODE, team="Bees", files=sample())), OwnEntry)
+    assert room.states() == {"Bees": "waits"}
+    assert said(room.ask(Apply(secret=CODE, team="Ants", files=Files()))) == "desk.no-files"
+
+
+@pytest.mark.parametrize("name", ["Ants", "ANTS", "Ａnts", " ants ", "Bees"])
+def test_a_name_has_one_owner(room: Room, name: str) -> None:
+    """No name that is in, that waits, or that looks like one of these can be taken."""
+    room.enter("Ants")
+    room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert said(room.ask(Apply(secret=CODE, team=name, files=sample()))) == "desk.name-taken"
+
+
+def test_a_declined_name_is_free_and_its_link_opens_nothing(room: Room) -> None:
+    """Whoever takes the name next gets another token."""
+    first = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(first, OwnEntry)
+    room.ask(Decline(secret=KEY, team="Bees"))
+    assert said(room.ask(Own(secret=first.token))) == "desk.no-such-team"
+    second = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(second, OwnEntry)
+    assert second.token != first.token
+    assert said(room.ask(Decline(secret=KEY, team="Crabs"))) == "desk.no-application"
+
+
+def test_applications_are_there_after_a_restart(room: Room) -> None:
+    """They lie on the disk, with the files."""
+    room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    with Applications(room.where.applications) as again:
+        assert again.waiting.keys() == {"Bees"}
+        assert again.waiting["Bees"].entry == room.applications.waiting["Bees"].entry
+
+
+def test_entries_close_once_and_need_two_teams(room: Room) -> None:
+    """Closing is a fact; what waits then does not take part."""
+    room.enter("Ants")
+    assert said(room.ask(CloseEntries(secret=KEY))) == "contest.few-teams"
+    room.enter("Bees")
+    room.ask(Apply(secret=CODE, team="Crabs", files=sample()))
+    room.ask(CloseEntries(secret=KEY))
+    assert isinstance(room.facts[-1], Closed)
+    assert said(room.ask(CloseEntries(secret=KEY))) == "desk.closed-already"
+    assert said(room.ask(Apply(secret=CODE, team="Dogs", files=sample()))) == "league.closed"
+    assert said(room.ask(Approve(secret=KEY, teams=("Crabs",)))) == "league.closed"
+
+
+def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
+    """The preview appends nothing; the decision is the fact of the command, and moves ranks."""
+    room.enter("Ants", "Bees")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    (match,) = playable(room.book.contest)
+    first, second = match.next_seats or ("", "")
+    facts = {"pairing": match.pairing.id, "game": 1, "teams": (first, second)}
+    room.store.append(new(Played, scores=(10, 2), outcome="left", **facts))
+
+    rule = {"kind": "result", "pairing": match.pairing.id, "scores": (2, 10), "reason": "swapped"}
+    before = room.facts
+    seen = room.ask(Rule(secret=KEY, **rule))
+    assert isinstance(seen, Effect)
+    assert not seen.done
+    assert {line.code for line in seen.lines} == {"decide.match", "decide.rank"}
+    assert room.facts == before
+    done = room.ask(Rule(secret=KEY, really=True, **rule))
+    assert isinstance(done, Effect)
+    assert done.lines == seen.lines
+    assert room.book.contest.stages[0].ranking[0] == second
+
+    out = TakeOut(secret=KEY, team=first, reason="left early")
+    count = len(room.facts)
+    assert isinstance(room.ask(out), Effect)
+    assert len(room.facts) == count
+    room.ask(TakeOut(secret=KEY, team=first, reason="left early", really=True))
+    assert room.states()[first] == "withdrawn"
+
+
+def test_a_match_is_moved(room: Room) -> None:
+    """The view has it where it was moved; a wrong court is refused."""
+    room.enter("Ants", "Bees", "Crabs", "Dogs")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    slots = {slot.pairing: slot.court for slot in room.view.slots}
+    last = [*slots][-1]
+    other = "south" if slots[last] == "north" else "north"
+    later_ms = NOW_MS + 3_600_000
+    room.ask(Move(secret=KEY, pairing=last, court=other, not_before_ms=later_ms))
+    (slot,) = (slot for slot in room.view.slots if slot.pairing == last)
+    assert (slot.court, slot.at_ms) == (other, later_ms)
+    assert slot.moved is not None
+    assert slot.moved.court == other
+    assert said(room.ask(Move(secret=KEY, pairing=last, court="east"))) == "desk.no-court"
+    assert said(room.ask(Move(secret=KEY, pairing="x:a1.1"))) == "decide.no-match"
+    assert said(room.ask(Move(secret=KEY, pairing=last, before=last))) == "desk.before-itself"
+
+
+def test_an_unchanged_view_is_not_sent_again(room: Room) -> None:
+    """A page asks every second or two."""
+    answer = room.ask(Overview(secret=KEY, known=room.view.version))
+    assert isinstance(answer, Overviewed)
+    assert answer.view is None
+
+
+def test_tokens_are_for_the_organiser_alone(room: Room) -> None:
+    """Nobody else hears a token but its own team; bots need none."""
+    room.enter("Ants")
+    organiser.enter(room.file, "Bots", None, "planner", "")
+    answer = room.ask(Tokens(secret=KEY))
+    assert isinstance(answer, TeamTokenList)
+    assert answer.tokens == {"Ants": room.tokens.of("Ants")}
+    for secret in ("", CODE, room.tokens.of("Ants")):
+        assert said(room.ask(Tokens(secret=secret))) == "desk.not-organiser"
+
+
+def test_roles_hold(room: Room) -> None:
+    """No role can do what is another's, and a flood of guesses is answered without a look."""
+    room.enter("Ants", "Bees")
+    token = room.tokens.of("Ants")
+    before = (room.facts, room.applications.waiting)
+    organisers = [
+        Overview,
+        CloseEntries,
+        Tokens,
+    ]
+    for secret in ("", CODE, token, "x", KEY.upper()):
+        for kind in organisers:
+            assert said(room.ask(kind(secret=secret))) == "desk.not-organiser"
+        for request in (
+            Approve(secret=secret, teams=("Ants",)),
+            Decline(secret=secret, team="Ants"),
+            TakeOut(secret=secret, team="Bees", really=True),
+            Rule(secret=secret, kind="void", pairing="cup:a1.1", reason="x", really=True),
+            Move(secret=secret, pairing="cup:a1.1", court="north"),
+        ):
+            assert said(room.ask(request)) == "desk.not-organiser"
+    for secret in ("", token, KEY, "K7QM3Y"):
+        request = Apply(secret=secret, team="Crabs", files=sample())
+        assert said(room.ask(request)) == "desk.wrong-code"
+    for secret in ("", CODE, KEY, f"{token}x"):
+        assert said(room.ask(Change(secret=secret, files=sample()))) == "desk.no-such-team"
+    assert (room.facts, room.applications.waiting) == before
+    for _ in range(300):
+        last = room.ask(Own(secret="guess"))
+    assert isinstance(last, Refusal)
+    assert last.again
+    assert last.why.code == "desk.slower"
+    assert isinstance(room.ask(Own(secret=token)), OwnEntry), "a right one is always let in"
+    assert isinstance(room.ask(Look()), EventInfo)
+
+
+def test_what_is_no_request_is_refused(room: Room) -> None:
+    """Bytes of any kind get an answer, and nothing else happens."""
+    for payload in (b"", b"\xc1", b"\x80", encode({"do": "draw"}), b"x" * 200_000):
+        assert said(room.desk.judge(payload)) == "desk.bad-request"
+    assert not any(isinstance(fact, Drawn) for fact in room.facts)

@@ -1,0 +1,277 @@
+"""The environment of both seats: the library's checks, seeds, saves, records and views."""
+
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pettingzoo.test import parallel_api_test
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.bot import Key
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.simulate import Player, player, simulate
+from lacoc_server.simulate.environments import LacocParallelEnv
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Setup
+
+SHORT: dict[str, Any] = {"match": {"duration_s": 1.2, "countdown_s": 0.02}}
+GAMES = ("othello", "flag-strike")
+
+
+@pytest.fixture(scope="module", params=GAMES)
+def env(request: pytest.FixtureRequest) -> LacocParallelEnv:
+    return LacocParallelEnv(request.param, settings=SHORT)
+
+
+def play(env: LacocParallelEnv, seed: int, steps: int = 10_000) -> list[Any]:
+    """Play with random actions of a seed; return all that the environment gave."""
+    chance = np.random.default_rng(seed)
+    given: list[Any] = []
+    while env.agents and len(given) < steps:
+        acts = {agent: int(chance.integers(env.action_space(agent).n)) for agent in env.agents}
+        given.append(env.step(acts))
+    return given
+
+
+def same(one: list[Any], other: list[Any]) -> bool:
+    """Say whether two runs gave the same, bit for bit."""
+    return len(one) == len(other) and all(
+        all(a[0][agent].tobytes() == b[0][agent].tobytes() for agent in a[0]) and a[1:] == b[1:]
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arena", GAMES)
+@pytest.mark.parametrize("actions", ["keys", "angles"])
+def test_the_checks_of_pettingzoo(arena: str, actions: Any) -> None:
+    """The library's own test finds no mistake and gives no warning."""
+    env = LacocParallelEnv(arena, settings=SHORT, actions=actions)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        parallel_api_test(env, num_cycles=100)
+
+
+@pytest.mark.long
+def test_the_checks_of_pettingzoo_over_1000_cycles() -> None:
+    """The same with whole matches' settings, 1,000 cycles long."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for arena in GAMES:
+            parallel_api_test(LacocParallelEnv(arena), num_cycles=1000)
+
+
+def test_a_seed_gives_the_same_episode(env: LacocParallelEnv) -> None:
+    """Whole episodes with one seed are equal bit for bit, also of another environment."""
+    again = LacocParallelEnv(env.court.arena.name, settings=SHORT)
+    runs, openings = [], []
+    for seed, one in ((3, env), (4, env), (3, again), (4, again)):
+        seen, infos = one.reset(seed=seed)
+        openings.append(infos["left"])
+        runs.append([(seen, 0), *play(one, seed)])
+    assert openings[0] != openings[1]
+    assert openings[:2] == openings[2:]
+    assert same(runs[0], runs[2])
+    assert same(runs[1], runs[3])
+    assert not same(runs[0], runs[1])
+
+
+def test_rewards_add_up_to_the_lead(env: LacocParallelEnv) -> None:
+    """Rewards add up to the final lead, and those of both agents to zero; agents empty."""
+    env.reset(seed=1)
+    first = env._leads[0]
+    given = play(env, 1)
+    scores = given[-1][4]["left"]["scores"]
+    assert sum(step[1]["left"] for step in given) == scores[0] - scores[1] - first
+    assert all(step[1]["left"] == -step[1]["right"] for step in given)
+    assert env.agents == []
+    assert env.step({"left": 0}) == ({}, {}, {}, {}, {})
+    assert [step[2]["left"] for step in given].count(True) == 1
+
+
+def test_forks_are_equal_to_the_end(env: LacocParallelEnv, tmp_path: Path) -> None:
+    """From random saves an episode goes on bit for bit, in this environment and in a new one."""
+    chance = np.random.default_rng(5)
+    new = LacocParallelEnv(env.court.arena.name, settings=SHORT)
+    for number in range(8):
+        env.reset(seed=number)
+        play(env, number, int(chance.integers(0, 50)))
+        saved = env.save()
+        rest = play(env, 99)
+        for one in (env, new):
+            one.load(saved)
+            assert one.observe("right").tobytes()
+            assert same(play(one, 99), rest)
+    files = [tmp_path / "one.mcap", tmp_path / "other.mcap"]
+    for file, one in zip(files, (env, new), strict=True):
+        one.write_record(file)
+    frames = [Record.read(file).frames for file in files]
+    assert [frame for _, frame in frames[0]][-1]
+    assert [beat for beat, _ in frames[0]] == [beat for beat, _ in frames[1]]
+
+
+def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path) -> None:
+    """The record of an episode, also of half of one, is the same match bit for bit."""
+    for name, steps in (("whole", 10_000), ("half", 20)):
+        env.reset(seed=8)
+        play(env, 8, steps)
+        file = tmp_path / f"{name}.mcap"
+        env.write_record(file)
+        *_, verdict = verify(Record.read(file), processes=1)
+        assert isinstance(verdict, Verdict)
+        assert verdict.kind is Kind.SAME
+    result = Record.read(tmp_path / "whole.mcap").result
+    assert result is not None
+    env.reset(seed=8)
+    assert result.scores == play(env, 8)[-1][4]["left"]["scores"]
+    with pytest.raises(UserError, match="exists"):
+        env.write_record(tmp_path / "whole.mcap")
+    with pytest.raises(UserError, match="mcap"):
+        env.write_record(tmp_path / "record.txt")
+
+
+@pytest.mark.parametrize("arena", GAMES)
+def test_an_episode_is_the_match_that_is_simulated(arena: str, tmp_path: Path) -> None:
+    """Bots that press the actions' keys in `lacoc simulate` end in the same state."""
+    env = LacocParallelEnv(arena, settings=SHORT)
+    env.reset(options={"place": 0, "late_ticks": (7, 7)})
+    while env.agents:
+        tick = env._episode.match.ticks
+        env.step({"left": 2 if tick < 30 else 1, "right": 3})
+    digest = env._episode.frame.digest
+    loaded = arenas.load(arena, SHORT)
+    setup = Setup(
+        match_id="m", court="c", match=1, arena=arena, settings=loaded.settings, limits={}
+    )
+
+    def presses(seat: int) -> Player:
+        def bot(sheet: Any, index: int) -> Any:
+            def brain(frame: Any) -> Key | None:
+                wanted = 3 if seat else 2 if frame.clock_ticks < 30 else 1
+                now = frame.seats[seat].key
+                return Key(Level.LOCOMOTION, wanted) if now != wanted else None
+
+            return brain
+
+        return Player(player(loaded, seat, "straight").join, bot, late_ticks=7)
+
+    assert simulate(setup, [presses(0), presses(1)]).digest == digest.hex()
+
+
+def test_both_seats_see_the_same_when_the_field_is_turned(env: LacocParallelEnv) -> None:
+    """At the start, both seats see the same numbers, but for the last bits of physics."""
+    seen, _ = env.reset(options={"late_ticks": (0, 0), "place": 0})
+    assert seen["left"] == pytest.approx(seen["right"], abs=1e-6)
+    for agent in env.possible_agents:
+        assert seen[agent] in env.observation_space(agent)
+        assert len(env.names) == len(seen[agent])
+    for _ in range(30):
+        seen = env.step({"left": 2, "right": 2})[0]
+    assert seen["left"] == pytest.approx(seen["right"], abs=1e-5)
+    other = env.step({"left": 2, "right": 1})[0]
+    assert other["left"] != pytest.approx(other["right"], abs=1e-3)
+
+
+def test_several_beats_in_a_step_are_the_same_match() -> None:
+    """Ten beats in a step give the match of ten steps in which the key is held."""
+    one, ten = LacocParallelEnv(settings=SHORT), LacocParallelEnv(settings=SHORT, beats=10)
+    for env in (one, ten):
+        env.reset(seed=2, options={"late_ticks": (0, 0)})
+    while ten.agents:
+        acts = {"left": 2, "right": 1}
+        last = ten.step(acts)
+        for _ in range(10):
+            step = one.step(acts)
+            if not one.agents:
+                break
+        assert same([last[:1] + ((),) * 4], [step[:1] + ((),) * 4])
+    assert one.agents == []
+
+
+def test_angles_move_the_joints() -> None:
+    """With angles an action is a share of each joint's range, reached at the robot's speed."""
+    env = LacocParallelEnv(settings=SHORT, actions="angles")
+    env.reset(seed=0)
+    raised = np.zeros(18, np.float32)
+    raised[6:12] = 0.3
+    for _ in range(40):
+        env.step({"left": raised, "right": np.zeros(18, np.float32)})
+    angles = env._episode.match.seats[0].state.angles
+    assert np.degrees(angles) == pytest.approx(raised * 150)
+    with pytest.raises(UserError, match="no record"):
+        env.write_record("x.mcap")
+    saved = env.save()
+    rest = [env.step({"left": raised, "right": raised})[0]["left"].tobytes() for _ in range(9)]
+    env.load(saved)
+    assert rest == [
+        env.step({"left": raised, "right": raised})[0]["left"].tobytes() for _ in range(9)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"arena": "chess"}, "chess"),
+        ({"arena": "practice"}, "duration_s"),
+        ({"actions": "thoughts"}, "angles"),
+        ({"beats": 0}, "at least 1"),
+        ({"robots": ("hexapod",) * 3}, "2"),
+        ({"render_mode": "human"}, "rgb_array"),
+        ({"settings": {"match": {"duration_s": -1}}}, "duration_s"),
+    ],
+)
+def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> None:
+    """Each wrong argument has an error that says what can be there."""
+    with pytest.raises(UserError, match=said):
+        LacocParallelEnv(**arguments)
+
+
+def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
+    """Bytes of another environment change nothing; an option that does not fit is named."""
+    other = LacocParallelEnv("othello", settings={"match": {"duration_s": 2.0}})
+    other.reset(seed=1)
+    env.reset(seed=1)
+    before = env.save()
+    for data in (other.save(), before[:-9], b"", b"no"):
+        with pytest.raises(UserError, match="same arguments"):
+            env.load(data)
+        assert env.save() == before
+    for options in ({"place": 99}, {"late_ticks": (1,)}, {"late_ticks": "ab"}):
+        with pytest.raises(UserError, match=r"place|late_ticks"):
+            env.reset(options=options)
+
+
+def test_a_picture(env: LacocParallelEnv) -> None:
+    """A picture has the size that it says, and changes when the robots walk."""
+    shown = LacocParallelEnv(env.court.arena.name, render_mode="rgb_array", settings=SHORT)
+    shown.reset(seed=1)
+    first = shown.render()
+    play(shown, 1, 40)
+    second = shown.render()
+    shown.close()
+    assert first is not None
+    assert second is not None
+    assert first.shape == (480, 640, 3)
+    assert (first != second).any()
+    assert env.render() is None
+
+
+def test_without_the_extra_the_error_says_what_to_install() -> None:
+    """Without the extra, importing the environments says which packages are missing."""
+    program = (
+        "import sys; sys.modules['pettingzoo'] = None\n"
+        "from lacoc_shared.mistakes import UserError\n"
+        "try:\n"
+        "    import lacoc_server.simulate.environments\n"
+        "except UserError as error:\n"
+        "    print(error)\n"
+    )
+    told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert 'pip install "lacoc[server,rl]"' in told.stdout, told.stderr

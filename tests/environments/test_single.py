@@ -1,0 +1,270 @@
+"""Environments of one agent: against a bot, in rows, and a robot that learns to walk."""
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.match.entry import weigh_in
+from lacoc_server.match.physics import Fault
+from lacoc_server.simulate.environments import LacocEnv, LacocVectorEnv, WalkEnv, register
+from lacoc_server.world.batch import WorldBatch
+from lacoc_server.world.world import World
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+
+SHORT: dict[str, Any] = {"match": {"duration_s": 0.8, "countdown_s": 0.02}}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("lacoc/Othello-v0", {"settings": SHORT}),
+        ("lacoc/FlagStrike-v0", {"settings": SHORT, "restart": True, "opponent": "nearest"}),
+        ("lacoc/Walk-v0", {"seconds": 0.5}),
+        pytest.param(
+            "lacoc/Walk-v0",
+            {"actions": "table", "robot": "quadruped"},
+            marks=pytest.mark.long,  # each of its steps is a whole trial
+        ),
+    ],
+)
+def test_the_checks_of_gymnasium(name: str, arguments: dict[str, Any]) -> None:
+    """The library's own checks find no mistake and give no warning."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(gymnasium.make(name, **arguments).unwrapped)
+
+
+def test_the_entry_point_registers_them() -> None:
+    """The entry point is the function that registers the environments; twice does no harm."""
+    from importlib.metadata import entry_points
+
+    (entry,) = entry_points(group="gymnasium.envs", name="lacoc")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert entry.load() is register
+        register()
+    assert "lacoc/Walk-v0" in gymnasium.registry
+    made = gymnasium.make("lacoc_server.simulate.environments:lacoc/Othello-v0", settings=SHORT)
+    assert isinstance(made.unwrapped, LacocEnv)
+
+
+def play(env: gymnasium.Env[Any, Any], actions: np.random.Generator) -> list[Any]:
+    """Play to the end of the episode; return all that the environment gave."""
+    given: list[Any] = []
+    while not given or not (given[-1][2] or given[-1][3]):
+        given.append(env.step(int(actions.integers(env.action_space.n))))  # type: ignore[attr-defined]
+    return [(step[0].tobytes(), *step[1:]) for step in given]
+
+
+@pytest.mark.parametrize("opponent", ["straight", "planner"])
+def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
+    """An episode that is loaded, also elsewhere, goes on bit for bit; its record is proven."""
+    one, other = (LacocEnv("othello", opponent, settings=SHORT) for _ in range(2))
+    _, info = one.reset(seed=3)
+    assert info["seat"] == one.court.seats[one.seat]
+    for action in (2, 2, 1, 1, 1, 2, 3, 3):
+        one.step(action)
+    saved = one.save()
+    rest = play(one, np.random.default_rng(1))
+    other.load(saved)
+    assert play(other, np.random.default_rng(1)) == rest
+    assert set(rest[-1][4]) == {"scores", "winner", "won"}
+    with pytest.raises(UserError, match="reset"):
+        one.step(0)
+    other.write_record(tmp_path / "episode.mcap")
+    *_, verdict = verify(Record.read(tmp_path / "episode.mcap"), processes=1)
+    assert isinstance(verdict, Verdict)
+    assert verdict.kind is Kind.SAME
+    with pytest.raises(UserError, match="same arguments"):
+        one.load(b"")
+
+
+def test_a_seed_chooses_the_seat() -> None:
+    """Both seats are learned in, and rewards are the learner's own in both."""
+    env = LacocEnv(settings=SHORT)
+    openings = {tuple(sorted(env.reset(seed=seed)[1].items())) for seed in range(12)}
+    assert {dict(opening)["seat"] for opening in openings} == {"left", "right"}
+    assert len(openings) == 12
+    for seat in ("left", "right"):
+        env.reset(options={"seat": seat})
+        steps = play(env, np.random.default_rng(2))
+        scores = steps[-1][4]["scores"]
+        assert sum(step[1] for step in steps) == scores[env.seat] - scores[1 - env.seat]
+
+
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_each_row_is_a_single_environment(arena: str, threads: int) -> None:
+    """Each row gives the bits of a single environment, over several episodes."""
+    rows(arena, threads, steps=90, count=3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+def test_each_row_is_a_single_environment_for_10_000_steps(arena: str) -> None:
+    """The same over 10,000 steps, with episodes of different lengths."""
+    rows(arena, 2, steps=10_000, count=3, seconds=30.0)
+
+
+def rows(arena: str, threads: int, steps: int, count: int, seconds: float = 0.6) -> None:
+    settings = {"match": {"duration_s": seconds, "countdown_s": 0.02}}
+    many = LacocVectorEnv(count, arena, threads=threads, settings=settings)
+    assert many.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    single = [LacocEnv(arena, settings=settings) for _ in range(count)]
+    seen, infos = many.reset(seed=7)
+    for index, env in enumerate(single):
+        first, info = env.reset(seed=7 + index)
+        assert seen[index].tobytes() == first.tobytes()
+        assert {name: infos[name][index] for name in info} == info
+    assert seen in many.observation_space
+    over = [False] * count
+    chance = np.random.default_rng(7)
+    episodes = 0
+    for _ in range(steps):
+        actions = chance.integers(0, 4, count)
+        seen, rewards, ended, stopped, infos = many.step(actions)
+        for index, env in enumerate(single):
+            if over[index]:
+                first, info = env.reset()
+                expected = (first, 0.0, False, False, info)
+            else:
+                expected = env.step(int(actions[index]))
+            over[index] = expected[2] or expected[3]
+            episodes += over[index]
+            assert seen[index].tobytes() == expected[0].tobytes()
+            assert (rewards[index], ended[index], stopped[index]) == expected[1:4]
+            assert env.episode.frame.digest == many.rows[index].episode.frame.digest
+            assert all(infos[name][index] == value for name, value in expected[4].items())
+    assert episodes >= count
+    many.close()
+
+
+@pytest.mark.slow
+def test_rows_of_the_library() -> None:
+    """`gymnasium.make_vec` makes the rows; they have spaces, pictures and a seed for each."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        many = gymnasium.make_vec(
+            "lacoc/Othello-v0",
+            num_envs=3,
+            vectorization_mode="vector_entry_point",
+            settings=SHORT,
+            beats=10,
+            render_mode="rgb_array",
+        )
+        many.reset(seed=[4, 5, 6])
+        for _ in range(6):
+            seen, *_ = many.step(many.action_space.sample())
+            assert seen in many.observation_space
+        pictures = many.render()
+        many.close()
+    assert pictures is not None
+    assert [picture.shape for picture in pictures] == [(480, 640, 3)] * 3
+    with pytest.raises(UserError, match="at least 1"):
+        LacocVectorEnv(0)
+
+
+def test_a_row_whose_physics_stops_is_as_it_was_before() -> None:
+    """A fault in a row is the fault of a single world; other rows go on."""
+    arena = arenas.load("othello")
+    entry = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    entries = [entry, entry]
+    single = World(arena, entries)
+    batch = WorldBatch(World(arena, entries), 3, 2)
+    worlds = [batch.row(index, World(arena, entries), single.save()) for index in range(3)]
+    start = [entry.robot.start_posture] * 2
+    broken = [(float("nan"), *start[0][1:]), start[1]]
+    assert batch.step([0, 1, 2], [start] * 3) == [None] * 3
+    single.step(start)
+    faults = batch.step([0, 2], [start, broken])
+    assert faults[0] is None
+    assert isinstance(faults[1], Fault)
+    assert faults[1] == single.step(broken)
+    assert worlds[1].save() == worlds[2].save() == single.save()
+    batch.step([2], [start])
+    single.step(start)
+    assert worlds[2].save() == single.save() == worlds[0].save()
+    with pytest.raises(ValueError, match="numbers"):
+        worlds[0].load(b"12345678")
+
+
+def test_a_robot_walks_by_angles() -> None:
+    """Rewards of a walk add up to its way; seeds and saves give the same bits."""
+    env = WalkEnv(seconds=2.0, beats=5)
+    walks = []
+    for _ in range(2):
+        seen, _ = env.reset(seed=4)
+        walks.append([seen.tobytes()])
+        total, over = 0.0, False
+        chance = np.random.default_rng(4)
+        saved = b""
+        while not over:
+            if len(walks[-1]) == 8:
+                saved = env.save()
+            action = chance.uniform(-0.3, 0.3, 18)
+            seen, reward, fell, over, _ = env.step(action)
+            assert not fell
+            total += reward
+            walks[-1].append(seen.tobytes())
+        assert total == pytest.approx(seen[0], abs=1e-6)
+        assert len(walks[-1]) == 21
+    assert walks[0] == walks[1]
+    env.load(saved)
+    chance = np.random.default_rng(4)
+    for _ in range(7):
+        chance.uniform(-0.3, 0.3, 18)
+    again = [env.step(chance.uniform(-0.3, 0.3, 18))[0].tobytes() for _ in range(13)]
+    assert again == walks[0][8:]
+    with pytest.raises(UserError, match="reset"):
+        env.step(np.zeros(18))
+    with pytest.raises(UserError, match="same arguments"):
+        WalkEnv("quadruped").load(saved)
+
+
+def test_a_table_is_tried_as_in_a_trial() -> None:
+    """The sample table walks forward at the speed that `lacoc trial` measures; a still one not."""
+    env = WalkEnv(actions="table")
+    gait = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod")).gait
+    assert gait.locomotion is not None
+    env.reset(seed=0)
+    table = np.degrees(np.array(gait.locomotion.sequences[2])) / 150
+    seen, reward, ended, cut, info = env.step(table.astype(np.float32))
+    assert (ended, cut) == (True, False)
+    assert reward == pytest.approx(info["figures"]["speed_mm_s"] / 1000)
+    assert 0.03 < reward < 0.2
+    assert seen[0] == pytest.approx(reward)
+    env.reset()
+    assert env.step(np.zeros((4, 18), np.float32))[1] == pytest.approx(0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "arguments", [{"actions": "keys"}, {"beats": 0}, {"postures": 0}, {"robot": "no-such-robot"}]
+)
+def test_wrong_arguments_of_a_walk(arguments: dict[str, Any]) -> None:
+    """Wrong arguments are refused with a sentence."""
+    with pytest.raises(UserError):
+        WalkEnv(**arguments)
+
+
+def test_a_walk_has_a_picture() -> None:
+    """The picture of a walk shows the robot."""
+    env = WalkEnv(render_mode="rgb_array")
+    env.reset(seed=1)
+    picture = env.render()
+    env.close()
+    assert picture is not None
+    assert picture.shape == (480, 640, 3)
+    assert picture.std() > 5

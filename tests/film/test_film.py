@@ -1,0 +1,263 @@
+"""`lacoc film`: a film has every picture of its record, drawn by a real Chromium."""
+
+import functools
+import http.server
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from chromium import FLAGS
+from playwright.sync_api import sync_playwright
+from waiting import until
+
+from lacoc_client.film import contest, film, plan
+from lacoc_client.film.chromium import find
+from lacoc_client.film.look import Look, Quality, View
+from lacoc_shared.command import cli
+from lacoc_shared.mistakes import UserError
+
+pytestmark = pytest.mark.slow
+
+WIDTH, HEIGHT, FPS = 320, 180, 5
+LOOK = Look(overlay=True, width=WIDTH, height=HEIGHT, quality=Quality.LOW)
+
+
+def made(record: Path, out: Path, look: Look = LOOK, browsers: int = 1) -> list[np.ndarray]:
+    """Make a film, and return its decoded pictures."""
+    known: list[int] = []
+    count = film.make(
+        [film.part(record)], out, look, FPS, browsers, lambda _, all: known.append(all)
+    )
+    with av.open(str(out)) as opened:
+        pictures = [frame.to_ndarray(format="rgb24") for frame in opened.decode(video=0)]
+    assert len(pictures) == count == known[-1] == len(known)
+    return pictures
+
+
+@pytest.fixture(scope="module")
+def alone(
+    recorded: Path, with_browser: str, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, list[np.ndarray]]:
+    """Give a film that one browser has drawn, and its pictures."""
+    out = tmp_path_factory.mktemp("alone") / "a.mp4"
+    return out, made(recorded, out)
+
+
+@pytest.mark.long
+def test_two_browsers_make_the_same_film(
+    recorded: Path, alone: tuple[Path, list[np.ndarray]], tmp_path: Path
+) -> None:
+    """Every picture is there, and shows the same moment however many browsers draw."""
+    _, pictures = alone
+    again = made(recorded, tmp_path / "b.mp4", browsers=2)
+
+    # Not bit for bit: a name above a robot can have other edges (docs/film.md).
+    for one, other in zip(pictures, again, strict=True):
+        assert np.abs(one.astype(int) - other.astype(int)).mean() < 1
+    assert pictures[0].shape == (HEIGHT, WIDTH, 3)
+    # The robots walk: pictures of play differ from each other.
+    middle = pictures[len(pictures) // 3 : len(pictures) // 2]
+    assert len({picture.tobytes() for picture in middle}) == len(middle)
+
+
+def test_a_film_is_as_long_as_the_replay(
+    recorded: Path, alone: tuple[Path, list[np.ndarray]]
+) -> None:
+    """The film has the pictures of the replay from its first to its last beat, and their time."""
+    out, pictures = alone
+    part = film.part(recorded)
+    last = part.record.last_beat
+    begin = next(
+        event.beat for event in part.record.events if event.data.get("after") == "COUNTDOWN"
+    )
+
+    assert len(pictures) == len(plan.pictures(plan.whole(max(0, begin - 150), last), FPS))
+    with av.open(str(out)) as opened:
+        stream = opened.streams.video[0]
+        assert stream.average_rate == FPS
+        assert stream.duration is not None
+        assert stream.duration * stream.time_base == pytest.approx(len(pictures) / FPS)
+
+
+@pytest.mark.long
+def test_views_differ_and_a_still_is_a_picture(
+    recorded: Path, with_browser: str, tmp_path: Path
+) -> None:
+    """Each view is another picture, of the size that was asked."""
+    seen = set()
+    for view, overlay in ((View.ARENA, True), (View.SPLIT, False)):
+        look = Look(view, overlay, "en", WIDTH, HEIGHT, Quality.LOW)
+        out = tmp_path / f"{view}{overlay}.png"
+        film.still(film.part(recorded), out, look)
+        with av.open(str(out)) as opened:
+            (picture,) = [frame.to_ndarray(format="rgb24") for frame in opened.decode(video=0)]
+        assert picture.shape == (HEIGHT, WIDTH, 3)
+        assert picture.std() > 10  # not one colour
+        seen.add(picture.tobytes())
+    assert len(seen) == 2
+
+
+@pytest.fixture
+def web_server(alone: tuple[Path, list[np.ndarray]]) -> Iterator[str]:
+    """Give the address of the film on a web server."""
+    out, _ = alone
+
+    class Handler(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *_: object) -> None:
+            pass
+
+    handler = functools.partial(Handler, directory=str(out.parent))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/{out.name}"
+        server.shutdown()
+
+
+PLAYED = """() => new Promise((resolve) => {
+  const film = document.querySelector("video");
+  film.muted = true;
+  const told = (ok) => resolve([ok, film.error?.message ?? "", film.duration, film.videoWidth]);
+  film.onended = () => told(true);
+  film.onerror = () => told(false);
+  film.currentTime = Math.max(0, film.duration - 1);
+  film.play().catch(() => told(false));
+})"""
+
+
+@pytest.mark.long
+def test_a_browser_plays_it(
+    alone: tuple[Path, list[np.ndarray]], web_server: str, with_browser: str
+) -> None:
+    """Chromium plays the film to its end."""
+    _, pictures = alone
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=with_browser, args=list(FLAGS))
+        page = browser.new_page()
+        page.goto(web_server)
+        if not page.evaluate("document.createElement('video').canPlayType('video/mp4')"):
+            pytest.skip("this Chromium has no H.264")
+        ended, error, duration_s, width = page.evaluate(PLAYED)
+        browser.close()
+    assert ended, error
+    assert duration_s == pytest.approx(len(pictures) / FPS, abs=0.02)
+    assert width == WIDTH
+
+
+@pytest.mark.long
+def test_ffprobe_reads_it(alone: tuple[Path, list[np.ndarray]]) -> None:
+    """FFprobe counts the same pictures, where it is installed."""
+    program = shutil.which("ffprobe")
+    if program is None:
+        pytest.skip("there is no ffprobe")
+    out, pictures = alone
+    words = ["-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames"]
+    told = subprocess.check_output([program, *words, "-of", "csv=p=0", str(out)], text=True)
+    assert int(told) == len(pictures)
+
+
+@pytest.mark.long
+def test_a_kill_leaves_no_half_film(recorded: Path, with_browser: str, tmp_path: Path) -> None:
+    """A program that is killed while it draws leaves nothing under the film's name."""
+    out = tmp_path / "killed.mp4"
+    words = [sys.executable, "-m", "lacoc_shared", "film", str(recorded), str(out), "--jobs", "1"]
+    process = subprocess.Popen(words, stderr=subprocess.DEVNULL)
+    try:
+        until(lambda: any(part.stat().st_size > 40 for part in tmp_path.glob(".killed.mp4.*")), 120)
+        assert process.poll() is None, "it ended before it was killed"
+    finally:
+        process.kill()
+        process.wait()
+    assert not out.exists()
+
+
+def test_a_missing_extra_is_told(tmp_path: Path) -> None:
+    """Without PyAV or Playwright the command says how to install them; its help still works."""
+    for missing in ("av", "playwright"):
+        without = (
+            f"import sys; sys.modules[{missing!r}] = None; "
+            "from lacoc_shared.command import cli; sys.exit(cli.main(sys.argv[1:]))"
+        )
+
+        def lacoc(*words: str, without: str = without) -> subprocess.CompletedProcess[str]:
+            command = [sys.executable, "-c", without, "film", *words]
+            return subprocess.run(command, capture_output=True, text=True, check=False)
+
+        told = lacoc("any.mcap", str(tmp_path / "a.mp4"))
+        assert told.returncode == cli.WRONG_USE
+        assert 'pip install "lacoc[film]"' in told.stderr
+        assert lacoc("--help").returncode == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_browser_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, recorded: Path
+) -> None:
+    """The error says how to get one; a wrong variable is named."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CHROMIUM", raising=False)
+    with pytest.raises(UserError, match="playwright install chromium"):
+        find(str(tmp_path / "none"))
+    own = tmp_path / "chrome"
+    own.touch()
+    assert find(str(own)) == str(own)
+    monkeypatch.setenv("CHROMIUM", "nowhere")
+    with pytest.raises(UserError, match="CHROMIUM"):
+        film.make([film.part(recorded)], tmp_path / "a.mp4", LOOK, FPS, 1, lambda *_: None)
+    assert not (tmp_path / "a.mp4").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("x.mcap", "a.mp4"), "x.mcap"),
+        (("{record}", "a.avi"), "must end with .mp4"),
+        (("{record}", "none/a.mp4"), "There is no folder"),
+        (("{record}", "a.mp4", "--size", "99x17"), "two even numbers"),
+        (("{record}", "a.mp4", "--moments", "m.json"), "--highlights"),
+        ((".", "a.mp4"), "contest.json"),
+        ((".", "a.mp4", "--highlights"), "A film of a contest"),
+        (("bad.mcap", "a.mp4"), "bad.mcap"),
+    ],
+)
+def test_a_wrong_use_is_told(
+    words: tuple[str, ...],
+    said: str,
+    recorded: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Each mistake is told in a sentence before anything is drawn, and nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "300")
+    Path("bad.mcap").write_bytes(b"no record")
+    before = sorted(tmp_path.iterdir())
+    code = cli.main(["film", *(word.format(record=recorded) for word in words)])
+
+    assert code == cli.WRONG_USE
+    assert said in capsys.readouterr().err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "Publish the contest again"),
+        ('{"stages": []}', "no game"),
+        ('{"stages": [{"matches": [{"games": [{"record": "../x.mcap"}]}]}]}', "x.mcap"),
+    ],
+)
+def test_a_bad_contest_is_told(text: str, said: str, tmp_path: Path) -> None:
+    """A sheet that is none, has no game, or names a record that is not there, is refused."""
+    folder = tmp_path / "contest"
+    folder.mkdir()
+    (tmp_path / "x.mcap").touch()  # a name of the sheet leads to no other folder
+    (folder / "contest.json").write_text(text)
+    with pytest.raises(UserError, match=said):
+        contest.records(folder)

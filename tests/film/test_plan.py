@@ -1,0 +1,103 @@
+"""Which pictures a film has: exactly as many as its length says, and none twice."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.film import moments, plan
+from lacoc_client.film.moments import Moment
+from lacoc_client.film.plan import Shot
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import BEATS_PER_S
+
+ENDS = st.tuples(st.integers(0, 2000), st.integers(0, 9000)).map(
+    lambda ends: (ends[0], ends[0] + ends[1])
+)
+
+
+@given(ENDS, st.integers(1, 60))
+def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> None:
+    """Pictures are even, begin at the first beat, and end less than an interval before the last."""
+    first, last = ends
+    pictures = plan.pictures(plan.whole(first, last), fps)
+
+    assert len(pictures) == (last - first) * fps // BEATS_PER_S + 1
+    assert [picture.cut for picture in pictures] == [True] + [False] * (len(pictures) - 1)
+    assert pictures[0].beat == first
+    assert last - BEATS_PER_S / fps < pictures[-1].beat <= last + 1e-6
+    for index, picture in enumerate(pictures):
+        assert picture.beat == pytest.approx(first + index * BEATS_PER_S / fps)
+
+
+@given(ENDS, st.lists(st.integers(-100, 12_000), max_size=8), st.booleans())
+def test_shots_are_in_order_and_within_the_match(
+    ends: tuple[int, int], beats: list[int], opening: bool
+) -> None:
+    """Shots do not touch, lie in the match, show each moment in it, and end with its end."""
+    first, last = ends
+    shots = plan.highlights([Moment(beat) for beat in beats], first, last, opening=opening)
+
+    assert all(first <= shot.first <= shot.last <= last for shot in shots)
+    assert all(one.last + 1 < other.first for one, other in pairwise(shots))
+    assert shots[-1].last == last
+    assert not opening or shots[0].first == first
+    for beat in beats:
+        shown = any(shot.first <= beat <= shot.last for shot in shots)
+        assert shown or not first <= beat <= last
+
+
+def test_near_moments_are_one_shot() -> None:
+    """Two moments of 5 s apart are one shot, and one a minute later is another."""
+    shots = plan.highlights([Moment(1000), Moment(1250), Moment(4250)], 0, 9000)
+    assert shots == [Shot(800, 1400), Shot(4050, 4400), Shot(8800, 9000)]
+
+
+@pytest.mark.parametrize(
+    ("scores", "found"),
+    [
+        ([(0, (0, 0)), (9, (0, 0))], []),
+        ([(0, (0, 0)), (9, (10, 0)), (90, (10, 30))], [(9, 10), (90, 30)]),
+        ([(0, (0, 0)), (9, (10, 0)), (30, (10, 10))], []),  # within a second: nothing is left of it
+        ([(0, (0, 0)), (9, (1, 0)), (40, (3, 0)), (100, (4, 0))], [(9, 3), (100, 1)]),
+        ([(0, (5,)), (9, (7,))], [(9, 2)]),
+        ([(0, (20, 16)), (9, (22, 14))], [(9, 4)]),  # a flip counts for one and against the other
+    ],
+)
+def test_a_swing_is_the_change_of_the_lead(
+    scores: list[tuple[int, tuple[int, ...]]], found: list[tuple[int, int]]
+) -> None:
+    """A moment begins at its first change; changes within a second are one."""
+    assert [(moment.beat, moment.swing) for moment in moments.swings(scores)] == found
+
+
+def test_the_largest_are_chosen_and_shown_in_order() -> None:
+    """Of equal swings the earlier one is chosen; the chosen ones are in the order of time."""
+    given = [Moment(300, 1), Moment(100, 2), Moment(200, 5), Moment(400, 2)]
+    assert [moment.beat for moment in moments.largest(given, 2)] == [100, 200]
+
+
+def test_moments_of_a_record_are_when_its_score_changed(recorded: Path) -> None:
+    """A flag that falls in a real match is a moment, at the beat of its event."""
+    record = Record.read(recorded)
+    found = moments.by_score(record)
+    beats = {event.beat for event in record.events if event.kind == "strike"}
+
+    assert found
+    assert {moment.beat for moment in found} <= beats
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"moments": [{"beat": "x"}]}', '{"moments": 3}', "\0"])
+def test_a_file_without_moments_is_refused(tmp_path: Path, text: str) -> None:
+    """The error names the file and shows what it must be like."""
+    file = tmp_path / "m.json"
+    file.write_text(text)
+    with pytest.raises(UserError, match=r'm\.json.*"beat": 1234'):
+        moments.from_file(file)
+    with pytest.raises(UserError, match=r"none\.json"):
+        moments.from_file(tmp_path / "none.json")
+    file.write_text('{"moments": [{"beat": 12, "swing": 0.5, "why": "a fork"}]}')
+    assert moments.from_file(file) == [Moment(12, 0.5)]

@@ -1,0 +1,82 @@
+"""Tests of a court that pages see later than it plays."""
+
+import time
+from typing import Any
+
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.feed import CourtFeed
+from lacoc_client.gateway.late_feed import LateFeed
+from lacoc_client.gateway.threads import Threads
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.wire import Kind
+from lacoc_shared.contest.invitation import Access
+
+BEHIND_S = 10.0
+
+
+class Written:
+    """A page's socket that keeps what is written to it."""
+
+    keeps_up = True
+    heard_s = 0.0
+
+    def __init__(self) -> None:
+        self.messages: list[tuple[Kind, bytes]] = []
+        self.drained: Any = None
+
+    def write(self, framed: bytes) -> None:
+        self.messages.append(wire.opened(framed))
+
+    @property
+    def kinds(self) -> list[Kind]:
+        """The kinds of the messages, in order."""
+        return [kind for kind, _ in self.messages]
+
+
+def link(log: int, *, connected: bool = True) -> bytes:
+    """Make a link message of a court."""
+    return wire.map_message(Kind.LINK, {"court": "east", "connected": connected, "log": log})
+
+
+def test_messages_open_as_they_were_made() -> None:
+    """Kind and payload are read again, however long the message is."""
+    for size in (0, 1, 124, 125, 65_534, 65_535, 70_000):
+        payload = bytes(size)
+        assert wire.opened(wire.message(Kind.SCENE, payload)) == (Kind.SCENE, payload)
+
+
+def test_a_page_sees_a_court_as_it_was() -> None:
+    """What a court sends reaches pages so much later, in order; a newcomer gets what was known."""
+    threads = Threads(1)
+    feed = CourtFeed(Access(court="east", connect="tcp/127.0.0.1:1"), threads)
+    late = LateFeed(feed, BEHIND_S)
+    begun_s = time.monotonic()
+    event, other = (wire.message(Kind.EVENT, bytes([one])) for one in (1, 2))
+    frames = [wire.message(Kind.FRAME, bytes([one])) for one in (1, 2)]
+    sheet = wire.message(Kind.SHEET, b"s")
+    feed.audience.send(link(1), sheet, event)
+    feed.audience.offer(frames[0], time.monotonic())
+
+    early = Written()
+    late.play(begun_s + BEHIND_S - 0.1)
+    late.add(Viewer(early))  # type: ignore[arg-type]
+    assert early.kinds == []
+
+    late.play(time.monotonic() + BEHIND_S)
+    # The first link is what the feed said when it was tapped.
+    assert early.kinds == [Kind.LINK, Kind.LINK, Kind.SHEET, Kind.EVENT, Kind.FRAME]
+    comer = Written()
+    late.add(Viewer(comer))  # type: ignore[arg-type]
+    assert comer.kinds == [Kind.LINK, Kind.SHEET, Kind.EVENT, Kind.FRAME]
+    assert comer.messages[2] == wire.opened(event)
+
+    # Another log: the old events are no longer valid. A court that is away has no frame.
+    feed.audience.send(link(2), other)
+    feed.audience.offer(frames[1], time.monotonic())
+    feed.audience.send(link(2, connected=False))
+    late.play(time.monotonic() + BEHIND_S)
+    last = Written()
+    late.add(Viewer(last))  # type: ignore[arg-type]
+    assert last.kinds == [Kind.LINK, Kind.SHEET, Kind.EVENT]
+    assert last.messages[2] == wire.opened(other)
+    threads.close()

@@ -1,0 +1,111 @@
+// Tests of the pure parts of /office and /enter: timetable, places, files that are handed on.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { places } from "../../../client/web/src/core/contest/places.ts";
+import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
+import { clockOf, columns, dropped, momentOf } from "../../../client/web/src/core/timetable.ts";
+
+const slot = (pairing, court, at_ms, more = {}) => ({
+  ...{ pairing, court, at_ms, teams: ["A", "B"], fixture: { code: "x" } },
+  ...{ running: false, begun: false, moved: null, held: null, ...more },
+});
+const first = slot("s:a1.1", "north", 10, { running: true });
+const second = slot("s:a1.2", "north", 20);
+const third = slot("s:a1.3", "south", 5);
+
+test("a column has what its court plays, and then what it will play", () => {
+  const view = {
+    courts: [
+      { court: "north", here: true },
+      { court: "south", here: false },
+    ],
+    slots: [slot("s:a1.4", "north", 5), second, first, third],
+  };
+  const [north, south] = columns(view);
+  assert.deepEqual(
+    north.slots.map(({ pairing }) => pairing),
+    ["s:a1.1", "s:a1.4", "s:a1.2"],
+  );
+  assert.deepEqual(south, { court: "south", here: false, slots: [third] });
+});
+
+test("a match that is dropped on another comes before it, unless that one runs", () => {
+  const wish = { do: "move", pairing: "s:a1.3", court: "north", not_before_ms: 0 };
+  assert.deepEqual(dropped(third, "north", second), { ...wish, before: "s:a1.2" });
+  assert.deepEqual(dropped(third, "north", first), { ...wish, before: "" });
+  assert.deepEqual(dropped(third, "north", null), { ...wish, before: "" });
+  const later = slot("s:a1.3", "south", 5, { moved: { court: "", before: "", not_before_ms: 9 } });
+  assert.equal(dropped(later, "north", null).not_before_ms, 9);
+});
+
+test("what changes nothing, and what has begun, is not moved", () => {
+  assert.equal(dropped(second, "north", null), null);
+  assert.equal(dropped(second, "north", second), null);
+  assert.equal(dropped({ ...first, begun: true }, "south", null), null);
+});
+
+test("a time of day is the next such moment", () => {
+  const noon = new Date(2030, 4, 1, 12, 0).getTime();
+  const hour = 3_600_000;
+  assert.equal(momentOf("", noon), 0);
+  assert.equal(momentOf("13:30", noon), noon + 1.5 * hour);
+  assert.equal(momentOf("11:00", noon), noon - hour);
+  assert.equal(momentOf("00:30", new Date(2030, 4, 1, 23, 0).getTime()), noon + 12.5 * hour);
+  assert.equal(clockOf(momentOf("09:05", noon)), "09:05");
+  assert.equal(clockOf(0), "");
+});
+
+const row = (team, rank, out = false) => ({ team, rank, out });
+const stage = (name, tables, matches = [], rounds_to_draw = 0) => ({
+  ...{ stage: { name }, plan: {}, tables, matches, rounds_to_draw },
+});
+const match = (teams, state, loser = null, loser_place = null) => ({
+  ...{ pairing: { id: "x:w1.1", loser_place }, teams, state, loser },
+});
+
+test("each team has the place of the last stage that it reached", () => {
+  const groups = stage("groups", [
+    { section: "a", rows: [row("A", 1), row("C", 2)] },
+    { section: "b", rows: [row("B", 1), row("D", 2, true)] },
+  ]);
+  const final = stage("final", [{ section: "w", rows: [row("B", 1), row("A", 2)] }]);
+  const sheet = { planned: [], stages: [groups, final] };
+  assert.deepEqual(
+    places(sheet).map(({ team, rank, stage, group, won }) => [team, rank, stage, group, won]),
+    [
+      ["B", 1, "", "", true],
+      ["A", 2, "", "", false],
+      ["C", 2, "groups", "a", false],
+    ],
+  );
+});
+
+test("no team has a place in a bracket before it is out", () => {
+  const open = stage(
+    "final",
+    [{ section: "w", rows: [row("A", 1), row("B", 1), row("C", 3)] }],
+    [match(["A", "B"], "open"), match(["A", "C"], "decided", "C", 3)],
+  );
+  assert.deepEqual(
+    places({ planned: [], stages: [open] }).map(({ team }) => team),
+    ["C"],
+  );
+});
+
+test("files go in the fragment and come out as they were", () => {
+  const data = Uint8Array.from([0, 255, 10, 13, 200]);
+  const files = { robot: null, postures: { name: "歩容 &=#.txt", data }, locomotion: null };
+  assert.deepEqual(filesOf(`#${filesFragment(files)}`), files);
+  for (const hash of ["", "#token=x", "#files=", "#files={", "#files=[1]"]) {
+    assert.equal(filesOf(hash), null, hash);
+  }
+});
+
+test("an address is read however it is typed", () => {
+  for (const typed of ["192.168.1.20:8080", " http://192.168.1.20:8080/contest?big "]) {
+    assert.equal(enterPage(typed), "http://192.168.1.20:8080/enter");
+  }
+  assert.equal(enterPage("https://cup.example"), "https://cup.example/enter");
+  for (const typed of ["", "  ", "http://"]) assert.equal(enterPage(typed), "");
+});

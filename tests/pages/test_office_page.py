@@ -1,0 +1,234 @@
+"""Tests of /office and /enter: a real event, from its empty folder to its first game."""
+
+import json
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from chromium import OpenPage
+from lacoc_process import run_lacoc, started
+from playwright.sync_api import Page, expect
+from ports import free_port
+from show import WAIT_MS, violations
+
+from lacoc_robots.library import sample_gait_files
+
+pytestmark = pytest.mark.slow
+
+LAPTOP = {"width": 1366, "height": 768}
+PHONE = {"width": 390, "height": 844}
+TEAMS = ("Ants", "六脚の会", "Crabs & <b>Co</b>", "Dogs")
+FIRST = TEAMS[0]
+
+
+class Event(NamedTuple):
+    """An event with open entries, and files of a team."""
+
+    url: str
+    office: str
+    code: str
+    facts: Path
+    right: tuple[Path, Path]
+    wrong: Path
+
+
+@pytest.fixture(scope="module")
+def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
+    """Give an event of two courts, of which nothing but its file was written."""
+    folder = tmp_path_factory.mktemp("event")
+    file = folder / "contest.toml"
+    run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
+    text = file.read_text().replace("0.0.0.0:", "127.0.0.1:").replace("groups = 2", "groups = 1")
+    for port in ("7447", "7448"):
+        text = text.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")
+    file.write_text(text)
+    given = [one for one in sample_gait_files("hexapod") if one is not None]
+    paths = [folder / one.name for one in given]
+    for path, one in zip(paths, given, strict=True):
+        path.write_bytes(one.data)
+    wrong = folder / "LocoTra-wrong.txt"
+    wrong.write_bytes(given[1].data.replace(b"0", b"x", 3))
+    words = ("contest", "run", str(file), "--entries", "--json")
+    with started(*words, stdout=subprocess.PIPE, text=True) as run:
+        try:
+            assert run.stdout is not None
+            opened = json.loads(run.stdout.readline())
+            yield Event(
+                opened["url"],
+                opened["office"],
+                opened["code"],
+                folder / "contest.db",
+                (paths[0], paths[1]),
+                wrong,
+            )
+        finally:
+            run.terminate()
+            run.wait(30)
+
+
+def fill(page: Page, event: Event, team: str, code: str = "") -> None:
+    """Type the form of /enter, with files that are right."""
+    page.goto(f"{event.url}/enter")
+    page.locator("input.code").fill(code or event.code.lower(), timeout=WAIT_MS)
+    page.locator(".field input").nth(1).fill(team)
+    page.locator("input[type=file]").set_input_files(list(event.right))
+    expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
+
+
+def enter(open_page: OpenPage, event: Event, team: str) -> Page:
+    """Let a team enter from a browser of its own; return its page."""
+    page = open_page(viewport=PHONE)
+    fill(page, event, team)
+    page.locator("button[type=submit]").click()
+    expect(page.locator(".qr img")).to_be_visible(timeout=WAIT_MS)
+    return page
+
+
+def test_an_event_from_its_file_to_its_first_game(
+    event: Event, open_page: OpenPage, console: Any
+) -> None:
+    """Teams enter by page; the organiser approves, closes, moves, decides and prints.
+
+    The organiser needs two commands and four clicks until the first games are called.
+    """
+    office = open_page(viewport=LAPTOP)
+    office.goto(event.office)
+    expect(office.locator(".head .code")).to_have_text(event.code, timeout=WAIT_MS)
+    assert "#" not in office.url, "the key does not stay in sight"
+    assert violations(office) == []
+    first = first_team(open_page, event)
+    for team in TEAMS[1:]:
+        enter(open_page, event, team)
+    rows = office.locator(".entries li")
+    expect(rows).to_have_count(len(TEAMS), timeout=WAIT_MS)
+    assert violations(office) == []
+    approve_and_draw(office)
+    expect(first.locator(".state")).to_contain_text("You are in", timeout=WAIT_MS)
+    move(office)
+    decide(office)
+    late_files(office, first, event)
+    papers(office)
+    on_a_phone(open_page, event)
+
+
+def first_team(open_page: OpenPage, event: Event) -> Page:
+    """Enter with a wrong code, with mistakes, and rightly; the link is there after a reload."""
+    page = open_page(viewport=LAPTOP)
+    fill(page, event, FIRST, "AAAAAA")
+    page.locator("button[type=submit]").click()
+    expect(page.get_by_role("alert")).to_contain_text("not the code", timeout=WAIT_MS)
+    page.locator("input.code").fill(event.code)
+    page.locator("input[type=file]").set_input_files(event.wrong)
+    page.locator("button[type=submit]").click()
+    expect(page.locator(".mistakes li")).to_have_count(3, timeout=WAIT_MS)
+    assert violations(page) == []
+    page.locator("input[type=file]").set_input_files(list(event.right))
+    expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
+    page.locator("button[type=submit]").click()
+    expect(page.locator(".qr img")).to_be_visible(timeout=WAIT_MS)
+    expect(page.get_by_role("status").first).to_contain_text("organiser approves")
+    page.reload()
+    expect(page.locator("h1")).to_have_text(FIRST, timeout=WAIT_MS)
+    expect(page.get_by_role("link", name="To your matches")).to_be_visible(timeout=WAIT_MS)
+    assert violations(page) == []
+    return page
+
+
+def approve_and_draw(office: Page) -> None:
+    office.get_by_role("button", name=f"Approve all {len(TEAMS)}").click()
+    expect(office.locator('.entries li[data-state="in"]')).to_have_count(
+        len(TEAMS), timeout=WAIT_MS
+    )
+    office.get_by_role("button", name="Close entries and draw").click()
+    expect(office.get_by_role("dialog")).to_contain_text("4 teams take part")
+    office.get_by_role("button", name="Close and draw with 4 teams").click()
+    expect(office.locator('.slot[data-state="running"]')).to_have_count(2, timeout=WAIT_MS)
+    assert violations(office) == []
+
+
+def move(office: Page) -> None:
+    """Move a match with its button, without a mouse's drag."""
+    office.locator('.slot[data-state="open"] button').last.click()
+    dialog = office.get_by_role("dialog", name="Move a match")
+    assert violations(office) == []
+    dialog.locator("select").first.select_option("main-2")
+    dialog.get_by_role("button", name="Move").click()
+    expect(office.locator(".moved")).to_have_count(1, timeout=WAIT_MS)
+    assert (
+        office.locator(".column", has=office.locator(".moved")).get_attribute("aria-label")
+        == "Court main-2"
+    )
+
+
+def decide(office: Page) -> None:
+    """A decision shows what it changes before it can be made."""
+    line = office.locator(".rulings li").first
+    line.get_by_role("button").click(timeout=WAIT_MS)
+    dialog = office.get_by_role("dialog")
+    go = dialog.get_by_role("button", name="Decide this")
+    points = dialog.locator(".points input")
+    points.nth(0).fill("3")
+    points.nth(1).fill("9")
+    expect(dialog.locator(".effects li").first).to_be_visible(timeout=WAIT_MS)
+    expect(go).to_be_disabled()
+    assert violations(office) == []
+    dialog.get_by_label("Reason").fill("the scores were swapped")
+    go.click()
+    expect(dialog).to_have_count(0)
+    expect(office.locator(".rulings .score").first).to_have_text("3 : 9", timeout=WAIT_MS)
+
+
+def late_files(office: Page, team: Page, event: Event) -> None:
+    """After the end of entries new files wait, and the organiser says why they count."""
+    changed = event.right[1].with_name("LocoTra-late.txt")
+    changed.write_bytes(event.right[1].read_bytes() + b"\n")
+    team.get_by_text("Replace the files", exact=True).click()
+    team.locator("input[type=file]").set_input_files(changed)
+    team.get_by_role("button", name="Weigh in and replace").click()
+    expect(team.locator(".state")).to_contain_text("came late", timeout=WAIT_MS)
+    office.get_by_role("button", name=f"Approve {FIRST}").first.click(timeout=WAIT_MS)
+    dialog = office.get_by_role("dialog")
+    expect(dialog.get_by_role("button", name="Approve")).to_be_disabled()
+    dialog.get_by_label("Reason").fill("the motor limit was misread")
+    dialog.get_by_role("button", name="Approve").click()
+    expect(team.locator(".state")).to_contain_text("You are in. Your files", timeout=WAIT_MS)
+
+
+def papers(office: Page) -> None:
+    """Each paper has its content, and on paper nothing that one could click."""
+    for paper, content in (
+        ("schedule", "main-1"),
+        ("results", "3:9"),
+        ("certificates", "No team has its final place"),
+        ("links", "/play#key="),
+    ):
+        office.get_by_label("Print …").select_option(paper)
+        expect(office.locator(".papers")).to_contain_text(content, timeout=WAIT_MS)
+        assert violations(office) == []
+        office.emulate_media(media="print")
+        expect(office.locator(".paper-tools")).not_to_be_visible()
+        office.emulate_media(media="screen")
+        office.get_by_role("button", name="Back").click()
+
+
+def on_a_phone(open_page: OpenPage, event: Event) -> None:
+    """In Japanese on a phone nothing scrolls sideways, and axe-core finds no mistake."""
+    for path in (event.office, f"{event.url}/enter"):
+        page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
+        page.goto(path)
+        expect(page.locator("h1")).not_to_have_text("", timeout=WAIT_MS)
+        if path == event.office:
+            expect(page.locator(".timetable")).to_be_visible(timeout=WAIT_MS)
+        for element in ("document.documentElement", "document.querySelector('main')"):
+            assert page.evaluate(f"{element}.scrollWidth") <= PHONE["width"]
+        assert violations(page) == []
+
+
+def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:
+    """Without the organiser's key the page shows nothing of the contest, and says why."""
+    page = open_page(viewport=LAPTOP)
+    page.goto(f"{event.url}/office#organiser=guess")
+    expect(page.get_by_role("alert")).to_contain_text("does not open", timeout=WAIT_MS)
+    assert page.locator(".entries").count() == 0

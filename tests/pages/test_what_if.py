@@ -1,0 +1,102 @@
+"""Tests of forks and odds on /replay: what is said, drawn and shown side by side."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from chromium import OpenPage
+from msgspec.structs import replace
+from show import WAIT_MS, Show, violations
+from venue import Venue
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.simulate import player, simulate
+from lacoc_server.simulate.forks.chances import Odds
+from lacoc_server.simulate.forks.fork import fork
+from lacoc_server.simulate.forks.kept import write_odds
+from lacoc_server.simulate.forks.line import Change
+from lacoc_server.simulate.forks.odds import Moment
+from lacoc_server.simulate.forks.origin import read_source
+from lacoc_shared.record.files import odds_path
+from lacoc_shared.record.schema import Setup
+
+pytestmark = pytest.mark.slow
+
+MATCH, FORK = "a-match", "fork-1-at-120-of-a-match"
+
+
+@pytest.fixture(scope="module")
+def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Venue]:
+    """Give a gateway with a match, its odds and a fork of it."""
+    with ExitStack() as stack:
+        venue = Venue(tmp_path_factory.mktemp("library"), stack)
+        folder = venue.folder / "recordings"
+        arena = arenas.load("othello", {"match": {"duration_s": 2.0, "countdown_s": 0.2}})
+        setup = Setup(
+            match_id=MATCH,
+            court="hall",
+            match=1,
+            arena="othello",
+            settings=arena.settings,
+            limits={},
+        )
+        players = [player(arena, seat, bot) for seat, bot in enumerate(("planner", "nearest"))]
+        simulate(setup, players, folder)
+        file = folder / f"{MATCH}.mcap"
+        fork(read_source(file), 120, Change(restart=("left",)), match_id=FORK, folder=folder)
+        moments = tuple(
+            Moment(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
+            for beat, chance in ((62, 0.5), (100, 0.9), (161, 0.25))
+        )
+        odds = Odds(
+            match_id=MATCH,
+            record_hash="",
+            seats=("left", "right"),
+            bots=("planner", "planner"),
+            moments=moments,
+        )
+        write_odds(odds_path(file, MATCH), odds)
+        write_odds(odds_path(folder / f"{FORK}.mcap", FORK), replace(odds, match_id="another"))
+        venue.web("--recordings", str(folder))
+        yield venue
+
+
+def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: OpenPage) -> None:
+    """The curve lies over the bar, the chances follow the beat, and a highlight leads to it."""
+    page = open_page(viewport={"width": 1366, "height": 768})
+    show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=2&q=low")
+    show.sees(".transport .chances", "90 : 10 %")
+    show.sees(".seek .odds-curve polyline")
+    rows = show.find(".highlights button")
+    rows.first.wait_for(timeout=WAIT_MS)
+    assert [row.split("\n")[-1] for row in rows.all_inner_texts()] == [
+        "nearest: 10 → 75 %",
+        "planner: 50 → 90 %",
+    ]
+    rows.nth(1).click()
+    show.sees(".transport .chances", "50 : 50 %")
+    show.misses(".fork-note")
+    assert violations(page) == []
+
+
+def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: OpenPage) -> None:
+    """A fork is marked in the list and on the page; its match is shown at the same beat."""
+    page = open_page(viewport={"width": 1366, "height": 768}, locale="ja-JP")
+    show = Show(page, library.url, "/replay?q=low", drawn=False)
+    show.sees(".recordings .fork", "もしも")
+    assert show.find(".recordings .fork").count() == 1
+    page = open_page(viewport={"width": 1366, "height": 768})
+    show = Show(page, library.url, f"/replay?file={FORK}.mcap&t=3&q=low")
+    show.sees(".fork-note", f"a fork of {MATCH} at beat 120, not an official record")
+    show.misses(".odds-curve")  # these are the odds of another match
+    show.find(".fork-note button").click()
+    show.sees(".scene.two .line:nth-child(2) .line-score", "The match")
+    page.evaluate("window.__replay.seek(140)")
+    show.until(
+        lambda: [show.view("drawnBeat", index) for index in (0, 1)] == [140, 140],
+        "both lines were not drawn at the same beat",
+    )
+    assert violations(page) == []
+    show.find(".fork-note button").click()
+    show.misses(".scene.two")

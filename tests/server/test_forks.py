@@ -1,0 +1,264 @@
+"""Forks of a record: bit for bit the record without a change, and a court's way with one."""
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from msgspec.structs import replace
+from stage import setup
+from typer.testing import CliRunner
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.commands.replay.fork import app as fork_app
+from lacoc_server.commands.replay.verify import app as verify_app
+from lacoc_server.contest.league.facts import Planned, Played, new
+from lacoc_server.contest.verify.games import Game, check_game
+from lacoc_server.journal.replay import resume, verify
+from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.simulate import player, simulate
+from lacoc_server.simulate.forks.fork import Forked, fork
+from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play
+from lacoc_server.simulate.forks.line import Change, of_bot
+from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_shared.decisions import TakeBack
+from lacoc_shared.inputs import Decide, KeySeat, SilentSeat
+from lacoc_shared.messages import DecisionReply
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.matches import MatchName
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import render, say
+
+QUICK: dict[str, Any] = {
+    "match": {"duration_s": 4.0, "countdown_s": 0.2},
+    "game": {"pitch_m": 0.15, "disc_radius_m": 0.0675, "opening": "reversi"},
+}
+"""A small board, on which bots flip discs within seconds."""
+MATCH = "20260501-100000-main-001"
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
+    """Give a record of a whole match."""
+    folder = tmp_path_factory.mktemp("record")
+    arena = arenas.load("othello", QUICK)
+    players = [player(arena, 0, "planner"), player(arena, 1, "nearest", late_ticks=7)]
+    simulate(replace(setup("othello", QUICK), match_id=MATCH), players, folder)
+    return read_source(folder / f"{MATCH}.mcap")
+
+
+@pytest.fixture(scope="module")
+def file(source: Source, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the record's file."""
+    return next(tmp_path_factory.getbasetemp().glob(f"record*/{MATCH}.mcap"))
+
+
+def beat_of(source: Source, phase: str) -> int:
+    return next(one.beat for one in source.record.events if one.data.get("after") == phase)
+
+
+def flips(source: Source) -> list[tuple[int, int]]:
+    return [(one.beat, one.number) for one in source.record.events if "marker" in one.data]
+
+
+def proven(forked: Forked) -> Record:
+    """Return a fork's record, once it is proven."""
+    assert forked.record is not None
+    record = Record.read(forked.record)
+    verdict = next(one for one in verify(record, processes=1) if isinstance(one, Verdict))
+    assert (record.cut, verdict.kind) == (None, Kind.SAME)
+    return record
+
+
+@pytest.mark.slow
+def test_a_fork_without_a_change_is_the_record(source: Source, tmp_path: Path) -> None:
+    """In every phase a fork goes on as the record does, bit for bit; only its names differ."""
+    started, ended = beat_of(source, "PLAYING"), beat_of(source, "FINISHED")
+    for beat in (30, started - 3, started + 120, ended):
+        again = proven(fork(source, beat, match_id=f"f{beat}", folder=tmp_path))
+        was, now = source.record, dict(again.frames)
+        assert {number: now.get(number) for number, _ in was.frames} == dict(was.frames)
+        assert len(now) <= len(was.frames) + 1  # a new segment begins with a frame
+        assert (again.inputs, again.events, again.touches) == (was.inputs, was.events, was.touches)
+        assert again.result is not None
+        assert was.result is not None
+        assert replace(again.result, match_id=MATCH, court="main") == was.result
+        assert again.header.match_id == again.sheets[0][1].match_id == f"f{beat}"
+
+
+def test_a_fork_names_its_origin(source: Source, tmp_path: Path) -> None:
+    """Its header has match, beat and record of the origin, also if that is a fork itself."""
+    beat = beat_of(source, "FINISHED")
+    first = fork(source, beat, match_id="first", folder=tmp_path)
+    assert first.record is not None
+    origin = Record.read(first.record).header.setup.origin
+    assert origin is not None
+    assert (origin.match_id, origin.beat, origin.record_hash) == (MATCH, beat, source.hash)
+    second = fork(read_source(first.record), beat, match_id="second", folder=tmp_path)
+    assert second.record is not None
+    again = Record.read(second.record).header.setup.origin
+    assert again is not None
+    assert again.match_id == "first"
+    assert again.record_hash not in ("", source.hash)
+    with pytest.raises(UserError, match="exists already"):
+        fork(source, beat, match_id="first", folder=tmp_path)
+
+
+def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> None:
+    """An event taken back in a fork gives the scores of the referee's dry run at the end."""
+    events = flips(source)
+    assert events
+    match = resume(source.record.until(beat_of(source, "FINISHED"))).match
+    asks = [Decide("referee", "", TakeBack(number, dry_run=True)) for _, number in events]
+    for (beat, number), reply in zip(events, match.beat(asks).outcomes, strict=True):
+        assert isinstance(reply, DecisionReply)
+        forked = fork(source, beat + 1, Change(take_back=number))
+        assert (forked.result.scores, forked.changes) == (reply.scores, reply.changes)
+        assert (forked.phase, forked.result.official) == (Phase.FINISHED, "")
+    with pytest.raises(UserError, match="refuses this change at beat"):
+        fork(source, events[0][0] - 5, Change(take_back=events[0][1]))  # it has not happened yet
+
+
+@pytest.mark.slow
+def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path) -> None:
+    """The bots that played go on as they did; another reaction, a script or an [x] does not."""
+    first = beat_of(source, "PLAYING") + 1
+    beat = first + 50
+    bots = bots_of(source, ("planner", "nearest"), None)
+
+    def ended(beat: int, variant: int) -> str:
+        players = {seat: of_bot(bot, seat, variant) for seat, bot in enumerate(bots)}
+        return fork(source, beat, Change(players=players)).result.digest
+
+    assert source.record.result is not None
+    assert ended(beat, 0) == source.record.result.digest
+    assert ended(first, 1) == ended(first, 1) != ended(first, 2)
+    job = ForkJob(
+        file=str(file),
+        beat=beat,
+        scripts={"left": ("1", "0.5 x")},
+        restart=("right",),
+        match_id="scripted",
+        folder=str(tmp_path),
+    )
+    record = proven(play(job))
+    own = [
+        (at, item.key)
+        for at, items in record.inputs.items()
+        for item in items
+        if isinstance(item, KeySeat) and item.seat == 0 and at >= beat
+    ]
+    assert [key for _, key in own] == [1, 10]
+    assert own[1][0] - own[0][0] == 25
+    restarts = [one.seat for one in record.events if one.kind in ("restart", "decision")]
+    assert len(restarts) >= 2
+    quiet = [x for items in record.inputs.values() for x in items if isinstance(x, SilentSeat)]
+    assert quiet == []  # the record of the other seat goes on until the end
+
+
+def test_an_unfinished_match_goes_on(source: Source, tmp_path: Path) -> None:
+    """A record that ends in play goes on: its seats fall silent, and play ends."""
+    whole = source.record
+    cut = Source(whole.until(beat_of(source, "PLAYING") + 40), source.messages)
+    forked = fork(cut, cut.last_beat + 1, match_id="on")
+    assert (forked.phase, forked.result.computed != "") == (Phase.FINISHED, True)
+    assert fork(cut, cut.last_beat, match_id="on", seconds=0.5).beats == 25
+
+
+def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
+    """Nothing in a fork can be taken for the game of a contest."""
+    from lacoc_server.simulate.forks.origin import stem
+    from lacoc_shared.messages.office import Assigned
+
+    assigned = Assigned(call="c17", fixture=say("fixture.waiting"), seats=())
+    record = source.record.until(source.last_beat)
+    record.headers = [
+        replace(one, setup=replace(one.setup, assigned=assigned)) for one in record.headers
+    ]
+    made = stem(Source(record, source.messages), 60, "f").setup
+    assert made.assigned is not None
+    assert made.assigned.call == "fork"
+    assert MATCH in render(made.assigned.fixture)
+    assert MatchName.parse(f"fork-1-at-60-of-{MATCH}") is None
+
+
+def test_a_contest_with_a_fork_is_found_out(source: Source, tmp_path: Path) -> None:
+    """A fork in place of a published record is named as what it is."""
+    (tmp_path / "records").mkdir()
+    forked = fork(source, source.last_beat, match_id="f", folder=tmp_path / "records")
+    assert forked.record is not None
+    played = new(
+        Played, pairing="p", game=1, teams=forked.result.teams, scores=(0, 0), outcome="draw",
+        record="f.mcap",
+    )  # fmt: skip
+    plan = new(Planned, stage="s", format="round-robin", arena="othello", arena_settings=QUICK)
+    game = Game(played=played, plan=plan, files=((), ()))
+    found = [render(one) for one in check_game(tmp_path, game, proven=False)]
+    assert any(f"it is a fork of match {MATCH}" in one for one in found), found
+
+
+# The command.
+
+
+def run(app: Any, *words: str) -> tuple[int, str]:
+    result = CliRunner().invoke(app, [*words])
+    said = str(result.exception) if result.exception else ""
+    return result.exit_code, result.output + said
+
+
+@pytest.mark.slow
+def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path) -> None:
+    """`fork` writes a record of its own; the first line of `verify` says what it is a fork of."""
+    code, said = run(fork_app, str(file), "--beat", "100", "--out", str(tmp_path), "--seconds", "1")
+    assert code == 0, said
+    made = tmp_path / f"fork-1-at-100-of-{MATCH}.mcap"
+    assert made.exists()
+    assert "nobody's official result" in said
+    code, said = run(verify_app, str(made))
+    assert code == 0
+    assert said.strip().startswith("This is a fork, not an official record: up to beat 100")
+    assert "same, bit for bit" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--beat", "9999"), "The record has no beat 9999 to fork at. Choose one from 1 to"),
+        (("--beat", "0"), "The record has no beat 0"),
+        (("--beat", "5", "--players", "planner,planner"), "Nobody can take over at beat 5"),
+        (("--beat", "120", "--players", "planner"), "--players names 1 player"),
+        (("--beat", "120", "--players", "nobody,-"), "nobody"),
+        (("--beat", "120", "--restart", "up"), 'There is no seat "up"'),
+        (("--beat", "120", "--times", "3"), "needs a bot in a seat"),
+        (("--beat", "120", "--keys", "left"), "does not name a seat and a file"),
+        (("--beat", "120", "--keys", "left=none.txt"), "Cannot read none.txt"),
+        (("--beat", "120", "--take-back", "999"), "event 999 can't be taken back"),
+    ],
+)
+def test_a_mistake_is_explained(words: tuple[str, ...], said: str, file: Path) -> None:
+    """Whatever is wrong with a wish for a fork, the error says what and what to do."""
+    code, found = run(fork_app, str(file), *words, "--out", str(file.parent))
+    assert code != 0
+    assert said in found
+    assert [*file.parent.glob("fork*")] == []
+
+
+def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: Path) -> None:
+    """No record, a damaged one and one of another MuJoCo are refused, each with its reason."""
+    text = tmp_path / "text.mcap"
+    text.write_text("no record")
+    assert run(fork_app, str(text), "--beat", "100")[0] != 0
+    damaged = tmp_path / f"{MATCH}.mcap"
+    shutil.copy(file, damaged)
+    data = bytearray(damaged.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    damaged.write_bytes(data)
+    code, said = run(fork_app, str(damaged), "--beat", "100", "--out", str(tmp_path))
+    assert code != 0
+    assert "can't be forked, because a part of the record is lost or damaged" in said
+    record = source.record.until(source.last_beat)
+    versions = {**record.header.versions, "mujoco": "1.2.3"}
+    record.headers = [replace(record.header, versions=versions)]
+    with pytest.raises(UserError, match=r"made with MuJoCo 1\.2\.3"):
+        fork(Source(record, source.messages), 100)

@@ -1,0 +1,159 @@
+"""The odds of a match: the chance from margins, where to look, and what is kept."""
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from msgspec.structs import replace
+from stage import setup
+from test_forks import MATCH, QUICK
+from typer.testing import CliRunner
+
+from lacoc_arenas import arena as arenas
+from lacoc_client.film.moments import from_file
+from lacoc_server.commands.replay.highlights import app as highlights_app
+from lacoc_server.simulate import player, simulate
+from lacoc_server.simulate.forks import odds
+from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute, margin, margins
+from lacoc_server.simulate.forks.kept import read_odds, write_odds
+from lacoc_server.simulate.forks.odds import Moment
+from lacoc_server.simulate.forks.origin import read_source
+from lacoc_shared.record.files import odds_path
+from lacoc_shared.words import Phrase
+
+MARGINS = st.lists(st.integers(-36, 36), min_size=1, max_size=12)
+
+
+@given(MARGINS)
+def test_the_chances_of_both_seats_add_up(found: list[int]) -> None:
+    """The chance is a probability, and that of the other seat is the rest."""
+    one, other = odds.chance(found), odds.chance([-margin for margin in found])
+    assert 0 <= one <= 1
+    assert one + other == pytest.approx(1)
+    assert (one > 0.5) == (sum(found) > 0) or sum(found) == 0
+
+
+@given(MARGINS, st.integers(1, 20))
+def test_more_points_are_a_better_chance(found: list[int], more: int) -> None:
+    """If every fork ended better, the chance is not worse."""
+    assert odds.chance([margin + more for margin in found]) >= odds.chance(found)
+
+
+@pytest.mark.parametrize(
+    ("t", "freedom", "expected"),
+    [(1.0, 1, 0.75), (2.92, 2, 0.95), (2.015, 5, 0.95), (1.812, 10, 0.95), (0.0, 7, 0.5)],
+)
+def test_student(t: float, freedom: int, expected: float) -> None:
+    """The distribution has the values of the printed tables."""
+    assert odds.student(t, freedom) == pytest.approx(expected, abs=5e-4)
+
+
+def moment(beat: int, chance: float) -> Moment:
+    return Moment(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
+
+
+def test_swings_and_where_to_look() -> None:
+    """The largest change comes first, and the next look is just after an event in it."""
+    found = [moment(0, 0.5), moment(100, 0.55), moment(300, 0.95), moment(400, 0.6)]
+    first, second, third = odds.swings(found)
+    assert [one.before.beat for one in (first, second, third)] == [100, 300, 0]
+    assert [*odds.highlights(found, 2)] == [first, second]
+    assert odds.highlights(found, least=0.39) == [first]
+    playing = range(400)
+    assert odds.between(playing, [], first, 10) == 200
+    assert odds.between(playing, [130, 210, 299], first, 10) == 211
+    assert odds.between(playing, [], moment_pair(100, 110), 10) is None
+
+
+def moment_pair(first: int, last: int) -> odds.Swing:
+    return odds.Swing(moment(first, 0.5), moment(last, 0.6))
+
+
+class Counting:
+    """Plays forks here, and counts them."""
+
+    def __init__(self) -> None:
+        self.forks = 0
+
+    def submit(
+        self, function: Callable[[ChanceJob], tuple[float, ...] | Phrase], job: ChanceJob, /
+    ) -> "Future[tuple[float, ...] | Phrase]":
+        self.forks += len(job.variants)
+        done: Future[tuple[float, ...] | Phrase] = Future()
+        done.set_result(function(job))
+        return done
+
+
+@pytest.mark.slow
+def test_the_odds_of_a_record(tmp_path: Path) -> None:
+    """Odds end with the result; what is known is not played again, and a swing is a highlight."""
+    arena = arenas.load("othello", QUICK)
+    players = [player(arena, 0, "planner"), player(arena, 1, "straight")]
+    result = simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
+    file = tmp_path / f"{MATCH}.mcap"
+    wish = Wish(file=str(file), bots=("planner", "nearest"), forks=2, step_s=2.0, closer=1)
+    engine, told = Counting(), []
+    *_, found = compute(wish, engine, None, lambda done, of: told.append((done, of)))
+    assert engine.forks == 2 * (len(found.moments) - 1)
+    assert told[-1][0] == told[-1][1] == len(found.moments) == 4
+    assert found.moments[-1].margins == (margin(result, ("left", "right")),)
+    assert found.moments[-1].chance in (0.0, 0.5, 1.0)
+    assert found.record_hash == read_source(file).hash
+    assert [one.beat for one in found.moments] == sorted(one.beat for one in found.moments)
+
+    path = odds_path(file, MATCH)
+    write_odds(path, found)
+    assert read_odds(path) == found
+    more = Counting()
+    *_, again = compute(replace(wish, forks=3), more, read_odds(path), lambda done, of: None)
+    assert more.forks <= engine.forks  # of each moment that stays, one more fork
+    for one in again.moments[:-1]:
+        known = next((old for old in found.moments if old.beat == one.beat), None)
+        assert known is None or one.margins[:2] == known.margins
+    other = Counting()
+    wished = replace(wish, bots=("straight", "nearest"), closer=0)
+    assert [*compute(wished, other, read_odds(path), lambda done, of: None)]
+    assert other.forks == 4
+
+    path.write_text("{}")
+    assert read_odds(path) is None
+
+
+@pytest.mark.long
+def test_the_command_lists_highlights(tmp_path: Path) -> None:
+    """`highlights` computes the odds in processes, keeps them, and prints moments for a film."""
+    arena = arenas.load("othello", QUICK)
+    players = [player(arena, 0, "planner"), player(arena, 1, "straight")]
+    simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
+    file = tmp_path / f"{MATCH}.mcap"
+    said = CliRunner().invoke(
+        highlights_app,
+        [str(file), "--every", "2", "--times", "2", "--players", "planner,straight", "--json"],
+    )
+    assert said.exit_code == 0
+    told = tmp_path / "moments.json"
+    told.write_text(said.stdout)
+    moments = from_file(told)
+    swings = [moment.swing for moment in moments]
+    assert swings == sorted(swings, reverse=True)
+    assert all(0 < swing <= 1 for swing in swings)
+    assert read_odds(odds_path(file, MATCH)) is not None
+
+
+def test_a_bot_that_breaks_is_told(tmp_path: Path) -> None:
+    """A mistake of a bot comes back from the process as words, not as a traceback."""
+    job = ChanceJob(file=str(tmp_path / "none.mcap"), beat=1, bots=("a", "b"), variants=(1,))
+    assert isinstance(margins(job), Phrase)
+
+
+def test_odds_of_another_version_are_not_used(tmp_path: Path) -> None:
+    """A file of another layout is computed again."""
+    path = tmp_path / "m.odds.json"
+    odds_ = Odds(
+        format=0, match_id="m", record_hash="", seats=("l", "r"), bots=("a", "b"), moments=()
+    )
+    write_odds(path, odds_)
+    assert read_odds(path) is None
