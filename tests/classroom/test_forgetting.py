@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from aside import run_async
 
 from lacoc_client.classroom.class_student import ClassStudent
 from lacoc_client.classroom.classroom import CLASS_FILE, Classroom
@@ -43,7 +44,7 @@ def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
         assert not any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
         await keeper.close()
 
-    asyncio.run(forget())
+    run_async(forget)
     file = ClassFile(path)
     assert [one.student for one in file.evidence()] == ["Bo"]
     assert file.documents() == []
@@ -70,7 +71,7 @@ def test_whoever_is_forgotten_while_coming_in_is_not_in(tmp_path: Path) -> None:
         await room.forget(room.find("Ada"))
         await room._keeper.close()
 
-    asyncio.run(forget())
+    run_async(forget)
     file = ClassFile(tmp_path / CLASS_FILE)
     assert file.evidence() == []
     assert {table.student for table in file.documents()} == {""}
@@ -95,7 +96,7 @@ def test_what_counts_is_kept_though_the_page_goes(tmp_path: Path) -> None:
             moving.cancel()
         await keeper.close()
 
-    asyncio.run(go())
+    run_async(go)
     file = ClassFile(path)
     assert [one.evidence for one in file.evidence()] == [Moved(phase=n) for n in range(1, 7)]
     file.close()
@@ -126,7 +127,7 @@ def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
             await comes("Cy")
         await room._keeper.close()
 
-    asyncio.run(fill())
+    run_async(fill)
 
 
 FULL = """

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from aside import run_async
 
 from lacoc_client.classroom.tournament import Tournament, TournamentState
 from lacoc_client.phases.export import free_name
@@ -77,7 +78,7 @@ def test_a_tournament_of_a_class(tmp_path: Path) -> None:
         assert {mistake.file for mistake in zoe.mistakes} == {"level B of Loco-data.txt"}
         assert faults(quinn.why) == [f for m in zoe.mistakes for f in faults(m.phrase)] == []
 
-    asyncio.run(play())
+    run_async(play)
 
 
 @pytest.mark.slow
@@ -110,7 +111,7 @@ def test_a_tournament_that_is_ended_early(tmp_path: Path) -> None:
         assert not [*room.tournament.recordings.glob("*.live.mcap")]
         await room.tournament.stop()
 
-    asyncio.run(play())
+    run_async(play)
 
 
 def children() -> list[psutil.Process]:
@@ -134,7 +135,7 @@ def test_a_tournament_of_broken_gaits_says_who_was_left_out(tmp_path: Path) -> N
         assert room.state.trouble is not None
         assert render(room.state.trouble).endswith("at least two gaits that walk. Left out: Bo.")
 
-    asyncio.run(play())
+    run_async(play)
 
 
 @pytest.mark.parametrize("players", [{}, {"Ada": HEXAPOD}, {"Ada": HEXAPOD, "Bo": WITHOUT}])
@@ -148,7 +149,7 @@ def test_fewer_than_two_can_not_play(tmp_path: Path, players: Mapping[str, SeatF
         assert room.state.state == "none"
         await room.tournament.stop()
 
-    asyncio.run(play())
+    run_async(play)
 
 
 def test_names_of_folders() -> None:

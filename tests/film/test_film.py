@@ -8,10 +8,12 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import av
 import numpy as np
 import pytest
+from aside import aside
 from chromium import FLAGS
 from playwright.sync_api import sync_playwright
 from waiting import until
@@ -136,14 +138,20 @@ def test_a_browser_plays_it(
 ) -> None:
     """Chromium plays the film to its end."""
     _, pictures = alone
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=with_browser, args=list(FLAGS))
-        page = browser.new_page()
-        page.goto(web_server)
-        if not page.evaluate("document.createElement('video').canPlayType('video/mp4')"):
-            pytest.skip("this Chromium has no H.264")
-        ended, error, duration_s, width = page.evaluate(PLAYED)
-        browser.close()
+
+    def play() -> list[Any] | None:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=with_browser, args=list(FLAGS))
+            page = browser.new_page()
+            page.goto(web_server)
+            if not page.evaluate("document.createElement('video').canPlayType('video/mp4')"):
+                return None
+            return page.evaluate(PLAYED)
+
+    played = aside(play)
+    if played is None:
+        pytest.skip("this Chromium has no H.264")
+    ended, error, duration_s, width = played
     assert ended, error
     assert duration_s == pytest.approx(len(pictures) / FPS, abs=0.02)
     assert width == WIDTH

@@ -6,14 +6,13 @@ import gzip
 import os
 import re
 import socket
-from collections.abc import Callable, Coroutine
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, TypeVar, cast, get_args
+from typing import Any, cast, get_args
 
 import msgpack
 import msgspec
 import pytest
+from aside import run_async
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.requests import Request
@@ -39,15 +38,7 @@ from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-T = TypeVar("T")
-
 PAGE = (Path(__file__).parents[2] / "docs" / "gateway.md").read_text(encoding="utf-8")
-
-
-def asyncio_run(do: Callable[[], Coroutine[Any, Any, T]]) -> T:
-    """Run a coroutine on a new thread: tests of pages may have left an event loop in this one."""
-    with ThreadPoolExecutor(1) as aside:
-        return aside.submit(lambda: asyncio.run(do())).result()
 
 
 def rows(title: str) -> list[list[str]]:
@@ -210,7 +201,7 @@ def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.Monk
         return [msgpack.unpackb(framed[3:])["hold"] for framed in socket.written]
 
     monkeypatch.setattr(page_seat, "SeatThread", Thread)
-    assert asyncio_run(told) == ["held"]
+    assert run_async(told) == ["held"]
 
 
 def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
@@ -322,7 +313,7 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
                 writer.close()
                 return bool(await found)
 
-    assert asyncio_run(asked)
+    assert run_async(asked)
 
 
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
@@ -363,7 +354,7 @@ def test_a_sheet_is_sent_only_if_it_has_changed(tmp_path: Path) -> None:
         scope["headers"] = [
             (name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()
         ]
-        return asyncio_run(lambda: endpoint(Request(scope)))
+        return run_async(lambda: endpoint(Request(scope)))
 
     assert ask().status_code == 404
     path.write_text("[1]" * 1000)

@@ -1,6 +1,7 @@
 """Makes a film of one record or of several, and stills of it."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -116,8 +117,15 @@ def still(one: Part, out: Path, look: Look) -> None:
     Raises:
         UserError: as for `make`.
     """
-    with served(one.paths) as site, camera_page(site.address(look), look) as page:
-        keep.save(out, page.picture(_way(one.still(page.first, page.last), page.first)))
+
+    def drawn() -> bytes:
+        with served(one.paths) as site, camera_page(site.address(look), look) as page:
+            return page.picture(_way(one.still(page.first, page.last), page.first))
+
+    # In a thread of its own, as those of a film: a notebook has an event loop in this one, and
+    # beside it no browser can be steered.
+    with ThreadPoolExecutor(1) as thread:
+        keep.save(out, thread.submit(drawn).result())
 
 
 def _add(film: Movie, one: Part, look: Look, fps: int, browsers: int, progress: Progress) -> None:

@@ -82,7 +82,7 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     step_s: float
     """Seconds of play between two moments."""
     closer: int = 0
-    """So many moments more, where the odds change most."""
+    """So many moments more, where the lead or the odds change most."""
     arena: str | None = None
 
 
@@ -124,6 +124,8 @@ def compute(
 
     wanted = odds.grid(course.playing, round(wish.step_s * BEATS_PER_S))
     count = len(wanted) + wish.closer + len(moments)
+    around = odds.jumps(course.playing, course.leads, _LEAST_BEATS, wish.closer // 4)
+    wanted = sorted({*wanted, *around})
     while wanted:
         jobs = {beat: _job(wish, beat, kept) for beat in wanted}
         futures = {beat: engine.submit(margins, job) for beat, job in jobs.items() if job.variants}
@@ -157,6 +159,9 @@ class Course:
         self.playing = sorted(clocks)
         if not self.playing:
             raise UserError(say("odds.no-play", match=source.match_id))
+        scores = {one.beat: one.scores for one in frames}
+        self.leads = [float(scores[beat][0] - scores[beat][-1]) for beat in self.playing]
+        """Points of the first seat less those of the last one, at the end of each beat of play."""
         self.told = [event.beat for event in record.events if "marker" in event.data]
         """Beats with an event of the game."""
         self.end = _end(record.result, source, self.playing[-1] + 1)

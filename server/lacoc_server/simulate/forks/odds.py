@@ -101,6 +101,32 @@ def grid(playing: Sequence[int], step: int) -> list[int]:
     return list(playing[::step])
 
 
+def jumps(playing: Sequence[int], leads: Sequence[float], width: int, most: int) -> list[int]:
+    """Return the moments just before and after the largest changes of the lead, in order.
+
+    Without them a curve would miss what goes up and comes back between two moments.
+
+    Args:
+        playing: all beats in which play went on, in order.
+        leads: points of the first seat less those of the second, at the end of each of these beats.
+        width: beats of play that one change may take.
+        most: largest number of changes.
+    """
+    starts = [index for index in range(1, len(playing)) if leads[index] != leads[index - 1]]
+    stretches = [(start, min(start + width, len(playing) - 1)) for start in starts]
+
+    def size(stretch: tuple[int, int]) -> float:
+        start, end = stretch
+        return abs(leads[end - 1] - leads[start - 1])
+
+    chosen: list[tuple[int, int]] = []
+    for one in sorted(stretches, key=size, reverse=True):
+        apart = all(one[0] >= other[1] or one[1] <= other[0] for other in chosen)
+        if len(chosen) < most and apart and size(one) > 0:
+            chosen.append(one)
+    return sorted({playing[index] for stretch in chosen for index in stretch})
+
+
 def between(playing: Sequence[int], told: Sequence[int], swing: Swing, least: int) -> int | None:
     """Return where to look into a swing, so that one sees what caused it.
 
