@@ -201,6 +201,7 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -
     assert {one["job"] for one in page.progress} == {"search"}
 
 
+@pytest.mark.long
 def test_other_gaits_are_found(page: DesignClient) -> None:
     """A map has the own gait at least; variants are bred only from tables that fit the robot."""
     fields = {"table": sample(page), "sequences": [[0], [8, 7, 6, 5], [1, 2, 3, 4]]}

@@ -26,7 +26,7 @@ def test_the_pure_parts_of_the_pages() -> None:
     """All cases in tests/pages/core pass in Node; the output names those that fail."""
     assert CASES
     done = subprocess.run(
-        [*NODE_OF_PAGES, "--test", *CASES],
+        [*NODE_OF_PAGES, "--test", "--test-isolation=none", *CASES],
         capture_output=True,
         text=True,
         encoding="utf-8",

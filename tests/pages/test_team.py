@@ -21,7 +21,7 @@ from lacoc_shared.seat import Phase
 pytestmark = pytest.mark.slow
 
 TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
-PERSON = "Ants"
+PERSON = "Bees"
 """Plays its first match at the second court, so that its page must go there."""
 WAIT_MS = 90_000
 
@@ -47,7 +47,8 @@ least_rest_s = 3.0
 token = "the token of the office"
 {courts}
 [stage.league]
-format = "round-robin"
+format = "swiss"
+rounds = 2
 arena = "othello"
 settings.match.duration_s = 4.0
 settings.match.countdown_s = 0.5
@@ -82,8 +83,8 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         # The token is kept for the tab, also over a reload; it does not stay in the address.
         expect(player.page).to_have_url(re.compile("^[^#]*$"))
         player.page.reload()
-        opponents = [play_a_match(player, first) for first in (True, False, False)]
-        assert sorted(opponents) == sorted(set(TEAMS) - {PERSON})
+        opponents = [play_a_match(player, first) for first in (True, False)]
+        assert len({*opponents}) == len(opponents)
         player.sees(".entrance[data-state=over]", "The contest is over: place")
         assert violations(player.page) == []
 

@@ -126,7 +126,7 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
     assert found.sections == len(older.snapshots) + 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
     """Verified with another arithmetic, honest records still pass, and no forgery does."""

@@ -264,6 +264,7 @@ def coach_request(job: str, **more: object) -> CoachRequest:
     return msgspec.structs.replace(request, **more)
 
 
+@pytest.mark.long
 def test_a_search_can_be_repeated(asker: Asker) -> None:
     """A search of one round has the same result in another process, and sends its progress."""
     progress = asker.session.mailbox(KEYS.progress("one"), 1000)

@@ -159,8 +159,8 @@ class Course:
         self.playing = sorted(clocks)
         if not self.playing:
             raise UserError(say("odds.no-play", match=source.match_id))
-        scores = {one.beat: one.scores for one in frames}
-        self.leads = [float(scores[beat][0] - scores[beat][-1]) for beat in self.playing]
+        leads = {one.beat: one.seats[0].score - one.seats[-1].score for one in frames}
+        self.leads = [float(leads[beat]) for beat in self.playing]
         """Points of the first seat less those of the last one, at the end of each beat of play."""
         self.told = [event.beat for event in record.events if "marker" in event.data]
         """Beats with an event of the game."""
