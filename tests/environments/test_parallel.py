@@ -6,6 +6,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from pettingzoo.test import parallel_api_test
@@ -20,6 +21,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Setup
+from lacoc_shared.words import say
 
 SHORT: dict[str, Any] = {"match": {"duration_s": 1.2, "countdown_s": 0.02}}
 GAMES = ("othello", "flag-strike")
@@ -129,6 +131,11 @@ def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path)
         *_, verdict = verify(Record.read(file), processes=1)
         assert isinstance(verdict, Verdict)
         assert verdict.kind is Kind.SAME
+    half = Record.read(tmp_path / "half.mcap")
+    assert half.result is not None
+    assert half.result.official == "void"
+    *_, void = (event for event in half.events if event.kind == "decision")
+    assert void.data["reason"] == msgspec.to_builtins(say("reason.ended-early"))
     result = Record.read(tmp_path / "whole.mcap").result
     assert result is not None
     env.reset(seed=8)

@@ -154,26 +154,27 @@ def test_an_error_comes_back_as_words(tmp_path: Path) -> None:
 
 
 def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
-    """Another game in a folder, another bot file or other software gives another key."""
+    """Another game in a folder, bot file, record of a ghost or software gives another key."""
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "straight"), player(arena, 1, "straight")]
     simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
     source = read_source(tmp_path / f"{MATCH}.mcap")
-    bot, folder = tmp_path / "my_bot.py", tmp_path / "game"
+    bot, ghost, folder = (tmp_path / name for name in ("my_bot.py", "ghost.mcap", "game"))
     folder.mkdir()
 
     def now() -> str:
-        return chances.key(source, 50, (str(bot), "straight"), str(folder))
+        return chances.key(source, 50, (str(bot), f"ghost:{ghost}"), str(folder))
 
     keys = {now()}
     for change in (
         lambda: bot.write_text("one = 1"),
+        lambda: ghost.write_bytes(b"other"),
         lambda: (folder / "game.py").write_text("two = 2"),
         lambda: monkeypatch.setattr(chances, "software", lambda: "other"),
     ):
         change()
         keys.add(now())
-    assert len(keys) == 4
+    assert len(keys) == 5
     monkeypatch.setattr(software, "_others", lambda: ["handed_in"])
     assert software.software.__wrapped__() != software.software()
 

@@ -294,10 +294,11 @@ def _results_table(results: Sequence[Result], seats: Sequence[str]) -> Table:
         say("fact.clock-s"),
     )
     for result in results:
-        drawn = result.official not in seats
-        winner = (
-            render(say("simulate.draw")) if drawn else result.teams[seats.index(result.official)]
-        )
+        if result.official in seats:
+            winner = result.teams[seats.index(result.official)]
+        else:
+            is_void = result.official == "void"
+            winner = render(say("phase.void") if is_void else say("simulate.draw"))
         score = " : ".join(map(str, result.scores))
         table.add_row(*result.teams, score, winner, render(result.reason), f"{result.clock_s:.1f}")
     return table

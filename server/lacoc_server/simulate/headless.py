@@ -250,4 +250,6 @@ def closing(match: Match) -> Decide:
     """Return the decision that ends a match: official after its end, void before it."""
     if match.phase is Phase.FINISHED:
         return Decide(AUTHOR, "", Official())
-    return Decide(AUTHOR, say("reason.physics-stopped"), Abort())
+    halted = match.phase is Phase.HALTED
+    reason = say("reason.physics-stopped") if halted else say("reason.ended-early")
+    return Decide(AUTHOR, reason, Abort())

@@ -22,7 +22,7 @@ from lacoc_shared.words import Phrase, say
 
 Kind = Literal["replay", "result", "void", "no-show"]
 """replay: the game is played again. result: it counts with another result. void: the match counts
-for nobody. no-show: a team did not come, and its opponent wins the games that are still open."""
+for nobody. no-show: a team did not come, and its opponent wins if the match is open."""
 
 
 class Wanted(NamedTuple):

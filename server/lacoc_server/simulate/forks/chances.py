@@ -300,5 +300,5 @@ def _end(result: Result | None, source: Source, beat: int) -> Moment | None:
 def _content(bot: str) -> bytes:
     """Return the bot file or the record of a ghost; empty: the bot is part of the software."""
     is_ghost = bot.startswith(brains.GHOST)
-    path = Path(bot.removeprefix(brains.GHOST).rpartition(":")[0] if is_ghost else bot).expanduser()
+    path = brains.ghost_file(bot)[0] if is_ghost else Path(bot).expanduser()
     return path.read_bytes() if (is_ghost or bot.endswith(".py")) and path.is_file() else b""
