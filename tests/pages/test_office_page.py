@@ -181,7 +181,7 @@ def decide(office: Page) -> None:
 
 
 def late_files(office: Page, team: Page, event: Event) -> None:
-    """Replace files after entries closed: they wait, and the organiser says why they count."""
+    """Replace files after entries closed: they wait until the organiser approves with a reason."""
     changed = event.right[1].with_name("LocoTra-late.txt")
     changed.write_bytes(event.right[1].read_bytes() + b"\n")
     team.get_by_text("Replace the files", exact=True).click()
