@@ -3,9 +3,9 @@
     python -m benchmarks.classroom --students 30 --minutes 45 --speed 2 --kills 10
 
 Each student changes a number every 5 s and tries every 10 s, through a page's own connection. With
-`--speed 2` nobody thinks as long, and the same work is done in half the time. At random moments the
-gateway, or its studio, is killed (SIGKILL). A gateway is started again on the same folder, and
-everybody comes in again with the token that the page keeps.
+`--speed 2` all pauses are half as long, and the same work is done in half the time. At random
+moments the gateway, or its studio, is killed (SIGKILL). A gateway is started again on the same
+folder, and everybody comes in again with the token that the page keeps.
 """
 
 import argparse

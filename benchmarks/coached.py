@@ -149,7 +149,9 @@ def _sample_trials(workers: Workers) -> Trials:
     entry = entry_of(_ROBOT)
     task = task_of(entry.robot, entry.gait, _KEY, Goal.FORWARD, None)
     trials = Trials(task, workers, threading.Event())
-    trials.figures([task.table.angles_deg] * 2 * workers.count)  # processes have their floors
+    trials.figures(
+        [task.table.angles_deg] * 2 * workers.count
+    )  # so that each process has built its floor
     return trials
 
 

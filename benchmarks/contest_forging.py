@@ -2,11 +2,11 @@
 
 A small contest is played and published. Then one thing after another in a copy of the folder is
 forged, so that it means something else: facts, entries, records, tables. After a forged fact the
-sheet and the tables are sometimes computed again, and the numbers of the facts made whole.
+sheet and the tables are sometimes computed again, and the facts numbered again.
 
 Some histories fit together, and nobody can tell them from the true one: the last facts are missing,
-or a decision was added. Whoever kept an earlier publication finds them with `--earlier`, and each
-decision is told; they are counted apart.
+or a decision was added. An earlier publication finds them with `--earlier`, and each decision is
+listed; they are counted apart.
 """
 
 import argparse
@@ -108,7 +108,7 @@ class _Copy:
         """Write the facts.
 
         Args:
-            whole: whether they get the numbers and ids of a whole history.
+            whole: whether they are numbered again, from 1 on.
             again: whether sheet and tables are computed from them.
         """
         if whole:

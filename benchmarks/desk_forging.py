@@ -7,8 +7,8 @@ They know the event code and the token of one team. They try to do what the orga
 or to change files for another team, to read what is another's, to answer in the desk's name, and to
 append facts with bytes of any kind. An honest organiser asks in between, and must be answered.
 
-The command ends with 0 if nothing was accepted and neither facts, nor applications, nor tokens have
-changed.
+The command ends with 0 if nothing was accepted, changed (facts, applications, tokens), told of
+others or overheard, and the organiser was always answered.
 """
 
 import argparse
@@ -144,7 +144,7 @@ class _Trial:
                 answer = b""
                 refused["no reply"] += 1
             leaked += self._leaks(answer)
-        for session in self._hostile:  # a fact as a message of its own
+        for session in self._hostile:  # the right key, but not as a question: nobody reads it
             session.send(DESK, encode(CloseEntries(secret=self._key)))
         changed = self._state() != before
         right = not (sum(accepted.values()) or leaked or changed or self._overheard)
@@ -206,7 +206,7 @@ class _Trial:
         return encode(self._chance.choice(kinds))
 
     def _any_bytes(self) -> bytes:
-        """Change some bytes of a request of the organiser; its key is always wrong then."""
+        """Change some bytes of a request of the organiser with a wrong key."""
         request = bytearray(encode(Approve(secret=self._guess(self._key), teams=(_WAITS,))))
         for _ in range(self._chance.randint(1, 4)):
             request[self._chance.randrange(len(request))] = self._chance.randrange(256)

@@ -15,10 +15,12 @@ A swing is a change of the difference in points. What counts as a moment of the 
 
 The swing of a window or a second is the largest one at any court in it, and of equal ones the
 first. Of each kind the tenth with the largest swings counts. One is on air if its court is on air
-at the swing, or 0.5 s later at the latest. `best` is what a director could reach that knows the
-future and keeps the same two rules, by dynamic programming over all its ways.
+at the swing, or 0.5 s later at the latest. The director has two rules: at most four cuts a minute,
+and no cut away from a match that is close in its last 30 s. `best` is what a director could reach
+that knows the future and keeps these rules, by dynamic programming over all ways to cut.
 
-It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of the windows on air.
+It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of the windows of `spread` on
+air.
 """
 
 import argparse
@@ -48,7 +50,7 @@ from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
 COURTS = 24
 LOOK_S = 0.1
 LATE_S = 0.5
-"""A moment counts as shown if it is on air by then."""
+"""A moment counts as shown if its court is on air at most this long after it."""
 WINDOW_S = 15.0
 AIM = 0.9
 KINDS = ("windows", "seconds", "changes")
@@ -151,7 +153,7 @@ class Placed:
         return CourtNow(self.name, self.name, Phase(point.phase), left_s, point.scores)
 
     def moments(self) -> Iterator[Moment]:
-        """Give all swings of play."""
+        """Yield all swings of play."""
         for before, after in pairwise(self.line.points):
             size = abs(_ahead(after) - _ahead(before))
             if size and before.phase == Phase.PLAYING:
@@ -181,7 +183,7 @@ class Cut(NamedTuple):
 
 
 def direct(courts: list[Placed], ahead_s: float) -> list[Cut]:
-    """Let the director watch an event; return all that was on air, the first court first."""
+    """Let the director watch an event; return when each court came on air, in time."""
     director = Director(ahead_s)
     cuts: list[Cut] = []
     end_s = max(one.ends_s for one in courts) + ahead_s + 10.0
@@ -221,9 +223,10 @@ def of_windows(moments: list[Moment], window_s: float) -> list[Moment]:
 
 
 class _Way(NamedTuple):
-    """A way to direct up to a moment; the court on air is known from where it is kept."""
+    """A way to direct up to a moment; `best_possible` keeps ways by the court that is on air."""
 
     shown: int
+    """How many moments it has shown."""
     free_s: float
     """The court on air is needed until then."""
     cuts: tuple[float, ...]
@@ -258,7 +261,7 @@ def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
 
 
 def _undominated(ways: list[_Way]) -> list[_Way]:
-    """Leave out each way than which another one is as good in everything."""
+    """Leave out each way if another one is at least as good in everything."""
     kept: list[_Way] = []
     for one in sorted(set(ways), key=lambda way: (-way.shown, way.free_s, way.cuts)):
         if not any(
@@ -302,7 +305,7 @@ def largest(courts: list[Placed]) -> dict[str, list[Moment]]:
 
 
 def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
-    """Direct some events, and return the shares that were on air, and the worst of the rules."""
+    """Direct some events; return the shares that were on air, and how the rules were kept."""
     found = [measure(one, ahead_s) for one in events]
     wanted = [largest(one) for one in events]
     return {

@@ -1,4 +1,4 @@
-"""What environments cost: a step against bare physics, rows on two cores, loads, long proofs.
+"""What environments cost: a step against bare physics, rows on two cores, loads, proven records.
 
 python -m benchmarks.environments steps      # a step against mj_step along the same path
 python -m benchmarks.environments rows       # rows on two cores against one
@@ -112,7 +112,7 @@ def rows(game: str, rounds: int) -> dict[str, Any]:
 
 
 def loads(game: str, forks: int) -> dict[str, Any]:
-    """Save at random moments, go on to the end, load, and go on again: equal to the last bit."""
+    """Save at random moments, load and go on to the end several times; count ends that differ."""
     env = LacocParallelEnv(game, settings={"match": {"duration_s": 4.0}})
     chance = np.random.default_rng(2)
     load_ms, save_ms, differ, done = [], [], 0, 0

@@ -5,8 +5,8 @@ referee's decisions are among them. Each record is then forked at some beats. Th
 every frame, input, event, touch and result with the record, and proves each fork.
 
 It also takes back each event of the record: the dry run at the end of the match, and a fork in
-which the event is taken back right after it happened, must give the same scores. That holds where
-the decision changes no path, so where the countdown fell between two keys.
+which the event is taken back right after it happened, must give the same scores. For that the halt
+must change no path, so it falls in a beat in which nobody pressed a key.
 """
 
 import argparse

@@ -93,7 +93,12 @@ def main() -> None:
     options.add_argument("--minutes", type=float, default=30, help="how long it trains")
     options.add_argument("--jobs", type=int, default=2, help="number of processes")
     options.add_argument("--seconds", type=float, default=60, help="length of a match")
-    options.add_argument("--pairs", type=int, default=100, help="mirrored pairs of the examination")
+    options.add_argument(
+        "--pairs",
+        type=int,
+        default=100,
+        help="pairs of matches, one in each seat, that test the best policy at the end",
+    )
     options.add_argument("--population", type=int, default=16, help="policies of a generation")
     options.add_argument("--goal", type=float, default=None, help="stop early at this mean lead")
     options.add_argument("--out", type=Path, default=Path("my_bot.py"), help="the bot file")

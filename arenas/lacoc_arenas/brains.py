@@ -83,14 +83,20 @@ def open_ghost(name: str) -> tuple[Record, int]:
     Raises:
         UserError: if there is no such record or seat.
     """
-    path, _, seat = name.removeprefix(GHOST).partition(".mcap:")
-    record = Record.read(Path(path if not seat else f"{path}.mcap"))
+    path, seat = ghost_file(name)
+    record = Record.read(path)
     seats = [entry["id"] for entry in record.header.setup.settings["seat"]]
     if not seat and len(seats) == 1:
         return record, 0
     if seat not in seats:
         raise UserError(say("bot.whose-ghost", name=name, seats=seats))
     return record, seats.index(seat)
+
+
+def ghost_file(name: str) -> tuple[Path, str]:
+    """Return the path of a ghost's record and the id of its seat, "" if the name has none."""
+    path, _, seat = name.removeprefix(GHOST).partition(".mcap:")
+    return Path(f"{path}.mcap" if seat else path), seat
 
 
 def ghost_join(record: Record, seat: int) -> JoinSeat:

@@ -257,10 +257,6 @@ def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
     raise UserError(say("game.geom", geom=printable(geom, 80), names=known, states=MARKER_STATES))
 
 
-def _are_places(found: object) -> bool:
-    return isinstance(found, tuple) and bool(found) and all(isinstance(p, Place) for p in found)
-
-
 def _whole_numbers(found: object, count: int) -> bool:
     return isinstance(found, tuple | list) and len(found) == count and all(map(_is_whole, found))
 

@@ -33,8 +33,11 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     range_deg: float = 150.0
     """Largest angle of a joint in either direction."""
     ang_min_deg_s: float = 240.0
+    """Largest AngMin: the speed at which a commanded angle moves."""
     torque_n_m: float = 2.0
+    """Largest torque of a servo."""
     hold_s: float = 5.0
+    """Longest time that a drive may hold a posture."""
     drop_m: float = 0.05
     """Largest height of the lowest part above the floor at the start."""
     kp_max: float = 200.0

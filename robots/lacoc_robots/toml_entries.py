@@ -66,7 +66,7 @@ class Entries:
             high: highest value.
             unit: a code below `unit.` in the table of words, or a unit symbol.
             default: value if the entry is missing; None: it must not be missing.
-            with_time: whether the bounds are those for  advance = "time".
+            with_time: whether the bounds are those for `advance = "time"`.
         """
         if with_time:
             expected = say("robot.number-with-time", low=low, high=high, unit=unit)

@@ -94,17 +94,18 @@ def test_every_setting_is_tested() -> None:
 
 
 def test_layout_in_the_file_is_the_layout() -> None:
-    """The flags have the places, points and colours that the settings give."""
+    """The flags have the places and points that the settings give; a colour changes the field."""
     colours = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
     colours[0]["flags"][0:2] = [[-0.1, 0.5], [0.1, -0.5]]
     colours[1]["points"] = 4
-    colours[2]["rgb"] = "#123456"
     overrides = {"game": {"colour": colours}}
     game = arena.load("flag-strike", overrides).game
     flags = [marker for marker in game.markers if marker.kind == "flag"]
     assert (flags[0].x_m, flags[0].y_m) == (-0.1, 0.5)
     assert [flag.points for flag in flags] == [1] * 8 + [4] * 6 + [3] * 4 + [5] * 2
-    assert look("flag-strike", overrides) != look("flag-strike")
+    painted = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
+    painted[2]["rgb"] = "#123456"
+    assert look("flag-strike", {"game": {"colour": painted}}) != look("flag-strike")
 
 
 def test_match_settings() -> None:

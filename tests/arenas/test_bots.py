@@ -343,7 +343,7 @@ def test_walk_shows_every_key() -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike", "practice"])
 def test_bots_are_pure(name: str) -> None:
-    """A bot gives the same keys for the same frames: it uses no clock and no random numbers."""
+    """Two brains of a bot give the same keys for the same frames."""
     ground = arena.load(name)
     sheet = make_sheet(ground)
     poses = [(p.x_m, p.y_m, p.heading_rad) for p in (places[0] for places in ground.game.starts)]

@@ -176,7 +176,7 @@ def test_field_turned_is_the_same_field(name: str) -> None:
 
 
 def test_start_places_look_like_no_target() -> None:
-    """On Flag-Strike's field only markers that give points are round; start places are square."""
+    """On Flag-Strike's field start places are square, unlike corners and flags."""
     model = build("flag-strike").compile()
     pads = [geom for geom in geoms(model) if geom.name.startswith("pad:")]
     assert len(pads) == 2 * len(arena.load("flag-strike").game.starts[0])

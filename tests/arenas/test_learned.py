@@ -106,7 +106,7 @@ def test_damaged_text(text: str) -> None:
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_each_marker_has_a_partner(arena: str) -> None:
-    """Both fields stay the same when they are turned, so each marker has a partner."""
+    """Both fields stay the same when they are turned; without one marker a field does not."""
     markers = arenas.load(arena).game.markers
     found = partners(markers)
     assert found is not None

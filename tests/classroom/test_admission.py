@@ -52,8 +52,8 @@ def test_a_name_is_short_text_that_can_be_seen(text: str) -> None:
         ("❤", "❤\ufe0f"),
     ],
 )
-def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
-    """Nicknames that look alike on the screen count as the same nickname."""
+def test_names_that_hardly_differ_are_the_same(one: str, other: str) -> None:
+    """Nicknames that differ in capitals, widths or what can't be seen count as the same one."""
     assert same_name(read_name(one)) == same_name(read_name(other))
 
 

@@ -34,7 +34,7 @@ class Terminal:
             dimensions=(30, 110),
             encoding="utf-8",
             codec_errors="replace",  # a kill can cut a character in two
-            # A test runner may name another size, and that would count.
+            # The LINES and COLUMNS of a test runner would count more than `dimensions`.
             env=environment(TERM="xterm-256color", LINES="30", COLUMNS="110"),
         )
         self.usual = self.modes()

@@ -130,7 +130,9 @@ def test_a_team_enters_by_page(room: Room) -> None:
     applied = room.ask(Apply(secret="k7q m3x", team=" Bees ", files=sample()))
     assert isinstance(applied, OwnEntry)
     assert (applied.team, applied.state) == ("Bees", "waits")
-    assert [type(fact).__name__ for fact in room.facts] == ["Planned"], "no fact before a word"
+    assert [type(fact).__name__ for fact in room.facts] == ["Planned"], (
+        "no fact before the organiser approves"
+    )
     assert room.states() == {"Bees": "waits"}
 
     room.ask(Approve(secret=KEY, teams=("Bees",)))
@@ -169,7 +171,7 @@ def test_files_are_replaced_until_entries_close_then_with_a_reason(room: Room) -
 
 
 def test_all_mistakes_are_told_and_the_organiser_sees_them(room: Room) -> None:
-    """A refused team gets every mistake of its files; nothing is kept of it on the disk."""
+    """A refused team gets every mistake of its files, and the organiser's page shows them."""
     broken = SentFile("LocoTra-data.txt", b"1\t2\nx\ty\n")
     answer = room.ask(Apply(secret=CODE, team="Bees", files=Files(locomotion=broken)))
     assert isinstance(answer, Refusal)
@@ -184,7 +186,7 @@ def test_all_mistakes_are_told_and_the_organiser_sees_them(room: Room) -> None:
 
 @pytest.mark.parametrize("name", ["Ants", "ANTS", "Ａnts", " ants ", "Bees"])
 def test_a_name_has_one_owner(room: Room, name: str) -> None:
-    """No name that is in, that waits, or that looks like one of these can be taken."""
+    """A name that is in or waits is taken, also with other capitals, wide letters or spaces."""
     room.enter("Ants")
     room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert said(room.ask(Apply(secret=CODE, team=name, files=sample()))) == "desk.name-taken"
@@ -211,7 +213,7 @@ def test_applications_are_there_after_a_restart(room: Room) -> None:
 
 
 def test_entries_close_once_and_need_two_teams(room: Room) -> None:
-    """Closing is a fact; what waits then does not take part."""
+    """Closing is a fact; a team that waits then does not take part."""
     room.enter("Ants")
     assert said(room.ask(CloseEntries(secret=KEY))) == "contest.few-teams"
     room.enter("Bees")
@@ -273,14 +275,14 @@ def test_a_match_is_moved(room: Room) -> None:
 
 
 def test_an_unchanged_view_is_not_sent_again(room: Room) -> None:
-    """A page asks every second or two."""
+    """If the page has the newest view, the answer has none."""
     answer = room.ask(Overview(secret=KEY, known=room.view.version))
     assert isinstance(answer, Overviewed)
     assert answer.view is None
 
 
 def test_tokens_are_for_the_organiser_alone(room: Room) -> None:
-    """Nobody else hears a token but its own team; bots need none."""
+    """The organiser gets the tokens of all teams of people; any other secret gets none."""
     room.enter("Ants")
     organiser.enter(room.file, "Bots", None, "planner", "")
     answer = room.ask(Tokens(secret=KEY))
@@ -290,8 +292,18 @@ def test_tokens_are_for_the_organiser_alone(room: Room) -> None:
         assert said(room.ask(Tokens(secret=secret))) == "desk.not-organiser"
 
 
+def test_a_token_of_the_command_is_known_at_once(room: Room) -> None:
+    """A token that another program makes while the office runs opens the team's entry."""
+    room.enter("Ants")
+    token = organiser.tokens(room.file, "Ants")["Ants"]
+    own = room.ask(Own(secret=token))
+    assert isinstance(own, OwnEntry)
+    assert (own.team, own.state) == ("Ants", "in")
+    assert room.tokens.of("Ants") == token
+
+
 def test_roles_hold(room: Room) -> None:
-    """No role can do what is another's, and a flood of guesses is answered without a look."""
+    """No role can do what is another's, and after many guesses the answer is to slow down."""
     room.enter("Ants", "Bees")
     token = room.tokens.of("Ants")
     before = (room.facts, room.applications.waiting)

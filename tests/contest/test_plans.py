@@ -47,6 +47,20 @@ def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -
     assert "\n" not in str(wrong.value)
 
 
+def test_stages_with_other_levels_are_other_games(tmp_path: Path) -> None:
+    """A team is weighed in for each arena, and again where other levels are open."""
+    stages = [
+        f'[stage.{name}]\nformat = "swiss"\nsettings.match.{setting}\n'
+        for name, setting in (
+            ("one", "duration_s = 60.0"),
+            ("two", "duration_s = 90.0"),
+            ("both", 'levels = ["A", "B"]'),
+        )
+    ]
+    where = folder(tmp_path, "".join(stages))
+    assert [len(arena.match.open_levels) for arena in where.games] == [1, 2]
+
+
 def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:
     """A changed plan is a new fact until its stage is drawn; later the change is refused."""
     where = folder(tmp_path, GROUPS)

@@ -12,7 +12,15 @@ from design_client import DesignClient
 from test_design_page import Gateway, sample
 
 from lacoc_client.design.designer import EVIDENCE_FILE
-from lacoc_client.phases.evidence import Compared, Edited, Evidence, Guessed, Tried
+from lacoc_client.phases.evidence import (
+    Checked,
+    Compared,
+    Edited,
+    Evidence,
+    Guessed,
+    Tried,
+    Voted,
+)
 from lacoc_client.phases.store import ClassStore
 
 pytestmark = pytest.mark.slow
@@ -146,6 +154,8 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     assert [type(one) for one in evidence].count(Tried) == 2
     assert any(isinstance(one, Compared) and "speed" in one.differs for one in evidence)
     assert [one.by for one in evidence if isinstance(one, Edited)] == ["tool"]
+    assert {one.poll for one in evidence if isinstance(one, Voted)} == {"calm"}
+    assert [one.mistakes for one in evidence if isinstance(one, Checked)] == [0]
     assert page.phases["word"] == "calm"
     assert page.phases["trouble"] is None
 

@@ -17,6 +17,7 @@ def ask(**table: Any) -> bytes:
 
 
 def test_a_table_is_read() -> None:
+    """A table of six legs is read."""
     asked = read(ask())
     assert isinstance(asked, EditAsk)
     assert asked.table.legs == 6

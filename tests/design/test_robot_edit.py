@@ -44,7 +44,7 @@ def numbers(value: Any) -> list[float]:
 def test_one_number_changes_and_the_rest_stays(
     text: str, entry: RobotEntry, value: float, newline: str
 ) -> None:
-    """Only numbers change in the text, and only those of one entry, all to the new value."""
+    """Only numbers change in the text, all to the new value; a second edit changes nothing."""
     text = text.replace("\n", newline)
     edited = edit_robot(text, entry, value)
     assert NUMBER.sub("#", edited) == NUMBER.sub("#", text)

@@ -58,11 +58,8 @@ def test_cells_are_found_and_changed(text: str) -> None:
         "C4": ("", "", "-1.5"),
         "A5": ("", "", "1"),
         "B6": ("4", "s", "0"),
-        "C6" if text == UNNAMED else "D6": (
-            "",
-            "",
-            "",
-        ),  # a cell without an address is the next one
+        # A cell without an address stands next to the cell before it.
+        "C6" if text == UNNAMED else "D6": ("", "", ""),
         "E6": ("", "", ""),
         "F6": ("", "", ""),
         "B9": ("", "inlineStr", "last"),

@@ -19,7 +19,7 @@ from lacoc_shared.seat import BEAT_S, Phase
 from lacoc_shared.words import Phrase, say
 
 LINES = Path(__file__).with_name("lines.json")
-"""Scores of four matches of bots: for each its length; phase, clock and scores from a beat on."""
+"""Four matches of bots: the length of each, and each beat at which its phase or scores change."""
 LOOK_S = 0.5
 LENGTH_S = 45.0
 
@@ -110,7 +110,10 @@ def invented(scripts: Sequence[Script]) -> Event:
 @settings(max_examples=25, deadline=None)
 @given(SCRIPTS, AHEAD)
 def test_the_rules_hold_for_any_courts(scripts: list[Script], ahead_s: float) -> None:
-    """At most four cuts a minute, none away from a close end or a fresh result; always equal."""
+    """The director cuts at most four times a minute, and never from a close end or a new result.
+
+    The same event gives the same cuts.
+    """
     event = invented(scripts)
     shown = direct(event, 160.0, ahead_s)
     assert direct(event, 160.0, ahead_s) == shown
@@ -133,7 +136,7 @@ def test_the_rules_hold_for_any_courts(scripts: list[Script], ahead_s: float) ->
 @settings(max_examples=25, deadline=None)
 @given(SCRIPTS, AHEAD)
 def test_a_court_that_vanishes_is_left(scripts: list[Script], ahead_s: float) -> None:
-    """A court that is not there is left at once, or as soon as the minute allows another cut."""
+    """A court that is not there is left as soon as the rules allow another cut."""
     event = invented(scripts)
     director = Director(ahead_s)
     cuts: list[float] = []
@@ -175,7 +178,7 @@ def recorded() -> Event:
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])
 def test_recorded_matches(ahead_s: float) -> None:
-    """Of four recorded matches the largest swings are on air, each at most half a second late."""
+    """Of the four largest swings of four matches three are on air, at most half a second late."""
     event = recorded()
     shown = direct(event, 250.0, ahead_s)
     swings: list[tuple[int, float, str]] = []
@@ -222,7 +225,7 @@ def test_the_final_is_on_air() -> None:
 
 
 def test_results_are_as_late_as_all_else() -> None:
-    """The newest result of each court is shown behind; a match that goes on has none."""
+    """A court's newest result is shown as late as its pictures; a match in play has none."""
 
     def result(court: str, match: str, *scores: int) -> Result:
         return Result(court, match, "Robot-Othello", None, ("A", "B"), scores, Phase.FINISHED)

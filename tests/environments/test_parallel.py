@@ -6,6 +6,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from pettingzoo.test import parallel_api_test
@@ -15,11 +16,12 @@ from lacoc_arenas.bot import Key
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.simulate import Player, player, simulate
-from lacoc_server.simulate.environments import LacocParallelEnv
+from lacoc_server.simulate.environments import LacocEnv, LacocParallelEnv
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Setup
+from lacoc_shared.words import say
 
 SHORT: dict[str, Any] = {"match": {"duration_s": 1.2, "countdown_s": 0.02}}
 GAMES = ("othello", "flag-strike")
@@ -84,7 +86,7 @@ def test_a_seed_gives_the_same_episode(env: LacocParallelEnv) -> None:
 
 
 def test_rewards_add_up_to_the_lead(env: LacocParallelEnv) -> None:
-    """Rewards add up to the final lead, and those of both agents to zero; agents empty."""
+    """Rewards add up to the final lead, and those of both agents to zero; then no agent is left."""
     env.reset(seed=1)
     first = env._leads[0]
     given = play(env, 1)
@@ -97,7 +99,10 @@ def test_rewards_add_up_to_the_lead(env: LacocParallelEnv) -> None:
 
 
 def test_forks_are_equal_to_the_end(env: LacocParallelEnv, tmp_path: Path) -> None:
-    """From random saves an episode goes on bit for bit, in this environment and in a new one."""
+    """From random saves an episode goes on bit for bit, in this environment and in a new one.
+
+    Both write the same frames into their records.
+    """
     chance = np.random.default_rng(5)
     new = LacocParallelEnv(env.court.arena.name, settings=SHORT)
     for number in range(8):
@@ -113,8 +118,7 @@ def test_forks_are_equal_to_the_end(env: LacocParallelEnv, tmp_path: Path) -> No
     for file, one in zip(files, (env, new), strict=True):
         one.write_record(file)
     frames = [Record.read(file).frames for file in files]
-    assert [frame for _, frame in frames[0]][-1]
-    assert [beat for beat, _ in frames[0]] == [beat for beat, _ in frames[1]]
+    assert frames[0] == frames[1]
 
 
 def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path) -> None:
@@ -127,6 +131,11 @@ def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path)
         *_, verdict = verify(Record.read(file), processes=1)
         assert isinstance(verdict, Verdict)
         assert verdict.kind is Kind.SAME
+    half = Record.read(tmp_path / "half.mcap")
+    assert half.result is not None
+    assert half.result.official == "void"
+    *_, void = (event for event in half.events if event.kind == "decision")
+    assert void.data["reason"] == msgspec.to_builtins(say("reason.ended-early"))
     result = Record.read(tmp_path / "whole.mcap").result
     assert result is not None
     env.reset(seed=8)
@@ -196,7 +205,7 @@ def test_several_beats_in_a_step_are_the_same_match() -> None:
 
 
 def test_angles_move_the_joints() -> None:
-    """With angles an action is a share of each joint's range, reached at the robot's speed."""
+    """With angles an action is a share of each joint's range; a save goes on, but has no record."""
     env = LacocParallelEnv(settings=SHORT, actions="angles")
     env.reset(seed=0)
     raised = np.zeros(18, np.float32)
@@ -234,12 +243,20 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> No
 
 
 def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
-    """Bytes of another environment change nothing; an option that does not fit is named."""
-    other = LacocParallelEnv("othello", settings={"match": {"duration_s": 2.0}})
-    other.reset(seed=1)
+    """Bytes of another environment change nothing; an option that does not fit is named.
+
+    Other are those of other settings, robots or actions, or of an environment with a bot.
+    """
+    arena = env.court.arena.name
+    others: list[LacocEnv | LacocParallelEnv] = [
+        LacocParallelEnv(arena, settings={"match": {"duration_s": 2.0}}),
+        LacocParallelEnv(arena, settings=SHORT, robots="quadruped"),
+        LacocParallelEnv(arena, settings=SHORT, actions="angles"),
+        LacocEnv(arena, settings=SHORT),
+    ]
     env.reset(seed=1)
     before = env.save()
-    for data in (other.save(), before[:-9], b"", b"no"):
+    for data in (*(other.save() for other in others), before[:-9], b"", b"no"):
         with pytest.raises(UserError, match="same arguments"):
             env.load(data)
         assert env.save() == before

@@ -16,7 +16,13 @@ from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.match.physics import Fault
-from lacoc_server.simulate.environments import LacocEnv, LacocVectorEnv, WalkEnv, register
+from lacoc_server.simulate.environments import (
+    LacocEnv,
+    LacocParallelEnv,
+    LacocVectorEnv,
+    WalkEnv,
+    register,
+)
 from lacoc_server.world.batch import WorldBatch
 from lacoc_server.world.world import World
 from lacoc_shared.messages import SentFile
@@ -71,7 +77,7 @@ def play(env: gymnasium.Env[Any, Any], actions: np.random.Generator) -> list[Any
 
 @pytest.mark.parametrize("opponent", ["straight", "planner"])
 def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
-    """An episode that is loaded, also elsewhere, goes on bit for bit; its record is proven."""
+    """An episode that another environment loads goes on bit for bit; its record is proven."""
     one, other = (LacocEnv("othello", opponent, settings=SHORT) for _ in range(2))
     _, info = one.reset(seed=3)
     assert info["seat"] == one.court.seats[one.seat]
@@ -88,12 +94,15 @@ def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
     *_, verdict = verify(Record.read(tmp_path / "episode.mcap"), processes=1)
     assert isinstance(verdict, Verdict)
     assert verdict.kind is Kind.SAME
-    with pytest.raises(UserError, match="same arguments"):
-        one.load(b"")
+    before = one.save()
+    for data in (b"", LacocParallelEnv(settings=SHORT).save()):
+        with pytest.raises(UserError, match="same arguments"):
+            one.load(data)
+    assert one.save() == before
 
 
 def test_a_seed_chooses_the_seat() -> None:
-    """Both seats are learned in, and rewards are the learner's own in both."""
+    """Seeds choose both seats, and rewards are the learner's own in both."""
     env = LacocEnv(settings=SHORT)
     openings = {tuple(sorted(env.reset(seed=seed)[1].items())) for seed in range(12)}
     assert {dict(opening)["seat"] for opening in openings} == {"left", "right"}
@@ -149,6 +158,23 @@ def rows(arena: str, threads: int, steps: int, count: int, seconds: float = 0.6)
             assert env.episode.frame.digest == many.rows[index].episode.frame.digest
             assert all(infos[name][index] == value for name, value in expected[4].items())
     assert episodes >= count
+    many.close()
+
+
+def test_a_mask_resets_some_rows() -> None:
+    """Only rows in the mask begin an episode; a mask of another length is refused."""
+    many = LacocVectorEnv(3, settings=SHORT)
+    many.reset(seed=1)
+    many.step(np.array([2, 2, 2]))
+    ticks = [row.episode.match.ticks for row in many.rows]
+    seen, infos = many.reset(options={"reset_mask": np.array([False, True, False])})
+    now = [row.episode.match.ticks for row in many.rows]
+    assert (now[0], now[2]) == (ticks[0], ticks[2])
+    assert now[1] < ticks[1]
+    assert infos["_place"].tolist() == [False, True, False]
+    assert seen[0].tobytes() == many.rows[0].observe().tobytes()
+    with pytest.raises(UserError, match="do not fit"):
+        many.reset(options={"reset_mask": np.array([True])})
     many.close()
 
 

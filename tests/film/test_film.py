@@ -91,7 +91,7 @@ def test_a_film_is_as_long_as_the_replay(
 def test_views_differ_and_a_still_is_a_picture(
     recorded: Path, with_browser: str, tmp_path: Path
 ) -> None:
-    """Each view is another picture, of the size that was asked."""
+    """Each view is another picture, of the size that was asked for."""
     seen = set()
     for view, overlay in ((View.ARENA, True), (View.SPLIT, False)):
         look = Look(view, overlay, "en", WIDTH, HEIGHT, Quality.LOW)
@@ -206,7 +206,7 @@ def test_a_missing_extra_is_told(tmp_path: Path) -> None:
 def test_a_missing_browser_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, recorded: Path
 ) -> None:
-    """The error says how to get one; a wrong variable is named."""
+    """Without a browser the error says how to get one; a wrong CHROMIUM is named."""
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CHROMIUM", raising=False)
     with pytest.raises(UserError, match="playwright install chromium"):
@@ -262,7 +262,7 @@ def test_a_wrong_use_is_told(
     ],
 )
 def test_a_bad_contest_is_told(text: str, said: str, tmp_path: Path) -> None:
-    """A sheet that is none, has no game, or names a record that is not there, is refused."""
+    """A file that is no sheet, and a sheet without a game or with a missing record, are refused."""
     folder = tmp_path / "contest"
     folder.mkdir()
     (tmp_path / "x.mcap").touch()  # a name of the sheet leads to no other folder

@@ -56,7 +56,7 @@ def test_pictures_come_out_as_they_went_in(tmp_path: Path) -> None:
 
 
 def test_most_pictures_are_no_key_pictures(tmp_path: Path) -> None:
-    """A film of one still is small: only each two seconds a picture stands for itself."""
+    """A film has one key picture, which needs no other one to be drawn, in two seconds."""
     with movie(tmp_path / "a.mp4", WIDTH, HEIGHT, 10) as film:
         for _ in range(50):
             film.add(png(100))
@@ -93,7 +93,7 @@ def test_a_failure_leaves_nothing(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_can_not_be_written_to_is_told(tmp_path: Path) -> None:
-    """The error names the film."""
+    """The error about a folder that is not there names the film."""
     with (
         pytest.raises(UserError, match=r"a\.mp4"),
         movie(tmp_path / "none" / "a.mp4", WIDTH, HEIGHT, 30),

@@ -21,7 +21,7 @@ ENDS = st.tuples(st.integers(0, 2000), st.integers(0, 9000)).map(
 
 @given(ENDS, st.integers(1, 60))
 def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> None:
-    """Pictures are even, begin at the first beat, and end less than an interval before the last."""
+    """Pictures are evenly spaced, from the first beat to less than one space before the last."""
     first, last = ends
     pictures = plan.pictures(plan.whole(first, last), fps)
 
@@ -51,7 +51,7 @@ def test_shots_are_in_order_and_within_the_match(
 
 
 def test_near_moments_are_one_shot() -> None:
-    """Two moments of 5 s apart are one shot, and one a minute later is another."""
+    """Two moments 5 s apart are one shot, and one a minute later is another."""
     shots = plan.highlights([Moment(1000), Moment(1250), Moment(4250)], 0, 9000)
     assert shots == [Shot(800, 1400), Shot(4050, 4400), Shot(8800, 9000)]
 

@@ -72,7 +72,7 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
     """Return the serious accessibility mistakes that axe-core finds, each as rule and elements."""
     import axe_core_python.sync_playwright  # type: ignore[import-not-found,import-untyped]
 
-    # In the middle of a change of colour the contrast is that of neither.
+    # While colours change, axe-core would measure a contrast that nobody sees for long.
     page.evaluate(
         "Promise.allSettled(document.getAnimations()"
         ".filter((one) => Number.isFinite(one.effect.getComputedTiming().endTime))"

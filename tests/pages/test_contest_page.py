@@ -1,4 +1,4 @@
-"""Tests of /contest: at a gateway, and in a published folder on a web server that knows nothing."""
+"""Tests of /contest: at a gateway, and in a published folder on a server of plain files."""
 
 import functools
 import threading
@@ -169,7 +169,7 @@ def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> No
 
 
 def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:
-    """On paper every match of every round is there, and nothing that one could click."""
+    """On paper every match of every round is there, and the page's buttons are not."""
     page = open_page(viewport=LAPTOP)
     page.goto(cup.url)
     expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)

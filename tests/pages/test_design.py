@@ -168,7 +168,7 @@ def test_a_number_moves_the_leg_and_a_trial_explains_it(
     page.press("Control+z", "Control+z", "Control+z")
     page.cell_is(1, 4, "0")
     page.sees(".bar .name", "saved")
-    page.sees(".trials > li:last-child", "this table")  # trials belong to versions
+    page.sees(".trials > li:last-child", "this table")  # the first trial was of this table
     page.press("Control+y")
     page.cell_is(1, 4, "-40")
     page.type("200")
@@ -191,7 +191,7 @@ def test_a_beginner_s_first_gait(
 
     click(".bar .name")
     click("dialog >> text=New table")
-    page.cell_is(1, 0, "45")  # as it stands
+    page.cell_is(1, 0, "45")  # a new table has the standing posture
     own = {
         1: {0: "0", 3: "0", 12: "40", 14: "40", 16: "40"},
         2: {2: "0", 5: "0", 12: "40", 14: "40", 16: "40"},
@@ -266,13 +266,13 @@ def test_other_gaits_are_watched_and_taken(
     page.sees(".coach", "The table has changed")
     page.page.click("[aria-label*='Variant 1.1'][title*='Ctrl+Z']")  # one step
     page.sees(".bar .name small", "saved")
-    page.sees(".variants", "Round 1")  # they are of this table
+    page.sees(".variants", "Round 1")  # variants of the table that is back
 
 
 def test_a_table_goes_to_the_page_on_which_teams_enter(
     open_page: OpenPage, address: tuple[str, str]
 ) -> None:
-    """Its files are in the fragment of the address that was typed, which no server gets to see."""
+    """The opened address has the table's files in its fragment, which no server gets to see."""
     page = designer(open_page, address)
     page.page.click(".bar .name")
     page.page.get_by_label("Address of the contest's pages").fill(address[0])

@@ -36,7 +36,7 @@ class Event(NamedTuple):
 
 @pytest.fixture(scope="module")
 def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
-    """Give an event of two courts, of which nothing but its file was written."""
+    """Give an event of two courts with open entries; nobody has entered yet."""
     folder = tmp_path_factory.mktemp("event")
     file = folder / "contest.toml"
     run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
@@ -114,7 +114,7 @@ def test_an_event_from_its_file_to_its_first_game(
 
 
 def first_team(open_page: OpenPage, event: Event) -> Page:
-    """Enter with a wrong code, with mistakes, and rightly; the link is there after a reload."""
+    """Enter with a wrong code, with mistakes, then rightly; the link is there after a reload."""
     page = open_page(viewport=LAPTOP)
     fill(page, event, FIRST, "AAAAAA")
     page.locator("button[type=submit]").click()
@@ -163,7 +163,7 @@ def move(office: Page) -> None:
 
 
 def decide(office: Page) -> None:
-    """A decision shows what it changes before it can be made."""
+    """Decide a match; the page shows what that changes before it can be done."""
     line = office.locator(".rulings li").first
     line.get_by_role("button").click(timeout=WAIT_MS)
     dialog = office.get_by_role("dialog")
@@ -181,7 +181,7 @@ def decide(office: Page) -> None:
 
 
 def late_files(office: Page, team: Page, event: Event) -> None:
-    """After the end of entries new files wait, and the organiser says why they count."""
+    """Replace files after entries closed: they wait until the organiser approves with a reason."""
     changed = event.right[1].with_name("LocoTra-late.txt")
     changed.write_bytes(event.right[1].read_bytes() + b"\n")
     team.get_by_text("Replace the files", exact=True).click()
@@ -197,7 +197,7 @@ def late_files(office: Page, team: Page, event: Event) -> None:
 
 
 def papers(office: Page) -> None:
-    """Each paper has its content, and on paper nothing that one could click."""
+    """Look at each paper: it has its content, and its buttons are not printed."""
     for paper, content in (
         ("schedule", "main-1"),
         ("results", "3:9"),
@@ -214,7 +214,7 @@ def papers(office: Page) -> None:
 
 
 def on_a_phone(open_page: OpenPage, event: Event) -> None:
-    """In Japanese on a phone nothing scrolls sideways, and axe-core finds no mistake."""
+    """Open both pages on a phone in Japanese: none scrolls sideways, and axe-core finds nothing."""
     for path in (event.office, f"{event.url}/enter"):
         page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
         page.goto(path)
@@ -227,7 +227,7 @@ def on_a_phone(open_page: OpenPage, event: Event) -> None:
 
 
 def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:
-    """Without the organiser's key the page shows nothing of the contest, and says why."""
+    """With a wrong key the page shows no entries, and says why."""
     page = open_page(viewport=LAPTOP)
     page.goto(f"{event.url}/office#organiser=guess")
     expect(page.get_by_role("alert")).to_contain_text("does not open", timeout=WAIT_MS)

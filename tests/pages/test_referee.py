@@ -151,7 +151,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     log_has(page, "A rematch is advised: the match ran at ")
     expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
     expect(other.locator(".match .advice li").first).to_contain_text("実時間の")
-    step(page)  # advice only: the result is the referee's word
+    step(page)  # the referee may still make the result official
     confirm(page)
     phase(page, 7)
     expect(advice).to_be_visible()

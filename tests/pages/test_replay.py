@@ -207,7 +207,10 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
     show.page.get_by_role("button", name="Play", exact=True).click()
     slow = beats_a_second()
     show.press(*["+"] * 5)
-    show.until(lambda: show.page.evaluate("window.__replay.speed.value") == 8, "the keys do not")
+    show.until(
+        lambda: show.page.evaluate("window.__replay.speed.value") == 8,
+        "the keys do not change the speed",
+    )
     fast = beats_a_second()
     # Between two pictures at most 0.25 s count, so a slow machine plays more slowly.
     assert 0.5 < slow < 20

@@ -72,7 +72,7 @@ settings.match.start = "ready"
 def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, console: Any) -> None:
     """With the team's link a page shows what comes next, and plays at whichever court it is.
 
-    A wrong token opens nothing. Both are typed on the same page; the link has the right one.
+    A wrong token that was typed on the page before opens nothing.
     """
     console.expect("ERR_CONNECTION|WebSocket")  # the contest ends before the page is closed
     with contest(tmp_path) as there:

@@ -278,10 +278,7 @@ def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     assert not [text for text in said if "Connecting" in text or "nope" not in text]
 
 
-@pytest.mark.parametrize(
-    "width",
-    [1000, *(pytest.param(width, marks=pytest.mark.long) for width in (1280, 1366, 1440, 1920))],
-)
+@pytest.mark.parametrize("width", [1000, 1280, 1366, 1440, 1920])
 @pytest.mark.long
 def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
     """At each width the brand, the choice of court, the score and the buttons do not overlap."""

@@ -66,7 +66,7 @@ def test_arrays_have_what_the_frames_have(path: Path) -> None:
 
 
 def test_keys_and_events_are_tables(path: Path) -> None:
-    """Keys and events have one row each, in order, with times in their units."""
+    """Each key and each event has a row, in order, with times in their units."""
     match = notebook.read(path)
 
     assert match.keys.beat.tolist() == [3, 3, 13, 13, 23, 23, 33, 33]
@@ -86,7 +86,7 @@ def test_keys_and_events_are_tables(path: Path) -> None:
 def test_a_field_without_robots_is_nan(
     tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame
 ) -> None:
-    """Before READY there are no robots: their numbers are NaN, and nothing else is missing."""
+    """Before READY there are no robots: their numbers are NaN. Tables without a row are empty."""
     writer = RecordWriter(tmp_path, header())
     writer.sheet(0, sheet)
     writer.frame(0, codec.encode(frame(0, Phase.LOBBY)))

@@ -237,6 +237,6 @@ def test_a_servo_is_the_files_within_its_torque(hexapod: RobotSpec, compile_worl
         assert torque_n_m == pytest.approx(expected_n_m)
 
 
-def test_every_installed_robot_is_tested() -> None:
+def test_the_samples_are_installed() -> None:
     """All sample robots that the tests above use are installed."""
     assert set(SAMPLES) <= set(installed_robots())

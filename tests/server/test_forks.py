@@ -122,7 +122,10 @@ def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> 
 
 @pytest.mark.slow
 def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path) -> None:
-    """The bots that played go on as they did; another reaction, a script or an [x] does not."""
+    """The bots that played go on as they did, and otherwise with other reactions.
+
+    A script's keys come at their times, also [x].
+    """
     first = beat_of(source, "PLAYING") + 1
     beat = first + 50
     bots = bots_of(source, ("planner", "nearest"), None)
@@ -167,7 +170,7 @@ def test_an_unfinished_match_goes_on(source: Source, tmp_path: Path) -> None:
 
 
 def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
-    """Nothing in a fork can be taken for the game of a contest."""
+    """A fork has not the call and the fixture of the match, and its id is not that of a match."""
     from lacoc_server.simulate.forks.origin import stem
     from lacoc_shared.messages.office import Assigned
 
@@ -248,7 +251,9 @@ def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: P
     """No record, a damaged one and one of another MuJoCo are refused, each with its reason."""
     text = tmp_path / "text.mcap"
     text.write_text("no record")
-    assert run(fork_app, str(text), "--beat", "100")[0] != 0
+    code, said = run(fork_app, str(text), "--beat", "100")
+    assert code != 0
+    assert "text.mcap" in said
     damaged = tmp_path / f"{MATCH}.mcap"
     shutil.copy(file, damaged)
     data = bytearray(damaged.read_bytes())

@@ -5,6 +5,7 @@ from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
+from _pytest.monkeypatch import MonkeyPatch
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
@@ -15,8 +16,8 @@ from typer.testing import CliRunner
 from lacoc_arenas import arena as arenas
 from lacoc_client.film.moments import from_file
 from lacoc_server.commands.replay.highlights import app as highlights_app
-from lacoc_server.simulate import player, simulate
-from lacoc_server.simulate.forks import odds
+from lacoc_server.simulate import player, simulate, software
+from lacoc_server.simulate.forks import chances, odds
 from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute, margin, margins
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
 from lacoc_server.simulate.forks.odds import Moment
@@ -118,6 +119,9 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
     assert [*compute(wished, other, read_odds(path), lambda done, of: None)]
     assert other.forks == 4
 
+    job = ChanceJob(file=str(file), beat=found.moments[0].beat, bots=wish.bots, variants=(1, 2))
+    assert margins(job) == margins(job) == found.moments[0].margins, "also twice in one process"
+
     path.write_text("{}")
     assert read_odds(path) is None
 
@@ -143,10 +147,36 @@ def test_the_command_lists_highlights(tmp_path: Path) -> None:
     assert read_odds(odds_path(file, MATCH)) is not None
 
 
-def test_a_bot_that_breaks_is_told(tmp_path: Path) -> None:
-    """A mistake of a bot comes back from the process as words, not as a traceback."""
+def test_an_error_comes_back_as_words(tmp_path: Path) -> None:
+    """An error that a user can correct, as a missing record, is returned and not raised."""
     job = ChanceJob(file=str(tmp_path / "none.mcap"), beat=1, bots=("a", "b"), variants=(1,))
     assert isinstance(margins(job), Phrase)
+
+
+def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+    """Another game in a folder, bot file, record of a ghost or software gives another key."""
+    arena = arenas.load("othello", QUICK)
+    players = [player(arena, 0, "straight"), player(arena, 1, "straight")]
+    simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
+    source = read_source(tmp_path / f"{MATCH}.mcap")
+    bot, ghost, folder = (tmp_path / name for name in ("my_bot.py", "ghost.mcap", "game"))
+    folder.mkdir()
+
+    def now() -> str:
+        return chances.key(source, 50, (str(bot), f"ghost:{ghost}"), str(folder))
+
+    keys = {now()}
+    for change in (
+        lambda: bot.write_text("one = 1"),
+        lambda: ghost.write_bytes(b"other"),
+        lambda: (folder / "game.py").write_text("two = 2"),
+        lambda: monkeypatch.setattr(chances, "software", lambda: "other"),
+    ):
+        change()
+        keys.add(now())
+    assert len(keys) == 5
+    monkeypatch.setattr(software, "_others", lambda: ["handed_in"])
+    assert software.software.__wrapped__() != software.software()
 
 
 def test_odds_of_another_version_are_not_used(tmp_path: Path) -> None:

@@ -3,12 +3,14 @@
 import os
 from pathlib import Path
 
+import msgspec
 import pytest
 from handed_in import handed_in, players_of, sample
 from stage import join, setup
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot
+from lacoc_server.commands import simulate as simulate_commands
 from lacoc_server.commands.simulate import simulate_command
 from lacoc_server.match.match import Match
 from lacoc_server.simulate import SETTLE_BEATS, Player, player, simulate
@@ -47,6 +49,15 @@ def test_a_match_to_its_end(tmp_path: Path) -> None:
     assert by_phase.count(Phase.PLAYING) == 199  # tick 200 ends the match
     assert by_phase.count(Phase.READY) == SETTLE_BEATS
     assert frames[-1].digest.hex() == result.digest
+
+
+def test_the_table_of_results_names_the_winner() -> None:
+    """The winner's column names a team, a draw, or that the match is void."""
+    result = play()
+    ends = ("right", "draw", "void")
+    results = [msgspec.structs.replace(result, official=end) for end in ends]
+    table = simulate_commands._results_table(results, ("left", "right"))
+    assert [*table.columns[3].cells] == [result.teams[1], "draw", "void"]
 
 
 @pytest.mark.slow

@@ -72,7 +72,7 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
 
 
 def test_an_office_opens_the_seats_of_its_courts(file: Path) -> None:
-    """With an office the seats need no tokens; a contest with keys can't have one."""
+    """With an office the seats need no tokens; a contest with keys can't have an office."""
     office = '[office]\ntoken = "token-of-the-office"\n'
     court = '[court.main]\narena = "othello"\nreferee.token = "referee-token-of-main"\n'
     file.write_text(office + court)

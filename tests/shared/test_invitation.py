@@ -72,7 +72,8 @@ def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
     assert entrance.referee(referee, *nothing, None) == REFEREE
     assert entrance.gateway(gateway, *nothing) == GATEWAY
     assert entrance.gateway(left, *nothing) == WATCH
-    assert entrance.spectator(left, *nothing) == WATCH
+    for invitation in (left, referee, gateway):
+        assert entrance.spectator(invitation, *nothing) == WATCH
     with pytest.raises(UserError, match="for the role of referee, not of contestant"):
         entrance.seat(referee, *nothing, None, None)
     with pytest.raises(UserError, match="for the role of contestant, not of referee"):

@@ -321,7 +321,7 @@ def test_errors_speak_the_language_of_the_process() -> None:
     ],
 )
 def test_a_terminal_speaks_the_language_that_is_set(variables: dict[str, str], spoken: str) -> None:
-    """The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set gives the language."""
+    """LACOC_LANGUAGE, LC_ALL, LC_MESSAGES or LANG gives the language: the first not empty one."""
     assert language.of_process(variables) == spoken
 
 

@@ -1,1 +1,1 @@
-"""Bots that a machine learned: what they see of a frame as numbers, and how numbers make a key."""
+"""Learned bots: which numbers of a frame they see, and how these numbers choose a key."""

@@ -1,4 +1,4 @@
-"""A learned policy as layers of numbers, and as a bot file that plays anywhere.
+"""A learned policy as layers of numbers, and as a bot file.
 
 A bot file holds the layers as text. It needs neither MuJoCo nor the library that trained it.
 """
@@ -162,7 +162,7 @@ def read(text: str) -> Network:
     """Read the policy of a bot file.
 
     Raises:
-        UserError: if the text is damaged.
+        UserError: if the text is damaged, or its layers do not fit.
     """
     try:
         packed = base64.b85decode("".join(text.split()))

@@ -22,8 +22,8 @@ from lacoc_shared.seat import BEATS_PER_S
 Numbers = npt.NDArray[np.float32]
 
 BODY = ("x_m", "y_m", "z_m", "forward_x", "forward_y", "up")
-"""Names of the numbers of a robot's body: position of its middle, the two level parts of its
-forward direction, and how upright it is (1 upright, -1 on its back)."""
+"""Names of the numbers of a robot's body: position of its middle, x and y of its forward
+direction, and how upright it is (1 upright, -1 on its back)."""
 SEAT = ("points", "key", "posture", "locked_s")
 """Names of the numbers of a seat: its points, the digit of its present key, the index of the
 posture that its robot moves to, and for how long keys are still refused."""

@@ -11,8 +11,9 @@ _UNSEEN = re.compile(
     "[\u00ad\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2800\u3164\ufe00-\ufe0f\uffa0"
     "\U0001d159\U000e0100-\U000e01ef]"
 )
-"""Signs that Python calls printable, but that nobody sees, as the Hangul filler. In an emoji one
-of them is usual, so a name may have them; but they make no name, and no other name."""
+"""Signs that are printable for Python but can't be seen, such as the Hangul filler. A name may
+contain them, because many emoji do; but a name needs other signs too, and is compared without
+them."""
 
 
 def read_name(text: str) -> str:
@@ -28,6 +29,6 @@ def read_name(text: str) -> str:
 
 
 def same_name(name: str) -> str:
-    """Return a form of a name in which names that look alike, as "Anna" and "ANNA", are equal."""
+    """Return a form of a name without differences in capitals, widths and what can't be seen."""
     seen = unicodedata.normalize("NFKC", _UNSEEN.sub("", name))
     return " ".join(seen.casefold().split())

@@ -86,13 +86,13 @@ class Tried(_Kind, frozen=True, kw_only=True):
 
 
 class Checked(_Kind, frozen=True, kw_only=True):
-    """A gait was checked for mistakes, as `lacoc gait check` does."""
+    """A gait was checked, as `lacoc gait check` does; checks that find mistakes are not kept."""
 
     version: _Word
     keys: int
     """Number of keys of level B that the gait has."""
     mistakes: int
-    """Number of mistakes that were found."""
+    """Number of mistakes that were found: 0 in what the page keeps."""
 
 
 class Compared(_Kind, frozen=True, kw_only=True):

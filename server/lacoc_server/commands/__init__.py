@@ -1,1 +1,1 @@
-"""The subcommands of `lacoc` that need this package: courts, simulated matches, trials, keys."""
+"""The subcommands of `lacoc` that need this package, such as serve, simulate and contest."""

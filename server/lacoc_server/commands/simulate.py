@@ -63,7 +63,7 @@ def simulate_command(
         typer.Option(
             metavar="N",
             help="Everybody plays N others, in both seats as evenly as possible, instead of "
-            "everybody. An odd number of players rest in turn.",
+            "everybody. With an odd number of players, one rests in each round.",
             min=1,
         ),
     ] = None,
@@ -93,8 +93,8 @@ def simulate_command(
     LocoTra-data.txt, and robot.toml if there is one. Bots use key 0 to stand, 1 to turn left, 2 to
     go forward, 3 to turn right.
 
-    Physics and rules are those of a court: a simulated match is bit for bit the match that a court
-    would play. Of many matches, as many as the machine has cores are played at a time; they give
+    Physics and rules are those of a court: with the same keys, a court would play the same match,
+    bit for bit. Of many matches, as many as the machine has cores are played at a time; they give
     way to all other programs.
 
     With --json each match is printed as a line when it has ended, and after it the standings.
@@ -294,10 +294,11 @@ def _results_table(results: Sequence[Result], seats: Sequence[str]) -> Table:
         say("fact.clock-s"),
     )
     for result in results:
-        drawn = result.official not in seats
-        winner = (
-            render(say("simulate.draw")) if drawn else result.teams[seats.index(result.official)]
-        )
+        if result.official in seats:
+            winner = result.teams[seats.index(result.official)]
+        else:
+            is_void = result.official == "void"
+            winner = render(say("phase.void") if is_void else say("simulate.draw"))
         score = " : ".join(map(str, result.scores))
         table.add_row(*result.teams, score, winner, render(result.reason), f"{result.clock_s:.1f}")
     return table

@@ -1,4 +1,4 @@
-"""Matches without a network, as fast as the machine can."""
+"""Matches without a network, as fast as the machine can play them."""
 
 from lacoc_server.simulate.headless import SETTLE_BEATS, Player, Seated, player, seated, simulate
 

@@ -40,7 +40,7 @@ SETTLE_BEATS = BEATS_PER_S
 
 
 class Seated(msgspec.Struct, frozen=True):
-    """A player of a seat that another process can take: files, and the name of a bot."""
+    """A player of a seat in a form for other processes: files, and the name of a bot."""
 
     join: JoinSeat
     """The join; its `seat` is the player's seat."""
@@ -58,8 +58,8 @@ class Player:
     """The join; its `seat` is the player's seat."""
     bot: BotFactory
     late_ticks: int = 0
-    """Ticks of PLAYING that pass before the brain sees its first frame; another value makes another
-    match.
+    """Ticks of PLAYING that pass before the brain sees its first frame. Players who meet again get
+    another number, so that they play another match.
     """
 
 
@@ -250,4 +250,6 @@ def closing(match: Match) -> Decide:
     """Return the decision that ends a match: official after its end, void before it."""
     if match.phase is Phase.FINISHED:
         return Decide(AUTHOR, "", Official())
-    return Decide(AUTHOR, say("reason.physics-stopped"), Abort())
+    halted = match.phase is Phase.HALTED
+    reason = say("reason.physics-stopped") if halted else say("reason.ended-early")
+    return Decide(AUTHOR, reason, Abort())

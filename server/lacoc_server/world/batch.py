@@ -59,7 +59,7 @@ class WorldBatch:
         return row
 
     def take(self, row: "Row") -> None:
-        """Let a row be the one of its index that is stepped."""
+        """Let `step` use this row for its index."""
         if self._models[row.index] is not row.model:
             self._models[row.index] = row.model
             self._batch.set_models(self._models)
@@ -86,6 +86,7 @@ class WorldBatch:
 
     def _after(self, row: "Row", commanded: Sequence[Posture], before: Any) -> Fault | None:
         if any(self._warned[row.index].tobytes()):
+            # MuJoCo has reset this world. The single world does the tick again and says why.
             self._warned[row.index] = 0
             row.load(row.digest + before.tobytes())
             return row.repeat(commanded)

@@ -22,13 +22,14 @@ _TILT_DEG, _CLOSE_TILT_DEG = -68.0, -35.0
 _FAR = 1.2
 """Distance of the camera from the middle, in widths of the field."""
 _LARGE_M = 5.0
-"""On a larger field the camera looks at the robot in the first seat, from `_CLOSE_M`."""
+"""On a larger field the camera looks at the robot in the first seat."""
 _CLOSE_M = 0.9
+"""Distance of the camera from that robot."""
 _MOST_GEOMS = 10_000
 
 
 class Camera:
-    """Takes pictures of one model, from above its lower edge.
+    """Takes pictures of one model: of the field from above, or on a large field of a robot.
 
     Args:
         model: the compiled model; it stays as it is.

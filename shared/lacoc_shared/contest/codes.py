@@ -5,7 +5,7 @@ import secrets
 import unicodedata
 
 _LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
-"""None looks like another one."""
+"""I, O, 0 and 1 are missing, because people take them for each other."""
 _LENGTH = 6
 
 

@@ -136,7 +136,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     least_rest_s: float = 0.0
     """Shortest time between two matches of a team."""
     entries_close: datetime | None = None
-    """From then on a team can change its files only with a reason; None: from the first draw on."""
+    """From then on no team can enter, and files change only with a reason; None: after the first
+    draw."""
 
     @property
     def protocol(self) -> str:

@@ -1,4 +1,4 @@
-"""What the pages of an organiser and of teams ask of a contest's office (docs/contest.md 12).
+"""What the pages of an organiser and of teams ask a contest's office (docs/contest.md 12).
 
 A gateway passes these requests on unread: the office alone looks at their secret. Whoever has the
 organiser's key decides; the event code lets a team apply; a team's token opens its own entry.
@@ -83,7 +83,7 @@ class Overview(DeskRequest, frozen=True, kw_only=True, tag="overview"):
     """Ask for everything that the organiser's page shows."""
 
     known: str = ""
-    """Version that the page has already: then the answer is empty."""
+    """Version of the view that the page has; if it is the newest, the answer has no view."""
 
 
 class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
@@ -185,7 +185,8 @@ class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
     """The team's token for the whole contest."""
     state: Literal["waits", "in", "late", "left", "none"]
     """waits: the organiser has not approved it. in: it takes part. late: it takes part, and the
-    organiser has not approved its newest files. left: it was taken out. none: there is none."""
+    organiser has not approved its newest files. left: it was taken out. none: the team has no
+    entry."""
     files: str = ""
     """Hash of the files with which it plays, or will play once approved."""
     at_ms: int = 0
@@ -197,7 +198,8 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
 
     team: str
     state: Literal["refused", "waits", "late", "in", "withdrawn", "disqualified"]
-    """refused: its newest files had mistakes, and it has not entered. Others: see `OwnEntry`."""
+    """refused: its newest files had mistakes, and it has not entered. withdrawn,
+    disqualified: it was taken out. Others: see `OwnEntry`."""
     files: str = ""
     bot: str = ""
     """The bot that plays for it; "": people play."""
@@ -233,7 +235,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     """When it began, or probably begins; in milliseconds since 1970, UTC."""
     running: bool = False
     begun: bool = False
-    """Whether its game at the court has begun: it can't be moved now."""
+    """Whether its game at the court has begun; a move no longer changes this game."""
     moved: Moved | None = None
     """How it was moved; None: it was not."""
     held: Phrase | None = None
@@ -244,7 +246,7 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that the organiser's page shows, besides the sheet of the contest."""
 
     version: str
-    """Changes with the rest."""
+    """Hash of the rest."""
     event: EventInfo
     code: str
     """The event code."""

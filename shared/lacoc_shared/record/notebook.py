@@ -6,8 +6,9 @@
     left = match.robots[0]
     print(left.team, match.score[-1], left.position_m[match.playing])
 
-docs/notebook.md describes every array. Arrays of one object have one length, and are in the order
-of time. `columns` gives them by name, as a table for pandas or a spreadsheet.
+docs/notebook.md describes every array. The arrays of an object have one entry for each frame, key
+or event, in the order of time; only those about markers have one for each marker. `columns` gives
+them by name, as a table for pandas or a spreadsheet.
 """
 
 import dataclasses
@@ -56,10 +57,10 @@ class Robot:
 
 @dataclass(frozen=True)
 class Keys:
-    """The keys that the court gave to the match, of all seats."""
+    """The keys of all seats that the court gave to the match, also those that the match refused."""
 
     beat: Numbers
-    """Beat at which the key took effect."""
+    """Beat that took the key."""
     time_s: Floats
     seat: Numbers
     """Index of the seat in `Match.robots`."""

@@ -67,7 +67,7 @@ function reachable() {
   return steps;
 }
 
-test("what was wrong with files is old as soon as other files are chosen", () => {
+test("mistakes of files are forgotten once other files are chosen, other refusals are not", () => {
   const refused = after(fresh, join, open, failed(badFile));
   assert.equal(refused.refusal, badFile);
   assert.equal(after(refused, { is: "mended" }).refusal, null);
@@ -75,7 +75,7 @@ test("what was wrong with files is old as soon as other files are chosen", () =>
   assert.equal(after(unknown, { is: "mended" }).refusal, wrongToken);
 });
 
-test("whatever happens, the claim makes sense", () => {
+test("in every reachable state wish, reason, request and effects agree", () => {
   const steps = reachable();
   const states = new Set(steps.map(({ next }) => next.state));
   assert.deepEqual(states, new Set(Object.keys(TRANSITIONS)));
@@ -115,7 +115,7 @@ test("a first join is asked for once there is a court, and granted", () => {
 });
 
 for (const refusal of [busy, no, wrongToken, badFile]) {
-  test(`a first join that is refused is shown at once: ${refusal.message}`, () => {
+  test(`a first join that is refused is shown at once: ${refusal.why.code}`, () => {
     const refused = after(fresh, join, open, failed(refusal));
     assert.deepEqual([refused.state, refused.effects], ["none", ["drop"]]);
     assert.deepEqual([refused.refusal, refused.lastWish], [refusal, wish]);
@@ -133,7 +133,7 @@ test("a first join that the connection lost is asked again after a pause", () =>
   assert.deepEqual(after(resting, rested, open).effects, ["ask"]);
 });
 
-test("a seat that was held is asked for again after a break or a reload, in silence", () => {
+test("a seat that was held is asked for again after a break or a reload, without a message", () => {
   for (const claim of [seated, reloaded]) {
     assert.deepEqual(after(claim, open).effects, ["ask"]);
     let mended = claim;
@@ -144,7 +144,7 @@ test("a seat that was held is asked for again after a break or a reload, in sile
   }
 });
 
-test("a court that says neither yes nor when is asked eight times", () => {
+test("a held seat is given up after eight refusals that name no reason to wait", () => {
   let claim = reloaded;
   for (let time = 0; time < 7; time++) {
     claim = after(claim, open, failed(no));
@@ -158,7 +158,7 @@ test("a court that says neither yes nor when is asked eight times", () => {
 });
 
 for (const refusal of [wrongToken, badFile]) {
-  test(`a held seat that is refused for good is shown: ${refusal.message}`, () => {
+  test(`a held seat that is refused for good is shown: ${refusal.why.code}`, () => {
     const refused = after(reloaded, open, failed(refusal));
     assert.deepEqual([refused.state, refused.refusal], ["none", refusal]);
     assert.equal(keptWish(refused), null);
@@ -205,7 +205,7 @@ test("a seat that is given up is not asked for again", () => {
   assert.equal(after(seated, open, leave, granted, released).state, "left");
 });
 
-test("a lost seat is told, and nothing fights for it", () => {
+test("a lost seat is told, and only a person asks for it again", () => {
   const lost = after(seated, taken);
   assert.deepEqual([lost.state, lost.why, lost.lastWish], ["lost", taken.why, wish]);
   assert.deepEqual(after(lost, open).effects, []);

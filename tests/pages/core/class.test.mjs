@@ -71,7 +71,7 @@ test("names in a text are hidden, whatever they are written in", () => {
   for (const [text, known, hidden] of cases) assert.equal(c.masked(text, known, label), hidden);
 });
 
-test("times are said in the unit that one says them in", () => {
+test("a passed time is given in minutes, and from an hour on in hours", () => {
   const cases = [
     [0, "moment", 0],
     [-30, "moment", 0],
@@ -95,7 +95,7 @@ test("foot bars are a row for each leg, 100 wide", () => {
   assert.equal(c.barsPath([[[0, 0.5]], [[0.25, 1]]]), "M0 0.15H50V0.85H0ZM25 1.15H100V1.85H25Z");
 });
 
-test("a stretch is shown again and again", () => {
+test("after the end of a stretch its begin follows", () => {
   assert.deepEqual(
     [10, 15, 20, 27, 40].map((tick) => c.looped(tick, 10, 20)),
     [10, 15, 10, 17, 10],

@@ -1,4 +1,4 @@
-"""Prints the sheets of contests that are played by chance, for contest.test.mjs."""
+"""Prints the sheets of contests with random results, for contest.test.mjs."""
 
 import itertools
 import json

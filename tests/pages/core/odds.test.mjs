@@ -1,4 +1,4 @@
-/** The odds of a match: what is read, and what follows from it. */
+// Tests of the odds of a match (client/web/src/core/odds.ts).
 
 import assert from "node:assert/strict";
 import test from "node:test";
@@ -11,7 +11,7 @@ const file = {
   moments: [moment(100, 0.5), moment(400, 0.6), moment(200, 0.9), moment(500, 0.58)],
 };
 
-test("odds of this match are read, in order; all else is left alone", () => {
+test("odds of this match are read, in order; anything else gives null", () => {
   assert.deepEqual(
     readOdds(file, "m").moments.map(({ beat }) => beat),
     [100, 200, 400, 500],

@@ -45,7 +45,7 @@ test("what changes nothing, and what has begun, is not moved", () => {
   assert.equal(dropped({ ...first, begun: true }, "south", null), null);
 });
 
-test("a time of day is the next such moment", () => {
+test("a time of day is today's, or tomorrow's if today's was over half a day ago", () => {
   const noon = new Date(2030, 4, 1, 12, 0).getTime();
   const hour = 3_600_000;
   assert.equal(momentOf("", noon), 0);

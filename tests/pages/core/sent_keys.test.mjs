@@ -10,7 +10,7 @@ const seat = (applied_seq, refused_seq = 0, refused_why = 0) => ({
   refused_why,
 });
 
-test("a key takes from its press to the first frame that shows it", () => {
+test("a key's time is from its press to the first frame that shows it", () => {
   const keys = new SentKeys();
   assert.equal(keys.add(1, 4, 1000), null);
   assert.equal(keys.see(seat(0), 1010), null);
@@ -18,7 +18,7 @@ test("a key takes from its press to the first frame that shows it", () => {
   assert.equal(keys.see(seat(1), 1050), null);
 });
 
-test("a reply may come after the frame", () => {
+test("the frame that shows a key may come before the reply", () => {
   const keys = new SentKeys();
   assert.equal(keys.see(seat(1), 1030), null);
   assert.equal(keys.add(1, 4, 1000), 30);

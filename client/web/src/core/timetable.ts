@@ -57,10 +57,10 @@ export function clockOf(timeMs: number): string {
 }
 
 /**
- * The next moment of a time of day.
+ * The moment that a time of day means: today's, or tomorrow's if today's was over half a day ago.
  *
  * @param clock As `clockOf` gives it; "": none.
- * @returns 0 for none. A time that is over by more than half a day is tomorrow's.
+ * @returns The moment; 0 for none.
  */
 export function momentOf(clock: string, nowMs: number): number {
   const [hours, minutes] = clock.split(":").map(Number);

@@ -185,6 +185,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "reason.court-restarted": ["the court was started again", "コートの再起動"],
   "reason.court-restarted-elsewhere": ["the court was started again on a computer that calculates a little differently", "コートを別のパソコンで起動し直しました（計算がわずかに異なります）"],
   "reason.fork": ["what if", "もしも"],
+  "reason.ended-early": ["ended early", "途中での終了"],
   "reason.physics-stopped": ["the physics simulation stopped", "物理計算の停止"],
   "key.not-playing": ["keys work only while the match is being played", "キーは試合中だけ使えます"],
   "key.level-closed": ["this arena does not allow that level of control", "この競技ではその操作レベルは使えません"],

@@ -1,4 +1,4 @@
-"""Decide about a match after it was played, once it is clear what that changes."""
+"""Decide about a match, after showing what that changes."""
 
 import sys
 from typing import Annotated, Literal

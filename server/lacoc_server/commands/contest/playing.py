@@ -116,9 +116,10 @@ def run(
     bots of teams that are bots. A free court gets the next game; its result comes from the court.
     Ctrl-C, or even kill -9, loses nothing: started again, the contest goes on.
 
-    With --headless there is no network: bots play as fast as the machine can. A game is known by
-    the files of both teams, the rules and the software, and is never played twice. If one entry
-    changes, a new contest with the same folder of records plays only the games of that team.
+    With --headless there is no network: bots play as fast as the machine can. The files of
+    both teams, the rules and the software name a game, and a game whose record is there is not
+    played again. If one entry changes, a new contest with the same folder of records plays only
+    the games of that team.
     """
     from lacoc_server.contest.headless.pool import Pool, interrupted_by_signals
 

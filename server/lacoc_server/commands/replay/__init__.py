@@ -1,1 +1,1 @@
-"""`lacoc replay`: what it does with physics: verify a record, fork it, say who would have won."""
+"""The parts of `lacoc replay` that need physics: verify, fork, odds and highlights of a record."""

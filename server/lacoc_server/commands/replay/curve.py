@@ -19,7 +19,7 @@ from lacoc_shared.words import render, say
 _LONGEST_S = 86_400.0
 """Longest time that the forks of a moment may take [s]."""
 CLOSER = 8
-"""So many moments are added where the odds change most."""
+"""Number of moments that are added where the odds change most."""
 
 File = Annotated[Path, typer.Argument(help="The record: a .mcap file.")]
 Players = Annotated[

@@ -61,8 +61,8 @@ def fork_command(
         int,
         typer.Option(
             metavar="K",
-            help="How many forks are played; the bots react a little later in each, in another "
-            "way. More than one also gives odds.",
+            help="How many forks are played. The bots react a little later, in each fork by other "
+            "times. More than one also gives odds.",
             min=1,
         ),
     ] = 1,
@@ -95,8 +95,8 @@ def fork_command(
     """Go on with a recorded match from one of its beats, as a court would have.
 
     Without a change, the fork is the record, bit for bit. With --take-back the match is halted,
-    the event taken back and the match resumed, as a referee does it; recorded keys come as much
-    later.
+    the event taken back and the match resumed, as a referee does it; recorded keys are delayed by
+    the same time.
 
     The fork is written as a record of its own. It names the match, the beat and the record that it
     is a fork of, and is nobody's official result.

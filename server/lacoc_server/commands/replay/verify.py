@@ -99,11 +99,10 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
 def _lines(record: Record, verdict: Verdict) -> list[str]:
     origin = record.header.setup.origin
     lines: list[Phrase | str | None] = [
-        # Whoever reads only the first line must not take a fork for what a court played.
+        # First what nobody may overlook: this is a fork, or a part of the record is lost.
         say("verdict.fork", match=origin.match_id, beat=origin.beat, hash=origin.record_hash)
         if origin
         else None,
-        # Whoever reads only the first line must not take a damaged record for a proven one.
         say("verdict.lost", cut=record.cut) if record.lost else None,
         say(
             "verdict.line",

@@ -1,5 +1,6 @@
-"""The desk of an office: what an organiser and teams ask from pages, as facts and decisions.
+"""The desk of an office: it answers what an organiser and teams ask from pages.
 
-`deciding` says what a decision changes; `admission` looks at secrets; `entering` and `organising`
-answer; `service` is the place on the network.
+`desk` answers a request; `admission` checks its secret. `entering` does what a team asks, and
+`organising` what the organiser asks. `deciding` makes decisions about matches. `overview` is what
+the organiser's page shows. `service` connects the desk to the network.
 """

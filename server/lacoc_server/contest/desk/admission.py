@@ -10,11 +10,12 @@ from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import Phrase, say
 
 _GUESSES_HZ, _GUESSES_BURST = 20.0, 200
-"""Wrong secrets that are answered with what is wrong; a code has 31 to the power of 6 forms."""
+"""Wrong secrets in a second, and at once, that are answered with what is wrong. For more than that
+the answer is `Slower`. There are 32 to the power of 6 event codes."""
 
 
 class Slower(UserError):
-    """Too many wrong secrets were shown; a right one is let in all the same."""
+    """Too many wrong secrets were shown. A right one is still let in."""
 
 
 class Admission:
@@ -71,7 +72,7 @@ class Admission:
 
 
 def _same(shown: str, wanted: str) -> bool:
-    """Compare two secrets in a time that tells nothing of the wanted one."""
+    """Compare two secrets; the time that this takes tells nothing of the wanted one."""
     digests = (
         hashlib.blake2b(one.encode("utf-8", "surrogatepass")).digest() for one in (shown, wanted)
     )

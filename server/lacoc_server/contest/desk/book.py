@@ -15,6 +15,7 @@ from lacoc_shared.messages.desk import EventInfo
 from lacoc_shared.mistakes import Mistake
 
 _REFUSED_KEPT = 50
+"""Most teams whose mistakes are kept for the organiser."""
 
 
 class Book:
@@ -23,7 +24,7 @@ class Book:
     Args:
         where: the contest.
         store: its facts.
-        applications: the entries that wait.
+        applications: the entries that wait for the organiser.
         tokens: the tokens of the teams.
     """
 
@@ -77,7 +78,7 @@ class Book:
         return next((team for team in self.contest.teams if team.name == name), None)
 
     def is_taken(self, name: str) -> bool:
-        """Return whether a team has this name, or one that looks like it."""
+        """Return whether a team that is in or waits has this name, or almost (see `_look`)."""
         names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
         return _look(name) in map(_look, names)
 
@@ -96,5 +97,5 @@ def milliseconds(when: datetime | None) -> int:
 
 
 def _look(name: str) -> str:
-    """Return a form of a name in which names that look alike, as "Bees" and "BEES", are equal."""
+    """Return a name without what is easily overlooked: capitals, wide letters, more spaces."""
     return " ".join(unicodedata.normalize("NFKC", name).casefold().split())

@@ -1,4 +1,4 @@
-"""Decisions about a match after it was played: what they are, and what they would change."""
+"""Decisions about a match: the fact of each one, and what it would change."""
 
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
@@ -22,7 +22,7 @@ from lacoc_shared.words import Phrase, say
 
 Kind = Literal["replay", "result", "void", "no-show"]
 """replay: the game is played again. result: it counts with another result. void: the match counts
-for nobody. no-show: a team did not come, and its opponent wins what is open."""
+for nobody. no-show: a team did not come, and its opponent wins if the match is open."""
 
 
 class Wanted(NamedTuple):
@@ -44,7 +44,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
 
     Args:
         facts: the facts of a contest, in their order.
-        more: facts that have no place yet.
+        more: facts that were not appended.
     """
     last = facts[-1].number if facts else 0
     placed = [

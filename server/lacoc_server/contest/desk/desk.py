@@ -1,4 +1,4 @@
-"""The desk: it looks at the secret of each request, and answers it."""
+"""The desk: it checks the secret of each request, and answers it."""
 
 import threading
 import time
@@ -35,6 +35,7 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import say
 
 _WEIGHED_AT_ONCE = 2
+"""Most weigh-ins at a time; others wait for them."""
 _requests: msgspec.msgpack.Decoder[AnyRequest] = msgspec.msgpack.Decoder(AnyRequest)
 
 
@@ -55,14 +56,14 @@ class Desk:
         self._known = known
         self._games = book.where.games
         self._one = threading.Lock()
-        """Held while the book is used; nobody waits for a weigh-in."""
+        """Held while the book is used, but not during a weigh-in."""
         self._scales = threading.Semaphore(_WEIGHED_AT_ONCE)
 
     def judge(self, payload: bytes) -> Answer | Refusal:
         """Answer an encoded request, or refuse it.
 
         Args:
-            payload: should be one of `AnyRequest`.
+            payload: should be an encoded `AnyRequest`; other bytes are refused.
         """
         try:
             return self.answer(read(payload))

@@ -1,4 +1,4 @@
-"""What a team asks of the desk: to take part, to use other files, how its entry stands."""
+"""What a team asks the desk: to take part, to use other files, how its entry stands."""
 
 from typing import Literal
 
@@ -37,7 +37,7 @@ def newcomer(book: Book, text: str) -> str:
     """Check whether a team can apply; return its name as it is kept.
 
     Raises:
-        UserError: if entries are closed, or the name is wrong or taken.
+        UserError: if entries are closed, the name is wrong or taken, or too many teams wait.
     """
     close_in_time(book.where, book.store)
     team = team_name(text)
@@ -62,10 +62,14 @@ def apply(book: Book, team: str, entry: Entry) -> OwnEntry:
 
 
 def change(book: Book, team: str, entry: Entry) -> OwnEntry:
-    """Let a team use other files at once, or, when entries are closed, ask the organiser.
+    """Take other files of a team, which were weighed in.
+
+    A team that is in uses them at once, as long as entries are open. After that, and as long as the
+    team itself waits, they wait for the organiser.
 
     Raises:
-        UserError: if the team has left, or the files can't be written.
+        UserError: if the team has left, if entries closed before it was in, or if the files can't
+            be written.
     """
     close_in_time(book.where, book.store)
     there = book.team(team)
@@ -77,7 +81,7 @@ def change(book: Book, team: str, entry: Entry) -> OwnEntry:
         enter_weighed(book.where, book.store, team, entry, "")
         book.applications.drop(team)
     elif there is not None and there.files == entry.hash:
-        book.applications.drop(team)  # back to what it has
+        book.applications.drop(team)  # these are the files that it has already
     else:
         book.applications.put(team, entry)
     return own(book, team)

@@ -1,4 +1,4 @@
-"""What the organiser asks of the desk: to approve, decline, close, take out, rule and move."""
+"""What the organiser asks the desk: to approve, decline, close, take out, rule and move."""
 
 from collections.abc import Iterable
 
@@ -23,8 +23,8 @@ def approve(book: Book, asked: Approve) -> Said:
     """Let teams take part, or use their late files.
 
     Raises:
-        UserError: if a team has not applied, entries are closed, or a reason is missing; the teams
-            before it are in.
+        UserError: if a team has not applied, entries are closed, or a reason is missing. The teams
+            before it in the list are then in.
     """
     said: list[Phrase] = []
     for team in asked.teams:
@@ -41,14 +41,14 @@ def decline(book: Book, team: str) -> Said:
     """Turn an application down. A team that is in keeps its token.
 
     Raises:
-        UserError: if there is none.
+        UserError: if no files of the team wait, and none were refused.
     """
     if team not in book.applications.waiting and team not in book.refused:
         raise UserError(say("desk.no-application", team=team))
     book.applications.drop(team)
     book.note_refused(team, ())
     if book.team(team) is None:
-        book.tokens.forget(team)  # whoever takes the name next is somebody else
+        book.tokens.forget(team)  # another team may take the name
     return Said(said=(say("desk.declined", team=team),))
 
 
@@ -91,10 +91,11 @@ def rule(book: Book, asked: Rule) -> Effect:
 
 
 def move(book: Book, asked: Move) -> Said:
-    """Move a match to another court or time.
+    """Move a match to another court, before another match, or to a later time.
 
     Raises:
-        UserError: if there is no such match or court, or the match is decided.
+        UserError: if there is no such match or court, the match is decided, or it should be before
+            itself.
     """
     match = deciding.match_of(book.contest, asked.pairing)
     if asked.before:
@@ -124,7 +125,7 @@ def tokens(book: Book) -> TeamTokenList:
 
 
 def _decided(book: Book, facts: Iterable[AnyFact], really: bool) -> Effect:
-    """Say what facts change, and append them if that is wanted."""
+    """Say what facts would change; append them if `really`."""
     more = [*facts]
     lines = deciding.effect(book.facts, more)
     if really:

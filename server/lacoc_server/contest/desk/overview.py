@@ -16,7 +16,7 @@ from lacoc_shared import codec
 from lacoc_shared.messages.desk import CourtRow, Moved, OfficeView, Slot, TeamRow
 
 _STEP_MS = 60_000
-"""Estimates are rounded up, so that they do not change with each look."""
+"""Expected times are rounded up to this, so that the view does not change each time it is made."""
 
 
 def view(book: Book, code: str, known: Known) -> OfficeView:

@@ -1,5 +1,6 @@
-"""The desk's place on the network: its gateway asks, threads answer."""
+"""Connects a desk to the network: the gateway sends requests, and threads answer them."""
 
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from typing import Self
 
@@ -12,10 +13,11 @@ from lacoc_shared.network.session import Request, open_desk
 from lacoc_shared.words import say
 
 _THREADS = 4
-_MOST_WAITING = 64
-"""Most requests that wait for a thread; more are refused, and may be sent again."""
+_MOST_AT_ONCE = 64
+"""Most requests at a time, with those that are being answered; more are refused, and may be sent
+again."""
 _HERE = "tcp/127.0.0.1:0"
-"""The gateway runs on the machine of the office; nobody else reaches the desk directly."""
+"""The gateway runs on the machine of the office; no other machine reaches the desk directly."""
 
 
 class DeskService:
@@ -31,7 +33,7 @@ class DeskService:
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
         self._threads = ThreadPoolExecutor(_THREADS, thread_name_prefix="desk")
-        self._waiting = 0
+        self._room = threading.Semaphore(_MOST_AT_ONCE)
         self._session = open_desk([_HERE])
         self._session.answer(DESK, self._arrived)
         self.address = self._session.locators()[0]
@@ -46,10 +48,9 @@ class DeskService:
 
     def _arrived(self, request: Request) -> None:
         """Give a request to a thread; Zenoh's thread runs this."""
-        if self._waiting >= _MOST_WAITING:
+        if not self._room.acquire(blocking=False):
             request.refuse(encode(Refusal(say("desk.busy"), again=True)))
             return
-        self._waiting += 1  # only Zenoh's thread adds; a count that is off by one does no harm
         self._threads.submit(self._answer, request)
 
     def _answer(self, request: Request) -> None:
@@ -59,7 +60,7 @@ class DeskService:
             log.get().exception("The desk failed.", error=repr(error))
             answer = Refusal(say("gateway.fault"))
         finally:
-            self._waiting -= 1
+            self._room.release()
         if isinstance(answer, Refusal):
             request.refuse(encode(answer))
         else:

@@ -1,7 +1,7 @@
-"""Entries that wait for the organiser: they were weighed in, but nothing follows from them yet.
+"""Applications: entries that were weighed in and wait for the organiser.
 
-They are no facts. Whoever has the event code can apply, and facts are never deleted; what the
-organiser approves becomes a fact.
+They are no facts, because anybody who has the event code can apply, and facts are never deleted.
+What the organiser approves becomes a fact.
 """
 
 import sqlite3
@@ -26,7 +26,7 @@ _TABLES = (
 
 
 class Application(NamedTuple):
-    """The newest files of a team that wait."""
+    """The newest entry of a team, which waits for the organiser."""
 
     team: str
     at_ms: int

@@ -1,4 +1,4 @@
-"""Entries: the files and the bot with which a team plays, frozen under their hash."""
+"""Entries: the files and the bot with which a team plays, kept unchanged under their hash."""
 
 import hashlib
 import re
@@ -28,7 +28,7 @@ _HASH = re.compile("[0-9a-f]{32}")
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True):
-    """All that decides how a team plays, besides the people."""
+    """What a team plays with: its files and its bot."""
 
     robot: bytes
     postures: bytes | None
@@ -84,7 +84,7 @@ def gather(folder: Path | None, bot: str, robot: str) -> Entry:
 
 
 def weigh(entry: Entry, games: Iterable[Arena], limits: Mapping[str, Any]) -> None:
-    """Check an entry as a court weighs in a join.
+    """Check an entry as a court weighs in a join; also that the robot stands, and its bot.
 
     Args:
         entry: the entry.
@@ -111,7 +111,7 @@ def _check_program(name: str, source: bytes) -> None:
     """Check a bot's program without running it.
 
     Raises:
-        UserError: if it is no Python, or has no function `bot`.
+        UserError: if it is no Python, or nothing in it has the name `bot`.
     """
     try:
         code = compile(source, name, "exec", dont_inherit=True)

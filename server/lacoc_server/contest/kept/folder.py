@@ -1,4 +1,4 @@
-"""Where the parts of a contest are: beside its contest file."""
+"""Where the files of a contest are: beside its contest file."""
 
 import hashlib
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.plans import game, plans
-from lacoc_server.contest.league.facts import Planned
 from lacoc_shared.contest import file as contests
+from lacoc_shared.gait.tables import Level
 
 
 class ContestFolder:
@@ -39,11 +39,12 @@ class ContestFolder:
 
     @property
     def games(self) -> list[Arena]:
-        """The arenas of all stages, each once."""
-        first: dict[str, Planned] = {}
+        """The arenas of all stages; one for stages with the same arena and the same open levels."""
+        found: dict[tuple[str, tuple[Level, ...]], Arena] = {}
         for plan in self.plans:
-            first.setdefault(plan.arena, plan)
-        return [game(plan) for plan in first.values()]
+            arena = game(plan)
+            found.setdefault((plan.arena, arena.match.open_levels), arena)
+        return [*found.values()]
 
 
 def file_hash(path: Path) -> str:

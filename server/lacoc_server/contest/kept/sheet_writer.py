@@ -14,8 +14,8 @@ from lacoc_shared.words import say
 _SHEET_S = 1.0
 """Shortest time between two sheets."""
 _LEAST_SHARE = 10
-"""Between two sheets there are at least as many times the time that one took: with 200 teams the
-ratings take a second."""
+"""The time to the next sheet is at least this many times the time that the last one took. With 200
+teams the ratings take a second."""
 
 Progress = Callable[[int, int], None]
 """Called with how many matches are decided, and how many there are so far."""
@@ -37,7 +37,11 @@ class SheetWriter:
         self._next_s = 0.0
 
     def __call__(self, contest: Contest) -> None:
-        """Look at the contest as it is now; called again and again, also without a change."""
+        """Look at the contest as it is now; called again and again, also without a change.
+
+        Raises:
+            UserError: if the sheet can't be written.
+        """
         if contest is not self._contest:
             self._contest, self._is_new = contest, True
             matches = [match for view in contest.stages for match in view.matches]

@@ -26,7 +26,8 @@ _TABLES = (
 class FactStore:
     """The facts of a contest on the disk; several programs can use one file.
 
-    Used as a context manager. When `append` returns, its facts are on the disk, or none of them.
+    Used as a context manager. When `append` returns, all its facts are on the disk; if it raises an
+    error, none is.
 
     Args:
         path: the file; it is made if there is none.
@@ -67,7 +68,7 @@ class FactStore:
                 nothing is appended.
 
         Raises:
-            UserError: if the file can't be written; nothing is appended then.
+            UserError: if the file can't be read or written; nothing is appended then.
         """
         now_ms = time.time_ns() // 1_000_000
         try:

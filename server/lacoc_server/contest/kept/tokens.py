@@ -15,9 +15,10 @@ from lacoc_shared.words import say
 
 
 def lasting_hash(token: str) -> str:
-    """Hash a team's token with a salt of its own, so that it has the same hash after any restart.
+    """Hash a team's token with a salt that is made from the token.
 
-    A court lets a team stay that has the same hash in its next match.
+    So the hash is the same after each restart. A team that has the same hash in the next match of a
+    court keeps its seat.
     """
     return seal.hash_token(token, hashlib.blake2b(token.encode(), digest_size=16).digest())
 
@@ -35,41 +36,53 @@ class TeamTokens:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._lock = threading.Lock()
-        self._tokens = self._read()
+        self._read_at: tuple[int, int] | None = None
+        """State of the file (`_state`) when it was read."""
+        self._tokens: dict[str, str] = {}
+        self._refresh(again=True)
 
     def of(self, team: str) -> str:
         """Return a team's token; it is made when it is asked for the first time.
 
         Raises:
-            UserError: if a new one can't be written.
+            UserError: if the file can't be read, or a new token can't be written.
         """
         with self._lock:
-            if team not in self._tokens:
-                self._tokens = self._read()  # another program may have made it
+            self._refresh()
             if team not in self._tokens:
                 self._write({**self._tokens, team: new_token()})
             return self._tokens[team]
 
     def team_of(self, token: str) -> str | None:
-        """Return the team that has a token; None: nobody has it."""
+        """Return the team that has a token; None: nobody has it.
+
+        Raises:
+            UserError: if the file can't be read.
+        """
         shown = _digest(token)
         with self._lock:
-            # Digests differ from their first letter on, so the time tells nothing of a token.
+            self._refresh()
+            # Digests are compared, so the time that this takes tells nothing of a token.
             return next((team for team, one in self._tokens.items() if _digest(one) == shown), None)
 
     def forget(self, team: str) -> None:
         """Forget a team's token: its link opens nothing any more.
 
         Raises:
-            UserError: if that can't be written.
+            UserError: if the file can't be read or written.
         """
         with self._lock:
-            self._write({name: one for name, one in self._read().items() if name != team})
+            self._refresh()
+            self._write({name: one for name, one in self._tokens.items() if name != team})
 
-    def _read(self) -> dict[str, str]:
+    def _refresh(self, again: bool = False) -> None:
+        """Read the file if another program has written it since; with `again`, in any case."""
         try:
-            data = self._path.read_bytes() if self._path.exists() else b"{}"
-            return msgspec.json.decode(data, type=dict[str, str])
+            now = _state(self._path)
+            if again or now != self._read_at:
+                data = b"{}" if now is None else self._path.read_bytes()
+                self._tokens = msgspec.json.decode(data, type=dict[str, str])
+                self._read_at = now
         except (OSError, msgspec.MsgspecError) as error:
             raise UserError(
                 say("command.cannot-read", path=str(self._path), why=str(error))
@@ -84,7 +97,16 @@ class TeamTokens:
             raise UserError(say("command.cannot-write", path=str(self._path), why=why)) from None
         finally:
             os.umask(before)
-        self._tokens = tokens
+        self._tokens, self._read_at = tokens, _state(self._path)
+
+
+def _state(path: Path) -> tuple[int, int] | None:
+    """Return numbers that differ each time the file is replaced; None: there is no file."""
+    try:
+        found = path.stat()
+    except FileNotFoundError:
+        return None
+    return found.st_ino, found.st_mtime_ns
 
 
 def _digest(token: str) -> bytes:

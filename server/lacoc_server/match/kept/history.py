@@ -4,8 +4,8 @@ A match keeps every observation since its first event that can be taken back. To
 it judges the game again from there, without the event's claim. Paths, clock and all other decisions
 stay as they were, and nothing is deleted from the log.
 
-Observations are kept as packed numbers. What else belongs to a tick is kept only where there is
-something: a match of three minutes takes a megabyte.
+A step is a judged tick, or a referee's change of a marker. The numbers of an observation are
+packed; a step has a note only if there is more to keep. A match of three minutes takes a megabyte.
 """
 
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase
 
 _VIEW_NUMBERS = 7
-"""Numbers of a `RobotView` that every tick has; the others are seldom there."""
+"""Numbers of a `RobotView`; its other fields are empty in most ticks."""
 _VIEW = Struct(f"<{_VIEW_NUMBERS}d")
 
 
@@ -48,6 +48,7 @@ class Note(msgspec.Struct, frozen=True):
     numbers: tuple[int, ...] = ()
     """Numbers of those events in the log; for a change of a marker, the number of its decision."""
     struck: frozenset[Claim] = frozenset()
+    """Claims of events that were taken back; the rules ignore them."""
 
 
 _PLAIN = Note()
@@ -235,10 +236,10 @@ class History:
         self._count += 1
 
     def _forget(self) -> None:
-        """Let judging again begin with the present state.
+        """Forget all steps, because no event in them can be taken back.
 
-        It begins at an event; before the first one nothing need be kept. A practice has no events
-        and may go on for days.
+        Judging again will begin with the present state. A practice has no events and may go on for
+        days.
         """
         self._first, self._first_over = self.state, self.over
         if self._count:
@@ -295,7 +296,7 @@ def _observation(packed: memoryview, views: int, note: Note) -> Observation:
 
 
 def _strike(note: Note, number: int) -> Note:
-    """Return a step's note with one more of its events struck, or its change."""
+    """Return a step's note after the event of this number, or its change, was taken back."""
     if note.changed is not None:
         return replace(note, changed=replace(note.changed, struck=True))
     event = note.events[note.numbers.index(number)]

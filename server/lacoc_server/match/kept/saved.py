@@ -39,7 +39,7 @@ class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
 
 
 class _Saved(msgspec.Struct, frozen=True, array_like=True):
-    """A whole match; the fields without a comment are those of `MatchState`."""
+    """A whole match; the fields from `phase` on are those of `MatchState`."""
 
     format: int
     made_of: bytes
@@ -96,7 +96,9 @@ def load(match: MatchState, data: bytes) -> None:
     """Let the match go on from bytes; see `Match.load`."""
     saved = decode(data, _Saved, _MOST_BYTES)
     if (saved.format, saved.made_of) != (_FORMAT, _made_of(match)):
-        raise ValueError("a match with another arena, other settings or other limits was saved")
+        raise ValueError(
+            "it was saved by another version, or with another arena, settings or limits"
+        )
     entries = [_entry(match, *pair) for pair in zip(match.seats, saved.seats, strict=True)]
     stays = entries == [seat.entry for seat in match.seats] and _has_robots(match)
     for seat, was, entry in zip(match.seats, saved.seats, entries, strict=True):

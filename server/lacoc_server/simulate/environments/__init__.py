@@ -1,4 +1,4 @@
-"""Environments for those who train: both games and a walking robot (docs/environments.md).
+"""Environments for training: both games, and a robot that learns to walk (docs/environments.md).
 
 Importing this package registers `lacoc/Othello-v0`, `lacoc/FlagStrike-v0` and `lacoc/Walk-v0` with
 Gymnasium.

@@ -1,4 +1,4 @@
-"""What the environments of a game share: who plays with what, spaces, actions and rewards."""
+"""What the environments of a game share: robots, spaces, actions and rewards."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -29,7 +29,7 @@ Actions = Literal["keys", "angles"]
 Angles = npt.NDArray[np.float64]
 
 _FAR_M = 20.0
-"""Bound of positions in the spaces [m]; no field is larger."""
+"""Bound of positions in the spaces [m]; the fields of LACOC are smaller."""
 _MOST = 1e4
 """Bound of points, and of times without a limit."""
 
@@ -41,11 +41,11 @@ class Court:
         arena: name or folder of the arena.
         settings: entries that replace those of the arena file, such as
             {"match": {"duration_s": 60}}.
-        robots: for each seat an installed robot, or a robot file with its gait beside it; one name
-            for all seats.
+        robots: for each seat an installed robot, or a robot file with its gait beside it; a single
+            name is for all seats.
         actions: "keys": an action is the key of level B that is held; "angles": the joint angles to
             move to.
-        restart: whether [x] is one more action, the last.
+        restart: with keys, whether [x] is one more action, the last.
         beats: beats of 20 ms in a step.
 
     Raises:
@@ -97,7 +97,7 @@ class Court:
             raise UserError(say("environment.no-end", arena=arena.name))
 
     def episode(self, make_physics: MakePhysics = World) -> Episode:
-        """Return an episode in its first opening."""
+        """Return a new episode, begun at the first start place and with nobody late."""
         episode = Episode(self.begun, make_physics)
         episode.begin(Opening())
         return episode
@@ -156,13 +156,13 @@ class Court:
 
 
 def lead(frame: Frame, seat: int) -> int:
-    """Return by how many points a seat leads the best other seat."""
+    """Return by how many points a seat leads the best other seat; negative if it is behind."""
     others = [one.score for index, one in enumerate(frame.seats) if index != seat]
     return frame.seats[seat].score - max(others, default=0)
 
 
 def _with_options(drawn: Opening, options: dict[str, Any], court: Court) -> Opening:
-    """Return an opening with the entries of `options` that it knows; others are for wrappers."""
+    """Replace what was drawn by entries of `options`; others are ignored: they are for wrappers."""
     late, place = options.get("late_ticks", drawn.late_ticks), options.get("place", drawn.place)
     seat = options.get("seat", drawn.seat)
     try:

@@ -12,7 +12,7 @@ from lacoc_shared.words import say
 
 
 class Drawn:
-    """Draws what an environment shows.
+    """Draws the pictures of an environment.
 
     Args:
         render_mode: "rgb_array", or None for no pictures.

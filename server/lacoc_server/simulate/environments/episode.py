@@ -1,13 +1,14 @@
 """An episode: one match from its first beat of play to its end, driven by keys or angles.
 
-It is the match that a court would play with the same inputs. So its record is proven as any other.
+With keys it is the match that a court would play with the same inputs, so its record can be proven
+as any other. A court takes no angles.
 """
 
 import functools
 from collections.abc import Sequence
 from pathlib import Path
 from struct import Struct
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -20,7 +21,7 @@ from lacoc_server.simulate.environments.opening import Opening, begun_at, places
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.simulate.headless import closing, to_play
 from lacoc_server.world.world import World
-from lacoc_shared.codec import BadMessage, decode, encode
+from lacoc_shared.codec import BadMessage, decode, encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.inputs import Input, JoinSeat, KeySeat
 from lacoc_shared.messages import Frame
@@ -29,6 +30,8 @@ from lacoc_shared.record.pack import pack
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
+
+T = TypeVar("T")
 
 COURT = "environment"
 """Name of the court in records of episodes."""
@@ -40,6 +43,8 @@ _MOST_BYTES = 1 << 28
 class _Saved(msgspec.Struct, frozen=True, array_like=True):
     opening: Opening
     angles: bool
+    robots: bytes
+    """`Begun.robots`."""
     match: bytes
     pressed: bytes
     seqs: tuple[int, ...]
@@ -47,7 +52,7 @@ class _Saved(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Begun:
-    """Matches at their first beat of play, by start place; many episodes can share them.
+    """Saved matches at their first beat of play, by start place; many episodes can share them.
 
     Args:
         arena: the arena.
@@ -58,6 +63,8 @@ class Begun:
     def __init__(self, arena: Arena, joins: Sequence[JoinSeat], angles: bool = False) -> None:
         self.arena = arena
         self.joins = tuple(joins)
+        self.robots = message_hash(encode([_contents(join) for join in joins]))
+        """Hash of the files of all seats."""
         self.angles = angles
         self.arena_at = functools.cache(lambda place: begun_at(arena, place))
         self._saved: dict[int, bytes] = {}
@@ -75,7 +82,7 @@ class Begun:
         )
 
     def has(self, place: int) -> bool:
-        """Say whether a match has begun at a start place before."""
+        """Return whether a match that begins at a start place is saved already."""
         return place in self._saved
 
     def begin(self, match: Match, place: int) -> None:
@@ -118,9 +125,13 @@ class Episode:
         """The newest frame; there is none before `begin`."""
 
     def begin(self, opening: Opening) -> Frame:
-        """Begin an episode; return the frame of its first beat of play."""
+        """Begin an episode; return the frame of its first beat of play.
+
+        Raises:
+            UserError: as `Begun.begin` does.
+        """
         if not self.begun.has(opening.place):
-            self._matches.pop(opening.place, None)  # one that was loaded is not a new match
+            self._matches.pop(opening.place, None)  # only a match without a beat can be led to play
         self._open(opening)
         self.begun.begin(self.match, opening.place)
         if self.begun.angles:
@@ -179,36 +190,45 @@ class Episode:
         assert isinstance(drive, Steered)
         drive.target = target
 
-    def save(self, extra: bytes = b"") -> bytes:
+    def save(self, extra: object) -> bytes:
         """Return the whole episode; `load` goes on from it bit for bit.
 
         Args:
-            extra: what the caller keeps with it.
+            extra: a value that the caller keeps with it.
         """
         return encode(
             _Saved(
                 self.opening,
                 self.begun.angles,
+                self.begun.robots,
                 self.match.save(take_backs=False),
                 bytes(self._pressed),
                 tuple(self._seqs),
-                extra,
+                encode(extra),
             )
         )
 
-    def load(self, data: bytes) -> bytes:
+    def load(self, data: bytes, kind: type[T]) -> T:
         """Go on from a saved episode.
 
+        Args:
+            data: bytes of `save`.
+            kind: type of the value that the caller kept with it.
+
         Returns:
-            What the caller kept with it.
+            That value.
 
         Raises:
-            UserError: if the bytes are not an episode of this arena, these robots and settings.
+            UserError: if the bytes are not an episode of this arena, these robots and settings, or
+                the value is of another type. The episode is then as it was.
         """
         try:
             saved = decode(data, _Saved, _MOST_BYTES)
+            extra = decode(saved.extra, kind, _MOST_BYTES)
             if saved.angles != self.begun.angles:
-                raise BadMessage("one of both is steered by angles")
+                raise BadMessage("only one of the two episodes is steered by angles")
+            if saved.robots != self.begun.robots:
+                raise BadMessage("it has other robots or gaits")
             if not 0 <= saved.opening.place < places(self.begun.arena):
                 raise BadMessage("the arena has no such start place")
             before = self.opening
@@ -224,7 +244,7 @@ class Episode:
             _steer(self.match)
         self._pressed, self._seqs = bytearray(saved.pressed), list(saved.seqs)
         self.frame = self.match.frame()
-        return saved.extra
+        return extra
 
     def write_record(self, file: Path) -> None:
         """Write the record of the episode so far: the match is played again from its inputs.
@@ -235,7 +255,8 @@ class Episode:
             file: the record; its name without ".mcap" is the id of the match.
 
         Raises:
-            UserError: if the robots follow angles, if the file exists or if it can't be written.
+            UserError: if the robots follow angles, if the name does not end in ".mcap", or if the
+                file exists or can't be written.
         """
         if self.begun.angles:
             raise UserError(say("environment.no-record"))
@@ -289,6 +310,12 @@ class Episode:
             folder = self.begun.arena.folder
             self._matches[place] = Match(self.begun.setup(place), self._make_physics, folder)
         return self._matches[place]
+
+
+def _contents(join: JoinSeat) -> list[bytes | None]:
+    """Return robot, postures and locomotion of a join, without the names of the files."""
+    files = (join.robot, join.postures, join.locomotion)
+    return [None if file is None else file.data for file in files]
 
 
 def _steer(match: Match) -> None:

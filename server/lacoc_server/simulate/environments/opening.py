@@ -18,7 +18,7 @@ class Opening(msgspec.Struct, frozen=True):
     """One way to begin."""
 
     place: int = 0
-    """Index of the start place in the arena file on which both robots begin."""
+    """Index of the start place in the arena file's list; the right robot begins opposite to it."""
     late_ticks: tuple[int, ...] = ()
     """For each seat the ticks of play before its first key counts."""
     seat: int = 0

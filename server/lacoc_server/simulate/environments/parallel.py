@@ -27,7 +27,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         settings: entries that replace those of the arena file.
         robots: the robot of each seat; see `Court`.
         actions: "keys" or "angles"; see `Court`.
-        restart: whether [x] is one more action.
+        restart: with keys, whether [x] is one more action.
         beats: beats of 20 ms in a step.
 
     Raises:
@@ -155,19 +155,20 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         )
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps; only its seed is not in it."""
-        return self._episode.save(b"on" if self.agents else b"over")
+        """Return the whole environment between two steps, but not what `reset` will draw next."""
+        return self._episode.save(bool(self.agents))
 
     def load(self, saved: bytes) -> None:
         """Go on from saved bytes, of this environment or of one with the same arguments.
 
         Raises:
-            UserError: if they are of another one; the environment is then as it was.
+            UserError: if they are not of a `LacocParallelEnv` with this arena, these settings,
+                robots and this kind of actions; the environment is then as it was.
         """
-        extra = self._episode.load(saved)
+        is_on = self._episode.load(saved, bool)
         frame = self._episode.frame
         self._leads = [lead(frame, 0), lead(frame, 1)]
-        self.agents = list(self.possible_agents) if extra == b"on" else []
+        self.agents = list(self.possible_agents) if is_on else []
 
     def observe(self, agent: str) -> Numbers:
         """Return what an agent sees now, such as after `load`."""

@@ -29,14 +29,16 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     Args:
         arena: name or folder of the arena.
-        opponent: a bot, as in `lacoc simulate`; it must be pure, as all bots should be.
+        opponent: a bot, as in `lacoc simulate`. Its keys may depend on nothing but the frames that
+            it has seen; else `load` does not go on bit for bit.
         render_mode: "rgb_array", or None.
         settings: entries that replace those of the arena file.
         robots: the robot of both seats.
         actions: "keys"; a bot presses keys, so angles are for `LacocParallelEnv` and `WalkEnv`.
         restart: whether [x] is one more action.
         beats: beats of 20 ms in a step.
-        court: the game, if several environments share one; then most other arguments are its own.
+        court: the game, if several environments share one; `arena`, `settings`, `robots`, `restart`
+            and `beats` are then not used.
         make_physics: makes the physics of the matches.
 
     Raises:
@@ -124,6 +126,9 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         Returns:
             What the learner sees, the reward, whether the match is over, whether physics stopped,
             and at the end the scores and whether the learner won.
+
+        Raises:
+            UserError: if the episode is over.
         """
         if not self.episode.is_on:
             raise UserError(say("environment.over"))
@@ -165,12 +170,12 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         return self._senses.see(self.episode.frame)[self.seat]
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps; only its seed is not in it.
+        """Return the whole environment between two steps, but not what `reset` will draw next.
 
         A bot may remember what it saw. So the frames that it saw are saved, and the bytes grow with
         the episode: 330 bytes a beat.
         """
-        return self.episode.save(encode(self._shown))
+        return self.episode.save(self._shown)
 
     def load(self, saved: bytes) -> None:
         """Go on from saved bytes, of this environment or of one with the same arguments.
@@ -178,9 +183,10 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         A new brain of the bot sees all frames again, so this takes longer late in an episode.
 
         Raises:
-            UserError: if they are of another one; the environment is then as it was.
+            UserError: if they are not of a `LacocEnv` with this arena, these settings and robots;
+                the environment is then as it was.
         """
-        shown = decode(self.episode.load(saved), list[bytes], 1 << 28)
+        shown = self.episode.load(saved, list[bytes])
         self._start()
         for frame in shown:
             self._brain(decode(frame, Frame))

@@ -1,4 +1,4 @@
-"""A drive that moves commanded angles to angles instead of postures of a table."""
+"""A drive that moves commanded angles to given angles, not to the postures of a gait."""
 
 from lacoc_server.match.drive import Drive, DriveState
 from lacoc_server.match.entry import Entry

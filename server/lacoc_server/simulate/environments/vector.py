@@ -27,7 +27,7 @@ _Angles = list[Posture]
 
 
 class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
-    """Rows of `LacocEnv`; each gives the bits that a single one would give.
+    """Several environments, called rows; each gives the bits that a single `LacocEnv` would give.
 
     A row whose episode is over begins the next one in the next step (`AutoresetMode.NEXT_STEP`).
 
@@ -88,7 +88,7 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._over = np.zeros(num_envs, bool)
         self._physics = ThreadPoolExecutor(1, "environment-physics")
-        self._drawn = [Drawn(render_mode) for _ in self.rows[:1]] * num_envs
+        self._drawn = Drawn(render_mode)  # its camera fits all rows: they have the same model
 
     def reset(
         self,
@@ -100,10 +100,14 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
 
         Args:
             seed: row i gets the seed `seed + i`; or a seed for each row.
-            options: as in `LacocEnv`, for all rows; "reset_mask" chooses rows.
+            options: as in `LacocEnv`, for all rows. With "reset_mask", (num_envs,) truth values,
+                only the rows with True begin an episode.
 
         Returns:
             What the learners see, (num_envs, size), and the openings.
+
+        Raises:
+            UserError: if an option does not fit.
         """
         seeds: list[int | None]
         if seed is None or isinstance(seed, int | np.integer):
@@ -111,11 +115,16 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
             seeds = [None if seed is None else int(seed) + row for row in range(self.num_envs)]
         else:
             seeds = list(seed)
+        chosen = np.ones(self.num_envs, bool)
+        if options and "reset_mask" in options:
+            chosen = np.asarray(options["reset_mask"], bool)
+        if chosen.shape != (self.num_envs,):
+            raise UserError(say("environment.options", found=str(options)[:200]))
         infos: dict[str, Any] = {}
-        for index, row in enumerate(self.rows):
-            _, info = row.reset(seed=seeds[index], options=options)
+        for index in np.flatnonzero(chosen).tolist():
+            _, info = self.rows[index].reset(seed=seeds[index], options=options)
             infos = self._add_info(infos, info, index)
-        self._over[:] = False
+        self._over[chosen] = False
         return np.stack([row.observe() for row in self.rows]), infos
 
     def step(
@@ -165,17 +174,16 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         if self.render_mode is None:
             return None
         pictures = []
-        for row, drawn in zip(self.rows, self._drawn, strict=True):
+        for row in self.rows:
             match = row.episode.match
-            picture = drawn.draw(match.physics, match.game, row.episode.frame.markers)
+            picture = self._drawn.draw(match.physics, match.game, row.episode.frame.markers)
             assert picture is not None
             pictures.append(picture)
         return tuple(pictures)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Free what draws pictures, and the thread that steps physics."""
-        for drawn in self._drawn:
-            drawn.close()
+        self._drawn.close()
         self._physics.shutdown()
 
 
@@ -194,7 +202,7 @@ class _Half:
         self._court = court
         self._batch = WorldBatch(World(court.arena, court.entries), len(indices), threads)
         self._open: list[int] = []
-        # Neither is ever stepped by a match, so all rows can share them.
+        # No match steps the empty field or these worlds, so all rows can share them.
         self._empty, self._worlds = cache(_empty_field), cache(self._world)
         self.rows = [
             LacocEnv(
@@ -210,7 +218,7 @@ class _Half:
         return [i for i in range(self._first, self._first + len(self.rows)) if not begun[i]]
 
     def is_on(self, index: int) -> bool:
-        """Say whether the match of a row is played."""
+        """Return whether the match of a row is in play."""
         return self.rows[index - self._first].episode.is_on
 
     def open(

@@ -53,8 +53,9 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     there at the robot's own speed (AngMin). The reward is how far the robot came in the step [m] in
     the direction in which it stood. An episode ends when the robot lies on its back, and is cut
     after `seconds`. What is seen, in this order: how far the body's middle is ahead and to the left
-    of its start [m], its height [m], the two level parts of its forward direction, how upright it
-    is, its velocity ahead, to the left and up [m/s], joint angles [rad], commanded angles [rad].
+    of its start [m], its height [m], the parts of its forward direction ahead and to the left, how
+    upright it is (1 upright, -1 on its back), its velocity ahead, to the left and up [m/s], joint
+    angles [rad], commanded angles [rad].
 
     With actions "table" an action is the table of key 2: a row for each posture, a number for each
     joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed
@@ -133,7 +134,10 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         Args:
             seed: chooses the first posture of this episode and of those after it, near the robot's
                 start posture. A table is tried in the same way with all seeds.
-            options: none are known.
+            options: not used.
+
+        Returns:
+            What is seen (zeros if actions are tables), and an empty dict.
         """
         super().reset(seed=seed)
         self._start()
@@ -152,8 +156,11 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         """Let the beats of a step pass, or try a table; see the class.
 
         Returns:
-            What is seen, the reward, whether the robot lies on its back (always after a table),
-            whether time is up or physics stopped, and with a table all its figures.
+            What is seen; the reward; whether the robot lies on its back (with a table always True);
+            whether time is up or physics stopped; and with a table all its figures.
+
+        Raises:
+            UserError: if the episode is over.
         """
         if self._over:
             raise UserError(say("environment.over"))
@@ -186,7 +193,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return np.concatenate([seen, speed[2:], pose[7:], self._state.angles]).astype(np.float32)
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps; only its seed is not in it."""
+        """Return the whole environment between two steps, but not what `reset` will draw next."""
         return encode(
             _Saved(
                 self._world.model_hash,
@@ -204,7 +211,8 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         """Go on from saved bytes, of this environment or of one with the same arguments.
 
         Raises:
-            UserError: if they are of another one; the environment is then as it was.
+            UserError: if they are not of a `WalkEnv` with this robot; the environment is then as it
+                was.
         """
         try:
             was = decode(saved, _Saved, 1 << 20)

@@ -1,7 +1,7 @@
 """The odds of a record: computed from forks in other processes, and kept beside the record.
 
-The forks of a moment are named by a hash of all that decides how they go: the match until then, the
-bots and the software. So whoever asks again, or for more of them, gets those that are known.
+Each moment has a hash of all that decides how its forks go: the match until then, the bots and the
+software. So forks that were played are not played again, also if more are wanted.
 """
 
 import hashlib
@@ -14,6 +14,7 @@ from typing import Protocol
 
 import msgspec
 
+from lacoc_arenas import brains
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Match
@@ -22,7 +23,7 @@ from lacoc_server.simulate.forks.jobs import bots_of, opened
 from lacoc_server.simulate.forks.line import Change, Line, of_bot
 from lacoc_server.simulate.forks.odds import Moment
 from lacoc_server.simulate.forks.origin import Source
-from lacoc_server.simulate.software import software
+from lacoc_server.simulate.software import folder_hash, software
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
@@ -33,9 +34,9 @@ from lacoc_shared.words import Phrase, say
 FORMAT = 1
 """Version of the layout of a file of odds."""
 _AT_ONCE = 4
-"""So many swings are looked into at a time."""
+"""Moments that are added at a time, before swings are looked for again."""
 _LEAST_BEATS = BEATS_PER_S
-"""Moments are at least this far apart."""
+"""Beats of play between a moment that is added and its neighbours, at least."""
 
 
 class Odds(msgspec.Struct, frozen=True, kw_only=True):
@@ -49,7 +50,7 @@ class Odds(msgspec.Struct, frozen=True, kw_only=True):
     bots: tuple[str, str]
     """Who plays the forks, by seat."""
     moments: tuple[Moment, ...]
-    """In their order; the last one is the end, whose chance is the result."""
+    """In their order. If the match has a result, the last one is its end: chance 1, 0.5 or 0."""
 
 
 class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):
@@ -82,7 +83,8 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     step_s: float
     """Seconds of play between two moments."""
     closer: int = 0
-    """So many moments more, where the lead or the odds change most."""
+    """Moments that are added where the lead or the odds change most; fewer if these stretches are
+    short."""
     arena: str | None = None
 
 
@@ -95,14 +97,14 @@ def compute(
         wish: which.
         engine: plays the forks.
         known: odds from before; what still holds in them is not computed again.
-        progress: told how many moments are done, and how many there are.
+        progress: told how many moments are done, and how many there will be at most.
 
     Yields:
         The odds so far, each time some more are known; at last all of them.
 
     Raises:
-        UserError: if the record can't be forked, has no two seats or no play, or a bot has a
-            mistake.
+        UserError: if the record can't be forked, does not have two seats, or has no play, or if a
+            bot has a mistake.
     """
     source = opened(wish.file)
     first, second = _two_seats(source)
@@ -141,7 +143,7 @@ def compute(
 
 
 class Course:
-    """The course of a recorded match: when it was played, and when the game told something.
+    """The course of a recorded match: its beats of play, and those with an event of the game.
 
     Args:
         source: the record.
@@ -168,8 +170,8 @@ class Course:
         """The end of the match; None: it has no result."""
 
     def clock_s(self, beat: int) -> float:
-        """Return the seconds of play before a beat."""
-        return (self.clocks.get(beat, 0) or self.clocks[self.playing[-1]]) * BEAT_S
+        """Return the time on the clock at a beat of play [s]; for other beats, at the last one."""
+        return self.clocks.get(beat, self.clocks[self.playing[-1]]) * BEAT_S
 
 
 def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
@@ -183,25 +185,30 @@ def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
         return error.phrase
 
 
-def key(source: Source, beat: int, bots: tuple[str, str]) -> str:
+def key(source: Source, beat: int, bots: tuple[str, str], arena: str | None = None) -> str:
     """Return the hash of all that decides how the forks of a moment go.
 
     Args:
         source: the record.
         beat: first beat of the forks' own.
-        bots: who plays them; a bot in a file counts with its content.
+        bots: who plays them; of a bot file or a ghost's record, the content counts.
+        arena: folder of the arena, if it is not installed; its files count.
     """
     digest = hashlib.blake2b(digest_size=16)
     for topic, number, data in source.messages:
         if number < beat and topic in ("/lacoc/header", "/lacoc/input"):
             digest.update(data)
     content = [(name, _content(name)) for name in bots]
-    digest.update(msgspec.msgpack.encode((beat, content, software())))
+    game = folder_hash(Path(arena)) if arena else ""
+    digest.update(msgspec.msgpack.encode((beat, content, game, software())))
     return digest.hexdigest()
 
 
 def margin(result: Result, seats: Sequence[str]) -> float:
-    """Return by how many points the first seat won; a winner by another rule has one at least."""
+    """Return by how many points the first seat won.
+
+    A seat that won by another rule than points counts as ahead by one point at least.
+    """
     points = float(result.scores[0] - result.scores[1])
     if result.computed == seats[0]:
         return max(1.0, points)
@@ -214,9 +221,8 @@ def _margins(job: ChanceJob) -> Iterator[float]:
     source = opened(job.file)
     folder = Path(job.arena) if job.arena else None
     seats = _two_seats(source)
-    match = _match_at(job.file, job.beat, job.arena)
+    match, saved = _match_at(job.file, job.beat, job.arena)
     bots = bots_of(source, job.bots, folder)
-    saved = match.save(take_backs=False)
     for variant in job.variants:
         match.load(saved)
         change = Change(players={i: of_bot(bot, i, variant) for i, bot in enumerate(bots)})
@@ -231,13 +237,16 @@ def _margins(job: ChanceJob) -> Iterator[float]:
 
 
 @lru_cache(maxsize=1)
-def _match_at(file: str, beat: int, arena: str | None) -> Match:
-    """Return a record's match as it was before a beat."""
+def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
+    """Return a match with the arena of a record, and the recorded match before a beat, saved.
+
+    Forks change the match, so each of them begins with a load.
+    """
     before = opened(file).record.until(beat - 1)
     match = resume(before, folder=Path(arena) if arena else None).match
     while match.beats < beat - 1:  # beats in which nothing was recorded
         match.beat()
-    return match
+    return match, match.save(take_backs=False)
 
 
 def _two_seats(source: Source) -> tuple[str, str]:
@@ -253,7 +262,7 @@ def _still_known(source: Source, wish: Wish, known: Odds | None) -> dict[int, Mo
     return {
         moment.beat: moment
         for moment in known.moments
-        if moment.key and moment.key == key(source, moment.beat, wish.bots)
+        if moment.key and moment.key == key(source, moment.beat, wish.bots, wish.arena)
     }
 
 
@@ -271,12 +280,12 @@ def _moment(
         clock_s=course.clock_s(beat),
         margins=ended,
         chance=odds.chance(ended),
-        key=key(source, beat, wish.bots),
+        key=key(source, beat, wish.bots, wish.arena),
     )
 
 
 def _closer(course: Course, moments: dict[int, Moment], count: int) -> list[int]:
-    """Return where to look next: into the largest swings that are still long."""
+    """Return the moments to add next: in the largest swings that are long enough."""
     room = min(_AT_ONCE, count - len(moments))
     found = (
         odds.between(course.playing, course.told, swing, _LEAST_BEATS)
@@ -295,6 +304,7 @@ def _end(result: Result | None, source: Source, beat: int) -> Moment | None:
 
 
 def _content(bot: str) -> bytes:
-    """Return the source of a bot that is a file; empty: it is part of the software."""
-    path = Path(bot).expanduser()
-    return path.read_bytes() if bot.endswith(".py") and path.is_file() else b""
+    """Return the bot file or the record of a ghost; empty: the bot is part of the software."""
+    is_ghost = bot.startswith(brains.GHOST)
+    path = brains.ghost_file(bot)[0] if is_ghost else Path(bot).expanduser()
+    return path.read_bytes() if (is_ghost or bot.endswith(".py")) and path.is_file() else b""

@@ -17,7 +17,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
 RECORDED = "-"
-"""Stands for a bot where a seat goes on with its recorded keys."""
+"""In place of a bot's name: the seat goes on with its recorded keys."""
 
 
 class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
@@ -73,7 +73,7 @@ def attempt(job: ForkJob) -> Forked | Phrase:
 
 @lru_cache(maxsize=1)
 def opened(file: str) -> Source:
-    """Read a record; the newest one is kept, because many forks begin with the same.
+    """Read a record; the one that was read last is kept, because many forks go on from it.
 
     Raises:
         UserError: as `origin.read_source` does.

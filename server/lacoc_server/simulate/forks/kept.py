@@ -20,7 +20,7 @@ def read_odds(path: Path) -> Odds | None:
 
 
 def write_odds(path: Path, odds: Odds) -> None:
-    """Write the odds of a record; the file is replaced at once.
+    """Write the odds of a record; readers see the old file or the new one.
 
     Raises:
         UserError: if it can't be written.

@@ -1,7 +1,7 @@
 """The inputs of a fork, beat by beat: recorded ones, and what a change puts in their place; pure.
 
-A change is made by the rules of a court. So an event can only be taken back in a halt, and a fork
-in play is halted and resumed for that. What was recorded later comes later by as much.
+A change follows the rules of a court. An event can be taken back only in a halt, so a fork in play
+is halted and resumed for that. All inputs that were recorded later are delayed by the same time.
 """
 
 import hashlib
@@ -20,11 +20,14 @@ from lacoc_shared.words import say
 REFEREE = "fork"
 """Name of the referee who decides what a change asks for."""
 _SEARCH_BEATS = BEATS_PER_S
-"""A take-back waits at most this long for a beat without recorded inputs."""
+"""A take-back waits at most this long for a beat without recorded inputs. If there is none, it
+comes in the first beat."""
 _SILENT_BEATS = BEATS_PER_S
-"""A seat is silent this long after its record ended, as it would be at a court."""
+"""So long after the last recorded beat, seats with recorded keys fall silent, as at a court."""
 _LATE_TICKS = BEATS_PER_S
+"""Longest time before a bot sees its first frame, in a variant."""
 _REACTION_TICKS = BEATS_PER_S // 5
+"""Longest time from a bot's choice of a key to the key, in a variant."""
 _IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
@@ -34,7 +37,7 @@ Press = Callable[[Match, Frame], Key | None]
 
 @dataclass(frozen=True)
 class Change:
-    """What is other in a fork than in its record; by default nothing is."""
+    """What differs between a fork and its record; by default nothing."""
 
     take_back: int | None = None
     """Number of an event that is taken back; None: none."""
@@ -66,8 +69,8 @@ class Line:
         self.decided_beat: int | None = None
         """Beat in which the change's decisions fell; None: they have not yet, or there are none."""
         self.left_out = 0
-        """Recorded take-backs that were left out: they name events of the record, which have other
-        numbers in the fork.
+        """Recorded take-backs that were left out: they name events after the fork, which may have
+        other numbers in it.
         """
         self._change = change
         self._first = match.beats + 1
@@ -90,7 +93,7 @@ class Line:
         if match.beats < max(self._first, self._decides_at):
             return False
         if not self._change.is_none and match.phase is Phase.FINISHED:
-            return True  # a fork with a change is nobody's official result
+            return True  # nobody makes the result of a changed fork official
         if match.beats < self._last_recorded + self._shift:
             return match.phase in _OVER and not self._change.is_none
         ends = bool(match.duration_ticks) or self._limit is not None
@@ -148,15 +151,15 @@ class Line:
                 self.left_out += 1
                 return False
         if isinstance(item, Decide | Advice):
-            # Without a recorded seat, nothing is left that the referee decided about.
+            # If others play all seats, the referee's decisions fit nothing any more.
             return bool(self._kept_seats)
         return item.seat not in self._change.players
 
     def _free_beat(self) -> int:
         """Return the first beat of the fork without recorded inputs.
 
-        A halt refuses the keys of its beat. So it is put where nobody pressed one, and the robots
-        go the same ways as in the record.
+        A halt refuses the keys of its beat. In a beat without any, the robots go the same ways as
+        in the record.
         """
         beats = range(self._first, self._first + _SEARCH_BEATS)
         return next((beat for beat in beats if beat not in self._recorded), self._first)
@@ -170,7 +173,7 @@ class Line:
             decisions.append(Halt())
             countdown = round(match.rules.countdown_s * BEATS_PER_S)
             left = match.countdown_beats if match.phase is Phase.COUNTDOWN else 1
-            # Play goes on when the countdown ends, in the beat of the record's next tick.
+            # The next tick of play comes after a countdown; in the record, after `left` beats.
             self._shift = countdown + 1 - left
         if change.take_back is not None:
             decisions.append(TakeBack(change.take_back))
@@ -189,9 +192,9 @@ def of_bot(bot: BotFactory, seat: int, variant: int = 0) -> Callable[[], Press]:
     Args:
         bot: the bot.
         seat: index of its seat.
-        variant: each number but 0 lets the bot react in its own way: it sees its first frame up to
-            a second late, and each of its keys takes up to 0.2 s. A match has no other chance in
-            it, so this is what makes forks from one beat differ.
+        variant: 0: the bot reacts at once. Each other number has delays of its own: the bot sees
+            its first frame up to a second late, and each of its keys takes up to 0.2 s. A match has
+            no randomness, so only these delays make forks from one beat differ.
     """
 
     def make() -> Press:

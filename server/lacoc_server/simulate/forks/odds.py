@@ -1,8 +1,9 @@
 """The odds of a match over its course, from how its forks ended; pure.
 
-At some moments forks go on with bots in the seats. Their margins are few and jump from one to the
-next, so the chance is not the share of forks that were won. It is the chance that one more fork
-would be won, if margins are spread normally: Student's distribution around their mean.
+At some moments of the match, bots play forks to the end. A moment has few forks, so the share that
+the first seat won would be a rough number. The chance is instead the probability that it would win
+one more fork if margins (its points less those of the other) are normally distributed: Student's
+t.
 """
 
 import math
@@ -13,9 +14,9 @@ from typing import NamedTuple
 import msgspec
 
 PRIOR_SPREAD = 1.0
-"""Spread of margins [points] that is assumed before any fork is seen."""
+"""Standard deviation of margins [points] that is assumed before any fork is seen."""
 PRIOR_WEIGHT = 2
-"""So many forks that assumption is worth."""
+"""Number of forks that weigh as much as this assumption."""
 
 
 class Moment(msgspec.Struct, frozen=True, kw_only=True):
@@ -60,7 +61,7 @@ def chance(margins: Sequence[float]) -> float:
 
 
 def student(t: float, freedom: int) -> float:
-    """Return Student's distribution function.
+    """Return the distribution function of Student's t: the probability of a value up to `t`.
 
     Args:
         t: the value.
@@ -128,14 +129,14 @@ def jumps(playing: Sequence[int], leads: Sequence[float], width: int, most: int)
 
 
 def between(playing: Sequence[int], told: Sequence[int], swing: Swing, least: int) -> int | None:
-    """Return where to look into a swing, so that one sees what caused it.
+    """Return the moment to add in a swing, to see what caused it.
 
-    That is just after the event in the stretch that is nearest to its middle; without an event it
-    is the middle.
+    It is just after the event that is nearest to the middle of the stretch; without an event it is
+    the middle.
 
     Args:
         playing: all beats in which play went on, in order.
-        told: beats in which the game told something, in order.
+        told: beats with an event of the game, in order.
         swing: the stretch.
         least: beats of play that stay between two moments.
 

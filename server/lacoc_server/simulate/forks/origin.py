@@ -17,7 +17,7 @@ from lacoc_shared.record.schema import Header, Origin, Result, Setup
 from lacoc_shared.words import say
 
 COURT = "fork"
-"""Name of the court in records of forks: no court of this name ever played them."""
+"""Name of the court in records of forks, which no court has played."""
 _CALL = "fork"
 
 
@@ -75,9 +75,9 @@ class Stem:
     """A record up to the beat before a fork, under the fork's name."""
 
     record: Record
-    """Header, sheets and results have the fork's id; everything else is as it was recorded."""
+    """Header, sheets and results name the fork; everything else is as it was recorded."""
     messages: tuple[Message, ...]
-    """The same as messages, for the fork's own record."""
+    """The same as messages, for the fork's own record; measurements of health are left out."""
     setup: Setup
     """Setup of the fork."""
 

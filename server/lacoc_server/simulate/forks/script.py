@@ -1,4 +1,4 @@
-"""A seat of a fork that is played by a person's script (`gait.key_script` has its form)."""
+"""Plays a seat of a fork from a script of keys (`gait.key_script` has its form)."""
 
 from collections.abc import Callable, Sequence
 
