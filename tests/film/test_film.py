@@ -69,7 +69,7 @@ def test_two_browsers_make_the_same_film(
 def test_a_film_is_as_long_as_the_replay(
     recorded: Path, alone: tuple[Path, list[np.ndarray]]
 ) -> None:
-    """The film has the pictures of the replay from its first to its last beat, and their time."""
+    """The film is as long as the replay, from its first beat to its last, and as fast."""
     out, pictures = alone
     part = film.part(recorded)
     last = part.record.last_beat
@@ -89,7 +89,7 @@ def test_a_film_is_as_long_as_the_replay(
 def test_views_differ_and_a_still_is_a_picture(
     recorded: Path, with_browser: str, tmp_path: Path
 ) -> None:
-    """Each view is another picture, of the size that was asked."""
+    """The arena with the overlay and the two windows without it differ, each in the wanted size."""
     seen = set()
     for view, overlay in ((View.ARENA, True), (View.SPLIT, False)):
         look = Look(view, overlay, "en", WIDTH, HEIGHT, Quality.LOW)

@@ -56,7 +56,7 @@ def test_pictures_come_out_as_they_went_in(tmp_path: Path) -> None:
 
 
 def test_most_pictures_are_no_key_pictures(tmp_path: Path) -> None:
-    """A film of one still is small: only each two seconds a picture stands for itself."""
+    """Only one picture in two seconds is a key picture, which needs the most space."""
     with movie(tmp_path / "a.mp4", WIDTH, HEIGHT, 10) as film:
         for _ in range(50):
             film.add(png(100))

@@ -46,7 +46,7 @@ def test_messages_open_as_they_were_made() -> None:
 
 
 def test_a_page_sees_a_court_as_it_was() -> None:
-    """What a court sends reaches pages so much later, in order; a newcomer gets what was known."""
+    """What a court sends reaches pages later, in order; a newcomer gets what was known then."""
     threads = Threads(1)
     feed = CourtFeed(Access(court="east", connect="tcp/127.0.0.1:1"), threads)
     late = LateFeed(feed, BEHIND_S)
