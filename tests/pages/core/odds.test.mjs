@@ -11,7 +11,7 @@ const file = {
   moments: [moment(100, 0.5), moment(400, 0.6), moment(200, 0.9), moment(500, 0.58)],
 };
 
-test("odds of this match are read, in order; all else is left alone", () => {
+test("odds of this match are read, in the order of time; all else is refused", () => {
   assert.deepEqual(
     readOdds(file, "m").moments.map(({ beat }) => beat),
     [100, 200, 400, 500],

@@ -165,7 +165,10 @@ export const contest = {
     "The right side has been worth {elo} Elo so far.",
     "これまでのところ、右側は {elo} Elo 有利です。",
   ],
-  "contest.side.even": ["Both sides have been worth the same.", "これまでのところ、左右に有利不利はありません。"],
+  "contest.side.even": [
+    "Both sides have been worth the same.",
+    "これまでのところ、左右に有利不利はありません。",
+  ],
   "contest.ratedAs": ["number {rank} of {of}", "{of} チーム中 {rank} 位"],
   "contest.stillIn": ["still in", "勝ち残り"],
   "contest.path": ["Matches of {team}", "{team} の試合"],
