@@ -1,4 +1,4 @@
-"""Tests of /contest: at a gateway, and in a published folder on a web server that knows nothing."""
+"""Tests of /contest: at a gateway, and in a published folder on a plain web server."""
 
 import functools
 import threading
@@ -138,7 +138,7 @@ def test_a_tie_break_is_explained_where_it_stands(cup: Cup, open_page: OpenPage)
 
 @pytest.mark.parametrize("locale", ["en-GB", "ja-JP"])
 def test_a_phone_and_axe(cup: Cup, open_page: OpenPage, locale: str) -> None:
-    """Nothing but tables and brackets scrolls sideways on a phone; axe-core finds no mistake."""
+    """Only tables and brackets scroll sideways on a phone; axe-core finds no serious mistake."""
     pytest.importorskip("axe_core_python")
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale=locale)
     page.goto(cup.url)
@@ -169,7 +169,7 @@ def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> No
 
 
 def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:
-    """On paper every match of every round is there, and nothing that one could click."""
+    """On paper every match of every round is there, and the head's buttons are not."""
     page = open_page(viewport=LAPTOP)
     page.goto(cup.url)
     expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)

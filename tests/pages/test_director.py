@@ -55,9 +55,9 @@ def play_and_abort(url: str, key: str, court: str, stack: ExitStack) -> PageClie
 def test_pages_follow_the_director(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:
-    """Pages show one court and results between matches; when the court is killed they go on.
+    """Pages show the court on air, and results between matches; a killed court is left.
 
-    Both pages show the same court all the time. Nobody loads them again.
+    Both pages show the same court, and go to the other one without being loaded again.
     """
     console.expect("WebSocket")  # the gateway ends before the pages
     file = write_contest(tmp_path)

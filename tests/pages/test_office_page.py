@@ -1,4 +1,4 @@
-"""Tests of /office and /enter: a real event, from its empty folder to its first game."""
+"""Tests of /office and /enter: an event from its file until its first games are called."""
 
 import json
 import subprocess
@@ -36,7 +36,7 @@ class Event(NamedTuple):
 
 @pytest.fixture(scope="module")
 def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
-    """Give an event of two courts, of which nothing but its file was written."""
+    """Give an event of two courts that has only its contest file, with open entries."""
     folder = tmp_path_factory.mktemp("event")
     file = folder / "contest.toml"
     run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
@@ -69,7 +69,7 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 
 
 def fill(page: Page, event: Event, team: str, code: str = "") -> None:
-    """Type the form of /enter, with files that are right."""
+    """Fill in the form of /enter, with files that have no mistakes."""
     page.goto(f"{event.url}/enter")
     page.locator("input.code").fill(code or event.code.lower(), timeout=WAIT_MS)
     page.locator(".field input").nth(1).fill(team)
@@ -96,7 +96,7 @@ def test_an_event_from_its_file_to_its_first_game(
     office = open_page(viewport=LAPTOP)
     office.goto(event.office)
     expect(office.locator(".head .code")).to_have_text(event.code, timeout=WAIT_MS)
-    assert "#" not in office.url, "the key does not stay in sight"
+    assert "#" not in office.url, "the key stays in the address"
     assert violations(office) == []
     first = first_team(open_page, event)
     for team in TEAMS[1:]:
@@ -128,7 +128,7 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible(timeout=WAIT_MS)
-    expect(page.get_by_role("status").first).to_contain_text("organiser approves")
+    expect(page.get_by_role("status").first).to_contain_text("waits for the organiser")
     page.reload()
     expect(page.locator("h1")).to_have_text(FIRST, timeout=WAIT_MS)
     expect(page.get_by_role("link", name="To your matches")).to_be_visible(timeout=WAIT_MS)
@@ -181,13 +181,13 @@ def decide(office: Page) -> None:
 
 
 def late_files(office: Page, team: Page, event: Event) -> None:
-    """After the end of entries new files wait, and the organiser says why they count."""
+    """After the end of entries new files wait until the organiser allows them, with a reason."""
     changed = event.right[1].with_name("LocoTra-late.txt")
     changed.write_bytes(event.right[1].read_bytes() + b"\n")
     team.get_by_text("Replace the files", exact=True).click()
     team.locator("input[type=file]").set_input_files(changed)
     team.get_by_role("button", name="Weigh in and replace").click()
-    expect(team.locator(".state")).to_contain_text("came late", timeout=WAIT_MS)
+    expect(team.locator(".state")).to_contain_text("after entries were closed", timeout=WAIT_MS)
     office.get_by_role("button", name=f"Approve {FIRST}").first.click(timeout=WAIT_MS)
     dialog = office.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Approve")).to_be_disabled()
@@ -197,7 +197,7 @@ def late_files(office: Page, team: Page, event: Event) -> None:
 
 
 def papers(office: Page) -> None:
-    """Each paper has its content, and on paper nothing that one could click."""
+    """Each paper has its content, and is printed without the page's buttons."""
     for paper, content in (
         ("schedule", "main-1"),
         ("results", "3:9"),
@@ -214,7 +214,7 @@ def papers(office: Page) -> None:
 
 
 def on_a_phone(open_page: OpenPage, event: Event) -> None:
-    """In Japanese on a phone nothing scrolls sideways, and axe-core finds no mistake."""
+    """In Japanese on a phone nothing scrolls sideways, and axe-core finds no serious mistake."""
     for path in (event.office, f"{event.url}/enter"):
         page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
         page.goto(path)

@@ -1,4 +1,4 @@
-"""Tests of forks and odds on /replay: what is said, drawn and shown side by side."""
+"""Tests of forks and odds on /replay: notes, curve, highlights, and fork and match side by side."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -63,7 +63,7 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 
 def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: OpenPage) -> None:
-    """The curve lies over the bar, the chances follow the beat, and a highlight leads to it."""
+    """The curve lies over the bar, the chances follow the beat, and a highlight leads there."""
     page = open_page(viewport={"width": 1366, "height": 768})
     show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=2&q=low")
     show.sees(".transport .chances", "90 : 10 %")
@@ -95,7 +95,7 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
     page.evaluate("window.__replay.seek(140)")
     show.until(
         lambda: [show.view("drawnBeat", index) for index in (0, 1)] == [140, 140],
-        "both lines were not drawn at the same beat",
+        "fork and match are not drawn at the same beat",
     )
     assert violations(page) == []
     show.find(".fork-note button").click()

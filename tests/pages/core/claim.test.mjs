@@ -67,7 +67,7 @@ function reachable() {
   return steps;
 }
 
-test("what was wrong with files is old as soon as other files are chosen", () => {
+test("mistakes in files are forgotten as soon as other files are chosen", () => {
   const refused = after(fresh, join, open, failed(badFile));
   assert.equal(refused.refusal, badFile);
   assert.equal(after(refused, { is: "mended" }).refusal, null);
@@ -75,7 +75,7 @@ test("what was wrong with files is old as soon as other files are chosen", () =>
   assert.equal(after(unknown, { is: "mended" }).refusal, wrongToken);
 });
 
-test("whatever happens, the claim makes sense", () => {
+test("after any events the claim keeps its rules", () => {
   const steps = reachable();
   const states = new Set(steps.map(({ next }) => next.state));
   assert.deepEqual(states, new Set(Object.keys(TRANSITIONS)));
@@ -115,7 +115,7 @@ test("a first join is asked for once there is a court, and granted", () => {
 });
 
 for (const refusal of [busy, no, wrongToken, badFile]) {
-  test(`a first join that is refused is shown at once: ${refusal.message}`, () => {
+  test(`a first join that is refused is shown at once: ${refusal.why.code}`, () => {
     const refused = after(fresh, join, open, failed(refusal));
     assert.deepEqual([refused.state, refused.effects], ["none", ["drop"]]);
     assert.deepEqual([refused.refusal, refused.lastWish], [refusal, wish]);
@@ -144,7 +144,7 @@ test("a seat that was held is asked for again after a break or a reload, in sile
   }
 });
 
-test("a court that says neither yes nor when is asked eight times", () => {
+test("a court that refuses without saying when to ask again is asked eight times", () => {
   let claim = reloaded;
   for (let time = 0; time < 7; time++) {
     claim = after(claim, open, failed(no));
@@ -158,7 +158,7 @@ test("a court that says neither yes nor when is asked eight times", () => {
 });
 
 for (const refusal of [wrongToken, badFile]) {
-  test(`a held seat that is refused for good is shown: ${refusal.message}`, () => {
+  test(`a held seat that is refused for good is shown: ${refusal.why.code}`, () => {
     const refused = after(reloaded, open, failed(refusal));
     assert.deepEqual([refused.state, refused.refusal], ["none", refusal]);
     assert.equal(keptWish(refused), null);

@@ -58,7 +58,7 @@ test("a projector's numbers stay, and are never given to somebody else", () => {
   assert.deepEqual(c.numbered(left, ["bob", "cem", "ann"]), ["", "bob", "cem", "ann"]);
 });
 
-test("names in a text are hidden, whatever they are written in", () => {
+test("names in a text are hidden, in any script", () => {
   const label = (index) => `Robot ${index + 1}`;
   const cases = [
     ["Ann's table", ["Ann"], "Robot 1's table"],
@@ -71,7 +71,7 @@ test("names in a text are hidden, whatever they are written in", () => {
   for (const [text, known, hidden] of cases) assert.equal(c.masked(text, known, label), hidden);
 });
 
-test("times are said in the unit that one says them in", () => {
+test("a time is told in minutes or hours, and a short one as a moment", () => {
   const cases = [
     [0, "moment", 0],
     [-30, "moment", 0],

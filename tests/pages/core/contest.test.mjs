@@ -9,7 +9,7 @@ import { fit } from "../../../client/web/src/core/contest/fit.ts";
 import * as c from "../../../client/web/src/core/contest/sheet.ts";
 import { slides } from "../../../client/web/src/core/contest/slides.ts";
 
-/** Sheets of contests that Python played by chance. */
+/** Sheets of contests that Python played with random results. */
 const SHEETS = JSON.parse(
   execFileSync(process.env.PYTHON, [fileURLToPath(new URL("contest_sheets.py", import.meta.url))], {
     maxBuffer: 1 << 28,
