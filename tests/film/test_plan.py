@@ -104,12 +104,15 @@ def test_a_correction_during_a_halt_is_no_moment() -> None:
 
 @pytest.mark.parametrize("text", ["", "[]", '{"moments": [{"beat": "x"}]}', '{"moments": 3}', "\0"])
 def test_a_file_without_moments_is_refused(tmp_path: Path, text: str) -> None:
-    """The error names the file and shows what it must be like."""
+    """The error names the file, and shows what it must be like or how large it may be."""
     file = tmp_path / "m.json"
     file.write_text(text)
     with pytest.raises(UserError, match=r'm\.json.*"beat": 1234'):
         moments.from_file(file)
     with pytest.raises(UserError, match=r"none\.json"):
         moments.from_file(tmp_path / "none.json")
+    file.write_bytes(b" " * ((1 << 20) + 1))
+    with pytest.raises(UserError, match=r"m\.json.*at most 1 MiB"):
+        moments.from_file(file)
     file.write_text('{"moments": [{"beat": 12, "swing": 0.5, "why": "a fork"}]}')
     assert moments.from_file(file) == [Moment(12, 0.5)]

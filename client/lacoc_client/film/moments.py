@@ -98,9 +98,8 @@ def from_file(path: Path) -> list[Moment]:
     """
     try:
         if path.stat().st_size > _LARGEST_BYTES:
-            raise UserError(
-                say("film.bad-moments", file=str(path), error="too large", example=_EXAMPLE)
-            )
+            most_mib = _LARGEST_BYTES >> 20
+            raise UserError(say("film.moments-too-large", file=str(path), most_mib=most_mib))
         return msgspec.json.decode(path.read_bytes(), type=_File).moments
     except OSError as error:
         why = error.strerror or str(error)

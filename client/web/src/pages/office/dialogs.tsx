@@ -116,7 +116,7 @@ export function LeaveDialog({ organiser, team }: Props) {
             do: "take_out",
             team,
             disqualify,
-            reason: reason.value,
+            reason: reason.value.trim(),
             really: true,
           } as const;
           if (await organiser.act(wish)) organiser.close();
