@@ -63,7 +63,7 @@ def simulate_command(
         typer.Option(
             metavar="N",
             help="Everybody plays N others, in both seats as evenly as possible, instead of "
-            "everybody. An odd number of players rest in turn.",
+            "everybody. If the number of players is odd, they rest in turn.",
             min=1,
         ),
     ] = None,
