@@ -3,6 +3,7 @@
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -95,7 +96,7 @@ def test_a_correction_during_a_halt_is_no_moment() -> None:
     """Only play gives moments: points that change while the match is halted are none."""
     phases = [Phase.PLAYING] * 2 + [Phase.HALTED, Phase.COUNTDOWN] + [Phase.PLAYING] * 2
     scores = [0, 3, 3, 9, 9, 10]
-    frames = [
+    frames: list[tuple[int, Any]] = [
         (100 * index, SimpleNamespace(phase=phase, seats=[SimpleNamespace(score=score)]))
         for index, (phase, score) in enumerate(zip(phases, scores, strict=True))
     ]

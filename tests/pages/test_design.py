@@ -272,7 +272,7 @@ def test_other_gaits_are_watched_and_taken(
 def test_a_table_goes_to_the_page_on_which_teams_enter(
     open_page: OpenPage, address: tuple[str, str]
 ) -> None:
-    """Its files are in the fragment of the address that was typed, which no server gets to see."""
+    """The table's files go into the fragment of the typed address, which no server gets to see."""
     page = designer(open_page, address)
     page.page.click(".bar .name")
     page.page.get_by_label("Address of the contest's pages").fill(address[0])

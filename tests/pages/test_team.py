@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 
 TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
 PERSON = "Ants"
-"""Plays its first match at the second court, so that its page must go there."""
+"""The team of a person. Its first match is at the second court, so its page must go there."""
 WAIT_MS = 90_000
 
 
