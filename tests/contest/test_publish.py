@@ -151,7 +151,7 @@ def test_exit_codes_and_languages(
         japanese.setenv("LACOC_LANGUAGE", "ja")
         assert "順位は事実と記録から正しく導かれています" in lacoc(*verify)[1]
         code, said, _ = lacoc("contest", "withdraw", "Ann", "--contest", copied, "--reason", "病気")
-        assert (code, "大会を去りました" in said) == (0, True)
+        assert (code, "大会から外れました" in said) == (0, True)
     contest_played.publish(copied)
     code, said, note = lacoc(*verify)
     assert code == 0

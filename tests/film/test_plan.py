@@ -2,6 +2,8 @@
 
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -12,7 +14,7 @@ from lacoc_client.film.moments import Moment
 from lacoc_client.film.plan import Shot
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.seat import BEATS_PER_S, Phase
 
 ENDS = st.tuples(st.integers(0, 2000), st.integers(0, 9000)).map(
     lambda ends: (ends[0], ends[0] + ends[1])
@@ -61,7 +63,7 @@ def test_near_moments_are_one_shot() -> None:
     [
         ([(0, (0, 0)), (9, (0, 0))], []),
         ([(0, (0, 0)), (9, (10, 0)), (90, (10, 30))], [(9, 10), (90, 30)]),
-        ([(0, (0, 0)), (9, (10, 0)), (30, (10, 10))], []),  # within a second: nothing is left of it
+        ([(0, (0, 0)), (9, (10, 0)), (30, (10, 10))], []),  # within a second: they cancel out
         ([(0, (0, 0)), (9, (1, 0)), (40, (3, 0)), (100, (4, 0))], [(9, 3), (100, 1)]),
         ([(0, (5,)), (9, (7,))], [(9, 2)]),
         ([(0, (20, 16)), (9, (22, 14))], [(9, 4)]),  # a flip counts for one and against the other
@@ -70,7 +72,7 @@ def test_near_moments_are_one_shot() -> None:
 def test_a_swing_is_the_change_of_the_lead(
     scores: list[tuple[int, tuple[int, ...]]], found: list[tuple[int, int]]
 ) -> None:
-    """A moment begins at its first change; changes within a second are one."""
+    """A moment begins at its first change, and has all changes within a second of it."""
     assert [(moment.beat, moment.swing) for moment in moments.swings(scores)] == found
 
 
@@ -81,7 +83,7 @@ def test_the_largest_are_chosen_and_shown_in_order() -> None:
 
 
 def test_moments_of_a_record_are_when_its_score_changed(recorded: Path) -> None:
-    """A flag that falls in a real match is a moment, at the beat of its event."""
+    """A real match has a moment, and each of its moments is at the beat at which a flag fell."""
     record = Record.read(recorded)
     found = moments.by_score(record)
     beats = {event.beat for event in record.events if event.kind == "strike"}
@@ -90,14 +92,28 @@ def test_moments_of_a_record_are_when_its_score_changed(recorded: Path) -> None:
     assert {moment.beat for moment in found} <= beats
 
 
+def test_a_correction_during_a_halt_is_no_moment() -> None:
+    """Only play gives moments: points that change while the match is halted are none."""
+    phases = [Phase.PLAYING] * 2 + [Phase.HALTED, Phase.COUNTDOWN] + [Phase.PLAYING] * 2
+    scores = [0, 3, 3, 9, 9, 10]
+    frames: list[tuple[int, Any]] = [
+        (100 * index, SimpleNamespace(phase=phase, seats=[SimpleNamespace(score=score)]))
+        for index, (phase, score) in enumerate(zip(phases, scores, strict=True))
+    ]
+    assert moments.of_frames(frames) == [Moment(100, 3), Moment(500, 1)]
+
+
 @pytest.mark.parametrize("text", ["", "[]", '{"moments": [{"beat": "x"}]}', '{"moments": 3}', "\0"])
 def test_a_file_without_moments_is_refused(tmp_path: Path, text: str) -> None:
-    """The error names the file and shows what it must be like."""
+    """The error names the file, and shows what it must be like or how large it may be."""
     file = tmp_path / "m.json"
     file.write_text(text)
     with pytest.raises(UserError, match=r'm\.json.*"beat": 1234'):
         moments.from_file(file)
     with pytest.raises(UserError, match=r"none\.json"):
         moments.from_file(tmp_path / "none.json")
+    file.write_bytes(b" " * ((1 << 20) + 1))
+    with pytest.raises(UserError, match=r"m\.json.*at most 1 MiB"):
+        moments.from_file(file)
     file.write_text('{"moments": [{"beat": 12, "swing": 0.5, "why": "a fork"}]}')
     assert moments.from_file(file) == [Moment(12, 0.5)]

@@ -138,7 +138,7 @@ def test_a_tie_break_is_explained_where_it_stands(cup: Cup, open_page: OpenPage)
 
 @pytest.mark.parametrize("locale", ["en-GB", "ja-JP"])
 def test_a_phone_and_axe(cup: Cup, open_page: OpenPage, locale: str) -> None:
-    """Nothing but tables and brackets scrolls sideways on a phone; axe-core finds no mistake."""
+    """Only tables and brackets scroll sideways on a phone; axe-core finds no serious mistake."""
     pytest.importorskip("axe_core_python")
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale=locale)
     page.goto(cup.url)

@@ -1,4 +1,4 @@
-"""Tests of /office and /enter: a real event, from its empty folder to its first game."""
+"""Tests of /office and /enter: an event from its file until its first games are called."""
 
 import json
 import subprocess
@@ -69,7 +69,7 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 
 
 def fill(page: Page, event: Event, team: str, code: str = "") -> None:
-    """Type the form of /enter, with files that are right."""
+    """Fill in the form of /enter, with files that have no mistakes."""
     page.goto(f"{event.url}/enter")
     page.locator("input.code").fill(code or event.code.lower(), timeout=WAIT_MS)
     page.locator(".field input").nth(1).fill(team)
@@ -96,7 +96,7 @@ def test_an_event_from_its_file_to_its_first_game(
     office = open_page(viewport=LAPTOP)
     office.goto(event.office)
     expect(office.locator(".head .code")).to_have_text(event.code, timeout=WAIT_MS)
-    assert "#" not in office.url, "the key does not stay in sight"
+    assert "#" not in office.url, "the key stays in the address"
     assert violations(office) == []
     first = first_team(open_page, event)
     for team in TEAMS[1:]:
@@ -128,7 +128,7 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible(timeout=WAIT_MS)
-    expect(page.get_by_role("status").first).to_contain_text("organiser approves")
+    expect(page.get_by_role("status").first).to_contain_text("waits for the organiser")
     page.reload()
     expect(page.locator("h1")).to_have_text(FIRST, timeout=WAIT_MS)
     expect(page.get_by_role("link", name="To your matches")).to_be_visible(timeout=WAIT_MS)
@@ -187,7 +187,7 @@ def late_files(office: Page, team: Page, event: Event) -> None:
     team.get_by_text("Replace the files", exact=True).click()
     team.locator("input[type=file]").set_input_files(changed)
     team.get_by_role("button", name="Weigh in and replace").click()
-    expect(team.locator(".state")).to_contain_text("came late", timeout=WAIT_MS)
+    expect(team.locator(".state")).to_contain_text("after entries were closed", timeout=WAIT_MS)
     office.get_by_role("button", name=f"Approve {FIRST}").first.click(timeout=WAIT_MS)
     dialog = office.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Approve")).to_be_disabled()

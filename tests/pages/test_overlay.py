@@ -167,7 +167,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     venue.court("--seconds", "1")
     venue.web()
     show = Show(open_page(viewport=SOURCE), venue.url, LOW)
-    show.sees(".opening", "Waiting for left to join")
+    show.sees(".opening", "Waiting for the left seat to join")
     referee = playing(venue)
     referee.phase(Phase.FINISHED)
     show.sees(".result .next", "The referee is confirming")

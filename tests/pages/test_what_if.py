@@ -1,4 +1,4 @@
-"""Tests of forks and odds on /replay: what is said, drawn and shown side by side."""
+"""Tests of forks and odds on /replay: notes, curve, highlights, and fork and match side by side."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -95,7 +95,7 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
     page.evaluate("window.__replay.seek(140)")
     show.until(
         lambda: [show.view("drawnBeat", index) for index in (0, 1)] == [140, 140],
-        "both lines were not drawn at the same beat",
+        "fork and match are not drawn at the same beat",
     )
     assert violations(page) == []
     show.find(".fork-note button").click()

@@ -40,9 +40,10 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     """What is missing in that phase; None: nothing."""
     tries: int
     best_mm_s: float | None
-    """Highest forward speed of a trial that stayed upright and off the floor."""
+    """Highest forward speed of a trial with key B2 that stayed upright and off the floor; None:
+    there was no such trial."""
     last_mm_s: float | None
-    """Forward speed of the last trial."""
+    """Forward speed of the last trial; None: there was no trial."""
     legs: tuple[str, ...]
     """Labels of the legs of `feet`."""
     feet: tuple[tuple[tuple[float, float], ...], ...] | None

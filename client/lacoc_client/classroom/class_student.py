@@ -84,5 +84,5 @@ class ClassStudent(Student):
         return now
 
     def kept_token(self) -> Document:
-        """Return the token as a class file keeps it."""
+        """Return the token's hash as a class file keeps it."""
         return Document(self.name, TOKEN, "", time.time(), self.token_hash.encode())

@@ -24,11 +24,8 @@ def student_files(kept: Iterable[Document]) -> list[Document]:
             continue
         try:
             files = draft.files()
-        except (
-            FileRefused,
-            UserError,
-        ):  # no angle in a cell, or no such key: no page of ours sends it
-            continue
+        except (FileRefused, UserError):
+            continue  # a cell without an angle, or a missing key: this project's page sends neither
         found += [
             Document(one.student, name, one.version, one.at_s, file.data)
             for name, file in zip(USUAL_NAMES, files, strict=True)

@@ -39,7 +39,7 @@ def team(
     """Find the way to a court for a team that has a token but names no seat.
 
     Such a token is a team's, for a contest with an office, which says where the team plays. None:
-    a seat is named or known, or there is no token.
+    there is an invitation, a seat is named or is the only one, or there is no token.
 
     Raises:
         UserError: if the contest file is wrong.

@@ -6,13 +6,13 @@ from lacoc_client.director.stakes import USUAL
 from lacoc_shared.seat import Phase
 
 LAST_S = 30.0
-"""The end of a match, from which nobody cuts away while it is close [s]."""
+"""The last part of a match, from which the director never cuts away while it is close [s]."""
 
 _CLOSE = 0.2
 """A match is close while the difference is at most this share of all points."""
 
 OVER = (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID)
-"""Phases with a result, or none for ever."""
+"""Phases after the end of a match: it has a result, or is void."""
 
 
 class CourtNow(NamedTuple):
@@ -20,14 +20,16 @@ class CourtNow(NamedTuple):
 
     name: str
     match: str
-    """Names the match; another one begins with nothing of this one."""
+    """Names the match. Points and moments of one match do not carry over to the next."""
     phase: Phase
     left_s: float | None
-    """Time left of the match [s]; None: it has no end."""
+    """Time left of the match [s]; None: it has no time limit."""
     scores: tuple[int, ...]
     """Points by seat."""
     stake: float = USUAL
     """How much the match counts; `stakes.stake`."""
+    has_begun: bool = False
+    """Whether the clock of the match has run: a countdown then resumes a halted match."""
 
     @property
     def ahead(self) -> int:
@@ -41,8 +43,9 @@ class CourtNow(NamedTuple):
 
     @property
     def is_played(self) -> bool:
-        """Whether the match is played, or halted: a halted one goes on."""
-        return self.phase in (Phase.PLAYING, Phase.HALTED)
+        """Whether the match is played, or interrupted: halted, or in the countdown after a halt."""
+        resumes = self.phase is Phase.COUNTDOWN and self.has_begun
+        return resumes or self.phase in (Phase.PLAYING, Phase.HALTED)
 
     @property
     def is_over(self) -> bool:

@@ -11,23 +11,23 @@ from lacoc_client.director.moments import Why as Moving
 from lacoc_client.director.plan import CUTS_MOST, Prices, cuts_left, is_worth_it, may_cut
 
 AHEAD_S = 15.0
-"""How much later than the courts play all is shown [s]: the director knows what comes."""
+"""Everything is shown this much later than it is played [s], so the director knows what comes."""
 RESULT_S = 6.0
-"""A result stays on air for this time [s]."""
+"""A result stays on air at least for this time [s]."""
 _EARLY_S = 1.0
-"""A cut comes so much before its moment, if that is known in time [s]."""
+"""A cut comes this much before its moment, if the moment is known in time [s]."""
 _LATE_S = 0.5
-"""A moment that is longer ago is no reason to cut any more [s]."""
+"""A moment that is over for longer than this is no reason to cut [s]."""
 _EMPTY_MOST_S = 20.0
-"""A court without a match stays on air no longer, if another one has a match [s]."""
+"""After so long without play even the last cut of a minute is spent on a court with play [s]."""
 _KNOWN_S = 180.0
-"""Moments of this time say what a moment is worth [s]."""
+"""The moments of this last time decide what moments and cuts are worth [s]."""
 
 Why = Moving | Literal["first", "played", "gone"]
 """Why a court is on air: a moment, or
 
-first: nothing was on air before. played: the match before it is over, and here is one. gone: the
-court before it has vanished.
+first: nothing was on air before. played: nothing is played at the court shown before, and a match
+is played here. gone: the court shown before has vanished.
 """
 
 
@@ -56,13 +56,13 @@ class Director:
         self._ahead_s = ahead_s
         self._shot: Shot | None = None
         self._looks: deque[tuple[float, Mapping[str, CourtNow]]] = deque()
-        """Those from the one that is shown now to the newest."""
+        """The looks with their times, from the one that is shown now to the newest."""
         self._tracks: dict[str, Track] = {}
         self._moments: deque[Moment] = deque()
-        """Those of the last minutes and those that come, in time."""
+        """The moments of the last minutes and those that come, in the order of time."""
         self._cuts: deque[float] = deque(maxlen=CUTS_MOST)
         self._empty: tuple[str, str, float] = ("", "", 0.0)
-        """The court on air, its match, and when play was last shown there."""
+        """The court on air, its match, and since when it is on air without play."""
 
     def look(self, now_s: float, courts: Sequence[CourtNow]) -> Shot | None:
         """Take in how all courts stand, and choose.
@@ -72,8 +72,8 @@ class Director:
             courts: every court that can be shown; who is missing has vanished.
 
         Returns:
-            What is on air, of what was played `ahead_s` ago; None until there is a court. In the
-            first `ahead_s` the first look stays.
+            What is on air, of what was played `ahead_s` ago; None until the look of that time has a
+            court. In the first `ahead_s` seconds the first look stands for it.
         """
         self._see(now_s, courts)
         shown_s = now_s - self._ahead_s
@@ -126,7 +126,7 @@ class Director:
             self._empty = (now.name, now.match, shown_s)
 
     def _moment(self, shown_s: float, shown: Mapping[str, CourtNow], on_air: str) -> Moment | None:
-        """Return the moment at another court to which to cut now; None: none is worth it."""
+        """Return the moment at another court that is worth a cut now; None: there is none."""
         coming = [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
         due = [
             one
@@ -141,13 +141,16 @@ class Director:
         return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
 
     def _locked(self, court: str, at_s: float) -> bool:
-        """Return whether a court that plays is in the last 30 s of a close match at a time."""
+        """Return whether a court is in the last 30 s of a close match at a time."""
         index = bisect_left(self._looks, at_s, key=lambda look: look[0])
         courts = self._looks[min(index, len(self._looks) - 1)][1]
         return court in courts and courts[court].is_closing
 
     def _richest(self, shown_s: float, shown: Mapping[str, CourtNow]) -> str:
-        """Return the court of which most is to be seen soon; of equal ones the first."""
+        """Return the court to show: one where a match is played, with the largest moments soon.
+
+        Of equal ones it is the one with the highest stake, then the first.
+        """
         worth = {name: (one.is_played, one.stake) for name, one in shown.items()}
         soon = dict.fromkeys(shown, 0.0)
         for one in self._moments:

@@ -6,17 +6,17 @@ from typing import Literal, NamedTuple
 from lacoc_client.director.courts import CourtNow
 
 LEAD_POINTS = 2.0
-"""A change of the lead counts as so many points more."""
+"""A change of the lead adds this to the worth of a swing [points]."""
 CLOSING_POINTS = 4.0
-"""The last 30 s of a close match count as a swing of so many points."""
+"""The last 30 s of a close match are worth a swing of so many points."""
 _STAKE_POINTS = 4.0
-"""The beginning of a match with a stake of 2 counts as a swing of so many points."""
+"""The beginning of a match with a stake of 2 is worth a swing of so many points."""
 
 Why = Literal["lead", "swing", "closing", "stake"]
 """What makes a moment.
 
 lead: another seat leads. swing: the difference in points changed. closing: the last 30 s of a close
-match begin. stake: a match begins at which more than usual is at stake.
+match begin, or a match becomes close in them. stake: a match with more than the usual stake begins.
 """
 
 
@@ -43,7 +43,7 @@ class Track:
         """Sign of the last difference that was not 0."""
 
     def see(self, now_s: float, now: CourtNow) -> Iterator[Moment]:
-        """Take in how the court stands; give what happened since the last look.
+        """Take in how the court stands; yield the moments since the last look.
 
         Args:
             now_s: the time of the look [s].

@@ -1,4 +1,4 @@
-"""Compares ways through the moments that come, under the limit of cuts. Pure."""
+"""Decides whether a moment is worth one of the few cuts that a minute may have. Pure."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -13,20 +13,21 @@ LEAST_S = 2.0
 """Least time between two cuts [s]."""
 
 _RANKS = (0.03, 0.05, 0.1, 0.2)
-"""What a cut costs while 1, 2, 3 or 4 cuts are left: nearly as much as the moment than which this
-share of all moments is better."""
+"""The best moments that are worth a cut while 1, 2, 3 or 4 cuts are left, as a share of all."""
 _NEARLY = 0.9
+"""A cut costs this part of the value of the least of those moments."""
 _LOOKED_AT = 0.15
-"""Only the best moments are planned for: this share of all."""
+"""Only the best moments have a value: this share of all."""
 _KNOWN_LEAST = 20
+"""With fewer moments known, `_AT_FIRST` stands for them."""
 _AT_FIRST = 6.0
-"""What the best tenth is worth at least, before so many moments are known [points]."""
+"""What the best tenth of all moments is assumed to be worth at least [points]."""
 _MOST = 8
-"""So many moments are planned for at once."""
+"""Most moments to come that are compared."""
 
 
 def cuts_left(cuts: Sequence[float], at_s: float) -> int:
-    """Return how many cuts may be made now, of those that any minute may have.
+    """Return how many cuts are left for the minute that ends now.
 
     Args:
         cuts: the times of earlier cuts.
@@ -53,14 +54,14 @@ class Prices:
         self._costs = [_NEARLY * self._rank(share) ** 2 for share in _RANKS]
 
     def value(self, moment: Moment) -> float:
-        """Return what a moment is worth on air; 0 for most moments.
+        """Return what a moment is worth on air; 0 for all but the best.
 
-        It is the square of its points: one swing of ten is more than two of five.
+        It is the square of its points: one swing of ten is worth more than two of five.
         """
         return moment.points * moment.points if moment.points >= self._least else 0.0
 
     def cost(self, left: int) -> float:
-        """Return what a cut costs while so many are left."""
+        """Return what a cut costs while so many cuts are left, 1 to `CUTS_MOST`."""
         return self._costs[left - 1]
 
     def _rank(self, share: float) -> float:
@@ -82,10 +83,10 @@ def is_worth_it(
     Args:
         on_air: the court on air.
         moment: a moment at another court, now.
-        coming: the moments after it that are known, in time.
+        coming: all other moments that are known and not over, at any court.
         cuts: the times of earlier cuts.
         prices: what moments and cuts are worth.
-        locked: tells whether nobody may cut away from a court at a time.
+        locked: tells whether a cut away from a court is forbidden at a time.
     """
     worth = prices.value(moment)
     if not worth:
@@ -94,7 +95,7 @@ def is_worth_it(
     ahead = sorted(one for one in best if prices.value(one))
 
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
-        """Return what the best way through the moments from an index on is worth."""
+        """Return the most that the moments from an index on are worth, less their cuts."""
         if index == len(ahead):
             return 0.0
         one = ahead[index]

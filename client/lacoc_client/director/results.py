@@ -9,7 +9,7 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
 
 _SHOWN = 6
-"""So many of the newest results are shown."""
+"""Most results that are shown."""
 
 
 class Result(msgspec.Struct, frozen=True):
@@ -49,7 +49,8 @@ class Results:
         Args:
             now_s: the time, by a clock that never goes back [s].
             over: the matches that are over; a referee may still correct one.
-            going: court and match of those that are not over, also if they were.
+            going: court and match of each match that is not over. If it was over before, as after a
+                correction, its result is dropped.
         """
         before = tuple(self._known.values())
         for court, match in going:

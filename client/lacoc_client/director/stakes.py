@@ -1,4 +1,4 @@
-"""How much a match counts: what it is in its contest, as a weight. Pure."""
+"""How much a match counts, by what it is in its contest. Pure."""
 
 from lacoc_shared.words import Phrase
 
@@ -17,7 +17,7 @@ _WEIGHTS = {
 """By the code of the match in its contest; all others count as usual."""
 
 _LAST_GAME = 1.25
-"""What the last game of a match counts more: it decides the match."""
+"""Factor for the last game that a match can have: it often decides the match."""
 
 
 def stake(fixture: Phrase | None) -> float:

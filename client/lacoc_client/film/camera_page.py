@@ -1,4 +1,4 @@
-"""The film's page in a Chromium of its own: it is told a moment, and gives the picture of it."""
+"""The page /film in a Chromium of its own: it is told a moment, and gives the picture of it."""
 
 import base64
 from collections.abc import Iterator, Sequence
@@ -25,7 +25,7 @@ _SHOW = "(steps) => window.__film.show(steps)"
 
 
 class CameraPage:
-    """An open page; used by the thread that opened it.
+    """An open page; only the thread that opened it may use it.
 
     Args:
         page: the page of a record, loaded.
@@ -34,7 +34,9 @@ class CameraPage:
     def __init__(self, page: Page) -> None:
         self._page = page
         self._tools = page.context.new_cdp_session(page)
-        first, last, self.quality = page.evaluate(_OPEN)
+        first, last, quality = page.evaluate(_OPEN)
+        self.quality: str = quality
+        """How the page draws: "low" or "high", or "map" without WebGL."""
         self.first, self.last = int(first), int(last)
         """Where a replay of the record begins and ends, as beats."""
 

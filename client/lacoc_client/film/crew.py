@@ -50,7 +50,7 @@ class Drawing:
         return _got(self._ends)
 
     def begin(self, pictures: Sequence[Picture]) -> None:
-        """Begin to draw; to be called once."""
+        """Begin to draw; may be called once."""
         self._wanted.put(pictures)
 
     def next(self) -> bytes:
@@ -99,12 +99,16 @@ class Crew:
         self._drawings = drawings
 
     def ends(self) -> tuple[int, int]:
-        """Wait until all pages are open; return the first and the last beat of the replay."""
+        """Wait until all pages are open; return the first and the last beat of the replay.
+
+        Raises:
+            UserError: if a page can't be opened.
+        """
         *_, ends = [drawing.ends() for drawing in self._drawings]
         return ends
 
     def pictures(self, pictures: Sequence[Picture]) -> Iterator[bytes]:
-        """Yield pictures as PNG, in order; to be called once.
+        """Yield pictures as PNG, in order; may be called once.
 
         Raises:
             UserError: if one can't be drawn.

@@ -23,10 +23,10 @@ HIGHLIGHTS = 5
 REEL = 2
 """How many moments a reel has of each match."""
 _AFTER_BEATS = BEATS_PER_S // 2
-"""How long after its moment a still is."""
+"""How long after its moment a still is taken."""
 
 Progress = Callable[[int, int], None]
-"""Called with how many pictures are in the film, and how many of them are known to come."""
+"""Called with how many pictures the film has, and how many it will have after the current part."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Part:
     count: int | None = None
     """How many moments are shown; None: the whole match."""
     chosen: tuple[Moment, ...] = ()
-    """The moments to choose from; none: those in which the score changed."""
+    """The moments to choose from; empty: those in which the score changed."""
     opening: bool = False
     """Whether the card with the teams is shown first."""
 
@@ -60,7 +60,10 @@ class Part:
         return plan.highlights(best, first, last, opening=self.opening)
 
     def still(self, first: int, last: int) -> int:
-        """Return the beat of the match's still: just after its largest moment, else the middle."""
+        """Return the beat of the match's still: just after its largest moment.
+
+        Without a moment it is the middle of the match.
+        """
         best = moments.largest(self.moments, 1)
         beat = best[0].beat + _AFTER_BEATS if best else (first + last) // 2
         return min(last, max(first, beat))
@@ -107,7 +110,7 @@ def make(
 
 
 def still(one: Part, out: Path, look: Look) -> None:
-    """Write a picture of a record's largest moment as PNG; an older file of the name is kept.
+    """Write the still of a record as PNG; an older file of the name is kept under a number.
 
     Args:
         one: the record.
@@ -138,5 +141,5 @@ def _add(film: Movie, one: Part, look: Look, fps: int, browsers: int, progress: 
 
 
 def _way(beat: int, first: int) -> list[Picture]:
-    """Return the pictures that lead to a beat: so the automatic camera is where it is in a film."""
+    """Return the pictures of a shot that leads to a beat, so that the automatic camera can move."""
     return plan.pictures([Shot(max(first, beat - plan.RUN_UP_BEATS), beat)], BEATS_PER_S)

@@ -27,7 +27,7 @@ class Quality(StrEnum):
 
 @dataclass(frozen=True)
 class Look:
-    """Everything but the match that a picture depends on."""
+    """How a film looks: all that a picture depends on besides the match."""
 
     view: View = View.AUTO
     overlay: bool = False

@@ -1,6 +1,7 @@
 """The moments of a match that are worth showing, by the change of the score or from a file."""
 
 from collections.abc import Iterable, Sequence
+from itertools import groupby
 from pathlib import Path
 
 import msgspec
@@ -39,9 +40,10 @@ def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
 
 
 def by_score(record: Record) -> list[Moment]:
-    """Return the moments in which the score changed while play was on.
+    """Return the moments in which the score changed while the match was played.
 
-    A swing is by how many points the lead changed; with one seat, its points.
+    What a referee changes while the match is halted is no moment. A swing is by how many points the
+    lead changed; with one seat, how many points it got.
 
     Raises:
         UserError: if a frame of the record can't be read.
@@ -51,16 +53,26 @@ def by_score(record: Record) -> list[Moment]:
     except codec.BadMessage as error:
         match, told = record.header.match_id[:80], str(error)[:80]
         raise UserError(say("replay.damaged-copy", match=match, error=told)) from None
-    scores = [
-        (beat, [seat.score for seat in frame.seats])
-        for beat, frame in frames
-        if frame.phase == Phase.PLAYING
-    ]
-    return swings(scores)
+    return of_frames(frames)
+
+
+def of_frames(frames: Iterable[tuple[int, Frame]]) -> list[Moment]:
+    """Return the moments of frames; see `by_score`.
+
+    Args:
+        frames: the frames with their beats, in rising order.
+    """
+    found: list[Moment] = []
+    for phase, played in groupby(frames, key=lambda one: one[1].phase):
+        if phase == Phase.PLAYING:
+            found += swings(
+                [(beat, [seat.score for seat in frame.seats]) for beat, frame in played]
+            )
+    return found
 
 
 def swings(scores: Sequence[tuple[int, Sequence[int]]]) -> list[Moment]:
-    """Return the moments in which the lead changed.
+    """Return the moments in which the lead grew or shrank.
 
     Args:
         scores: beats in rising order, each with the points by seat.
@@ -86,9 +98,8 @@ def from_file(path: Path) -> list[Moment]:
     """
     try:
         if path.stat().st_size > _LARGEST_BYTES:
-            raise UserError(
-                say("film.bad-moments", file=str(path), error="too large", example=_EXAMPLE)
-            )
+            most_mib = _LARGEST_BYTES >> 20
+            raise UserError(say("film.moments-too-large", file=str(path), most_mib=most_mib))
         return msgspec.json.decode(path.read_bytes(), type=_File).moments
     except OSError as error:
         why = error.strerror or str(error)

@@ -18,7 +18,7 @@ from lacoc_shared.words import say
 _CODEC = "libx264"
 _OPTIONS = {"preset": "veryfast", "crf": "20"}
 _THREADS = 4
-"""The number of threads changes the bits of a film, so it does not depend on the machine."""
+"""The number of threads changes the bits of a film, so it is the same on every machine."""
 _BT709 = 1
 
 
@@ -52,7 +52,7 @@ class Movie:
         Raises:
             OSError: if the file can't be written.
         """
-        # A new decoder each time: one adds a picture to those before, as in an animation.
+        # A new decoder each time: one decoder draws a picture over those before, for animations.
         (picture,) = av.CodecContext.create("png", "r").decode(av.Packet(png))
         frame = picture.reformat(
             format="yuv420p", dst_colorspace=Colorspace.ITU709, dst_color_range=ColorRange.MPEG
@@ -72,7 +72,7 @@ class Movie:
 def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
     """Open a film for writing; when the block ends, it is at its place.
 
-    If the block fails, or the program is killed, there is nothing under the film's name; an older
+    If the block fails, or the program is killed, no new file gets the film's name, and an older
     file of this name stays. When the film is whole, an older file is kept under a numbered name.
 
     Args:

@@ -17,7 +17,7 @@ _NEEDED = (Kind.LINK, Kind.SHEET, Kind.SCENE)
 
 
 class _Link(msgspec.Struct):
-    """The fields of a link message that say what holds of earlier messages."""
+    """The fields of a link message that say which earlier messages still count."""
 
     connected: bool
     log: int
@@ -32,11 +32,11 @@ class _Way(Enum):
 
 
 class LateFeed:
-    """Passes on what a court's feed sends, each message so much later; a listener of the feed.
+    """Passes on what a court's feed sends, each message later by a fixed time.
 
     Args:
         feed: the court.
-        behind_s: how much later [s].
+        behind_s: how much later messages are passed on [s].
     """
 
     def __init__(self, feed: CourtFeed, behind_s: float) -> None:
@@ -46,7 +46,7 @@ class LateFeed:
         self._behind_s = behind_s
         self._waiting: deque[tuple[float, _Way, bytes]] = deque()
         self._newest: dict[Kind, bytes] = {}
-        """What a page that comes now needs, by kind, besides the events."""
+        """The messages besides the events that a page needs when it comes, by kind."""
         self._events: dict[bytes, None] = {}
         self._log = 0
         feed.tap(self)
@@ -64,7 +64,7 @@ class LateFeed:
         self._waiting.append((now_s, _Way.OFFERED, framed))
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page watch; send it everything that was known then."""
+        """Let a page watch; send it everything that was known `behind_s` ago."""
         kept = self._newest
         messages = [kept[kind] for kind in _NEEDED if kind in kept] + [*self._events]
         messages += [kept[kind] for kind in (Kind.HEALTH, Kind.FRAME) if kind in kept]

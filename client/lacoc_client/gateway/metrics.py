@@ -45,6 +45,8 @@ class GatewayMetrics(Collector):
             sent.add_metric(court, sum(one.sent for one in frames))
             dropped.add_metric(court, sum(one.dropped for one in frames))
         yield from (connected, viewers, sent, dropped)
-        full = CounterMetricFamily("lacoc_gateway_sent_away", "Pages that were too many.")
+        full = CounterMetricFamily(
+            "lacoc_gateway_sent_away", "Pages that were refused because there were too many."
+        )
         full.add_metric([], self._courts.sent_away)
         yield full

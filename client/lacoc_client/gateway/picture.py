@@ -104,7 +104,7 @@ class CourtPicture:
         return FramePart(frame.match, phase, frame.clock_ticks, scores)
 
     def played(self) -> SheetPart | None:
-        """Read what is played; None if there is no sheet of the newest frame, or it is damaged."""
+        """Read what is played; None if the newest frame's match has no sheet yet, or a bad one."""
         sheet, frame = self.view.sheet, self._newest
         if sheet is None or frame is None:
             return None

@@ -1,4 +1,4 @@
-"""Shows every page that follows the director the same court, and cuts when it does."""
+"""Shows the court that the director chooses to all pages that follow it."""
 
 import asyncio
 import math
@@ -23,10 +23,10 @@ _LOOKS = 5
 
 
 class Programme:
-    """What is on air; used from the event loop only.
+    """What is on air; used from the event loop only, except `audience`.
 
-    It begins with the first page that follows the director, and goes on until the gateway ends. All
-    is shown `AHEAD_S` later than it is played, unless there is only one court.
+    It begins with the first page that follows the director, and goes on until the gateway ends.
+    Everything is shown `AHEAD_S` later than it is played, unless there is only one court.
 
     Args:
         feeds: returns the feeds of all courts, started; at least one.
@@ -59,7 +59,10 @@ class Programme:
             self._late[self._on_air].audience.remove(viewer)
 
     def audience(self, court: str) -> Audience | None:
-        """Return the pages that follow while this court is on air; None: it never was."""
+        """Return the pages to which this court is shown late; None: it has no late feed yet.
+
+        Any thread may call it.
+        """
         late = self._late.get(court)
         return None if late is None else late.audience
 
@@ -68,7 +71,7 @@ class Programme:
         return sum(late.audience.others(viewer) for late in list(self._late.values()))
 
     def stop(self) -> None:
-        """End."""
+        """Stop choosing courts and passing messages on."""
         if self._running is not None:
             self._running.cancel()
 
@@ -93,7 +96,7 @@ class Programme:
                 self._look(now_s)
 
     def _look(self, now_s: float) -> None:
-        """Let the director look at all courts, and cut if it does."""
+        """Let the director look at all courts, and show what it chooses."""
         courts: list[CourtNow] = []
         over: list[Result] = []
         for feed in self._feeds():
@@ -111,7 +114,7 @@ class Programme:
         self._tell(now_s, self._on_air if shot is None else shot.court, shot and shot.why)
 
     def _tell(self, now_s: float, court: str, why: str | None) -> None:
-        """Tell the pages what is on air, if it has changed; and cut."""
+        """Tell the pages what is on air, if that has changed, and show them the court."""
         body = {
             "court": court,
             "why": why or "first",
@@ -140,6 +143,7 @@ def _now(name: str, stands: FramePart, played: SheetPart) -> CourtNow:
         left_s=left_s,
         scores=stands.scores,
         stake=stake(played.fixture if played.call else None),
+        has_begun=stands.clock_ticks > 0,
     )
 
 

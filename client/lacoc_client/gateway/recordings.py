@@ -76,7 +76,7 @@ class Recordings:
         return self._paths().get(name)
 
     def odds(self, name: str) -> bytes | None:
-        """Read the odds of a recording; None if they were not computed."""
+        """Read the odds of a recording; None if there are none, or their file is too large."""
         if self._folder is None or self.find(name) is None:
             return None
         path = files.odds_path(self._folder / name, name.removesuffix(_RECORDING))

@@ -18,8 +18,9 @@ class CourtScore(msgspec.Struct, frozen=True, kw_only=True):
     """Id of the call whose match the court has; "": none."""
     phase: int
     clock_s: float
-    """Used time."""
+    """How long the match has been played [s]."""
     duration_s: float
+    """Length of the match [s]; 0: it has no time limit."""
     scores: tuple[int, ...]
     """Points by seat."""
 

@@ -1,5 +1,5 @@
-"""The pages of a contest's organiser and of teams that enter: requests go to the office's desk.
+"""The pages /office and /enter: their requests go to the desk of the contest's office.
 
-`desk` is the way to the office, `links` makes a team's link and its QR code, `desk_page` is one
-page's connection, `site` has the paths. Nothing here decides: the desk looks at each secret.
+`desk` is the connection to the desk, `links` makes a team's link and its QR code, `desk_page` is
+one page's connection, `site` has the paths. Secrets are checked by the desk, not here.
 """

@@ -1,4 +1,4 @@
-"""The way to the desk of a contest's office."""
+"""The connection to the desk of a contest's office."""
 
 import asyncio
 import threading
@@ -19,7 +19,7 @@ from lacoc_shared.words import say
 
 _THREADS = 8
 _ANSWER_S = 30.0
-"""Longest wait for an answer: files are weighed in first, and others' before them."""
+"""Longest wait for an answer [s]: the desk first weighs in the files, after those sent before."""
 _COMING_BACK_S, _AGAIN_S = 1.0, 0.05
 
 
@@ -37,12 +37,12 @@ class DeskLine:
         self._opening = threading.Lock()
 
     async def ask(self, request: bytes) -> bytes:
-        """Send a request; return the answer.
+        """Send a request, and return the answer.
 
         Raises:
             FileRefused: if the desk found mistakes in files.
             NotNow: if the office is not there, or has too much to do.
-            NoAnswer: if the desk was asked and does not answer.
+            NoAnswer: if the desk got the request and does not answer in time.
             UserError: if the desk refuses.
         """
         return await self._threads.run(lambda: self._ask(request))

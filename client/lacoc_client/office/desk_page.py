@@ -21,11 +21,11 @@ from lacoc_shared.words import say
 
 _ASKS_HZ, _ASKS_BURST = 20.0, 60
 _WRONG = ("desk.wrong-code", "desk.no-such-team", "desk.not-organiser", "desk.slower")
-"""Refusals of a secret."""
+"""Codes with which the desk refuses a secret."""
 
 
 class DeskAsk(Ask, frozen=True, kw_only=True, tag="desk"):
-    """Pass a request on to the desk, and its answer back."""
+    """Pass a request on to the desk; the reply is the desk's answer."""
 
     request: msgspec.Raw
 
@@ -37,11 +37,11 @@ class LinkAsk(Ask, frozen=True, kw_only=True, tag="link"):
 
 
 class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
-    """Ask for the links of teams, with the organiser's key."""
+    """Ask for the links of teams; the secret is the organiser's key."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)]
     team: Annotated[str, msgspec.Meta(max_length=64)] = ""
-    """The only team that is wanted; "": all."""
+    """The team whose link is wanted; "": all teams."""
 
 
 Asked = DeskAsk | LinkAsk | LinksAsk | Ping
@@ -70,7 +70,7 @@ class DeskPage:
         desk: the way to the desk.
         guesses: slows down whoever shows wrong secrets.
         key: the gateway's page key.
-        address: address of the pages for everybody.
+        address: address of the pages, as other machines can open it.
     """
 
     def __init__(

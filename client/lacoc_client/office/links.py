@@ -1,4 +1,4 @@
-"""The one link of a team for the whole event, and its QR code; pure."""
+"""A team's link for the whole event, and its QR code; pure."""
 
 import io
 from functools import lru_cache
@@ -8,7 +8,7 @@ import msgspec
 import segno
 
 _BORDER = 4
-"""White edge, in modules: scanners need it."""
+"""Width of the white edge that scanners need, in squares of the code."""
 
 
 class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
@@ -21,7 +21,7 @@ class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TeamLinks(msgspec.Struct, frozen=True, kw_only=True):
-    """The links of all teams, and the address at which teams enter."""
+    """Links of teams, and the address at which teams enter."""
 
     enter: str
     enter_qr: str

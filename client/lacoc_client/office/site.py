@@ -1,4 +1,4 @@
-"""The paths of an organiser's page and of the page on which teams enter."""
+"""The paths of the organiser's page /office and of /enter, on which teams enter."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from lacoc_client.office.desk_page import DeskPage
 from lacoc_shared.messages.desk import DESK_MAX_BYTES
 
 DESK_BYTES = DESK_MAX_BYTES + 1024
-"""Longest message of a page."""
+"""Longest message of a page [bytes]."""
 
 
 class DeskSite:
@@ -20,7 +20,7 @@ class DeskSite:
     Args:
         desk: address of the office's desk.
         key: the gateway's page key.
-        address: address of the pages for everybody.
+        address: address of the pages, as other machines can open it.
     """
 
     paths: Sequence[str] = ("/office", "/enter")

@@ -70,7 +70,7 @@ def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
 
 @dataclass(frozen=True)
 class Different:
-    """A rule that one group must have a number of different things, as one leg six postures."""
+    """A rule that one group must have a number of different things, such as a leg six postures."""
 
     things: Callable[[Evidence], Iterable[tuple[Hashable, Hashable]]]
     """Takes a piece of evidence; returns its pairs of a group and a thing."""

@@ -35,7 +35,8 @@ def frame_dict(frame: Frame, sheet: Sheet) -> dict[str, Any]:
 
     Returns:
         Its values by name; lengths in metres, times in seconds, angles in degrees. `poses` is empty
-        while there are no robots, and if the sheet belongs to another scene.
+        while there are no robots, and if the sheet belongs to another scene. `markers` is empty if
+        the frame has too few.
     """
     used_s = frame.clock_ticks * BEAT_S
     return {

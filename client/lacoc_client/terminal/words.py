@@ -22,7 +22,7 @@ def clock(ticks: int) -> str:
 
 
 def match_clock(frame: Frame, sheet: Sheet) -> str:
-    """Format the time left, or the time played if the match has no end."""
+    """Format the time left, or the time played if the match has no time limit."""
     return clock(_shown_ticks(frame.clock_ticks, sheet))
 
 
@@ -32,7 +32,7 @@ def event_clock(event: Event, sheet: Sheet) -> str:
 
 
 def _shown_ticks(clock_ticks: int, sheet: Sheet) -> int:
-    """Return the ticks left, or the ticks played if the match has no end."""
+    """Return the ticks left, or the ticks played if the match has no time limit."""
     lasts = round(sheet.duration_s * BEATS_PER_S)
     return lasts - clock_ticks if lasts else clock_ticks
 

@@ -58,7 +58,7 @@ test("a projector's numbers stay, and are never given to somebody else", () => {
   assert.deepEqual(c.numbered(left, ["bob", "cem", "ann"]), ["", "bob", "cem", "ann"]);
 });
 
-test("names in a text are hidden, whatever they are written in", () => {
+test("names in a text are hidden, in any script", () => {
   const label = (index) => `Robot ${index + 1}`;
   const cases = [
     ["Ann's table", ["Ann"], "Robot 1's table"],

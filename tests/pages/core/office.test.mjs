@@ -30,7 +30,7 @@ test("a column has what its court plays, and then what it will play", () => {
   assert.deepEqual(south, { court: "south", here: false, slots: [third] });
 });
 
-test("a match that is dropped on another comes before it, unless that one runs", () => {
+test("a match that is dropped on another comes before it, unless that one is at a court", () => {
   const wish = { do: "move", pairing: "s:a1.3", court: "north", not_before_ms: 0 };
   assert.deepEqual(dropped(third, "north", second), { ...wish, before: "s:a1.2" });
   assert.deepEqual(dropped(third, "north", first), { ...wish, before: "" });

@@ -43,10 +43,12 @@ test("what an office assigned is named beside the game, and that a court waits f
   assert.equal(played({ ...game, call: "c1", fixture: final }), "Final · Robot-Othello");
   assert.equal(played({ ...game, fixture: waiting }), "Robot-Othello");
   const frame = { value: { phase: 1, seats: [{ flags: 0 }, { flags: 0 }] } };
-  const said = (fixture) =>
-    hint({ frame, sheet: { value: { ...game, fixture } }, events: { value: [] } });
+  const said = (fixture, sheet = game) =>
+    hint({ frame, sheet: { value: { ...sheet, fixture } }, events: { value: [] } });
   assert.equal(said(waiting), "Waiting for the next match");
   assert.equal(said(null), "Waiting for Ants to join");
+  const empty = { ...game, seats: [{ id: "left", team: "" }, seat("Bees")] };
+  assert.equal(said(null, empty), "Waiting for the left seat to join");
 });
 
 test("who leads is told without a verb that depends on the name", () => {

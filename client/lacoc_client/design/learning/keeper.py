@@ -33,7 +33,8 @@ class Keeper:
         if self._store is None and self._refused is None:
             if self._opening is None:
                 self._opening = asyncio.get_running_loop().create_task(self._open())
-            # The page that asks first may go. Its file would then be open, and nobody would know.
+            # If the page that asked first goes, its request is cancelled. The opening must go
+            # on, or the file would be open without being known here.
             await asyncio.shield(self._opening)
         return self._store
 

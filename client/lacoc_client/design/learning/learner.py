@@ -61,7 +61,7 @@ class Learner:
 
     Args:
         student: the student whose page it is.
-        sample: repeats a trial with the sample gait; returns None if the robot has no sample.
+        sample: repeats a trial with the sample gait; returns None if no sample fits the robot.
     """
 
     def __init__(

@@ -20,9 +20,8 @@ def replace_file(path: Path, data: bytes) -> None:
     target = path.resolve()
     written = target.with_name(f".lacoc-{secrets.token_hex(8)}.tmp")
     try:
-        if target.exists() and not os.access(
-            target, os.W_OK
-        ):  # `os.replace` would replace a read-only file
+        # `os.replace` would replace a read-only file.
+        if target.exists() and not os.access(target, os.W_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         with written.open("xb") as file:
             file.write(data)

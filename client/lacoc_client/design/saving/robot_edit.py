@@ -87,7 +87,7 @@ def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
         value: the number, in the file's unit. Whether a robot may have it is not checked here.
 
     Raises:
-        UserError: if the text is no TOML, or has no place for the number.
+        UserError: if the text is no TOML, has no place for the number, or the number is not finite.
     """
     place = _PLACES[entry]
     if not math.isfinite(value):

@@ -147,7 +147,7 @@ class StudioDesk:
         listening = await asker.progress(job, tell)
         self._jobs[job] = asker
         try:
-            # The studio refuses a time that is too long, or no number; its refusal must come.
+            # The studio itself refuses a time that is too long or not a number; wait for that.
             search_s = seconds if 0 <= seconds <= _COACH_MOST_S else 0.0
             timeout_s = search_s + _COACH_MORE_S
             return msgspec.Raw((await asker.ask(what, request, reply, timeout_s))[1])

@@ -1,4 +1,4 @@
-/** The way to the desk of a contest's office: the gateway passes requests on. */
+/** The connection to the desk of a contest's office; the gateway passes requests on. */
 
 import { socketUrl } from "./address";
 import { Connection } from "./connection";
@@ -26,7 +26,7 @@ export class Desk {
   }
 }
 
-/** A picture of a gateway's own, such as a QR code, as the address of an image. */
+/** An SVG picture that the gateway made, such as a QR code, as the address of an image. */
 export function pictureUrl(svg: string): string {
   return `data:image/svg+xml;utf8,${encodeURIComponent(svg)}`;
 }

@@ -1,4 +1,4 @@
-/** Files that one page hands on to another site's: in the fragment, which no server gets to see. */
+/** Files that a page hands on to another site's page, in the fragment: no server receives that. */
 
 import { fromBase64, SLOTS, type Slot, toBase64 } from "./files";
 import type { SentFile } from "./wire";
@@ -7,7 +7,7 @@ export type GivenFiles = Record<Slot, SentFile | null>;
 
 const NAME = "files";
 
-/** The page on which teams enter the contest at an address; "": that is no address. */
+/** The address of /enter at the site of a typed address; "": what was typed is no address. */
 export function enterPage(address: string): string {
   const typed = address.trim();
   if (!typed) return "";
@@ -28,7 +28,7 @@ export function filesFragment(files: GivenFiles): string {
   return `${NAME}=${encodeURIComponent(JSON.stringify(kept))}`;
 }
 
-/** The files of a fragment; null: it has none. */
+/** The files of a fragment; null: it has none, or they can't be read. */
 export function filesOf(hash: string): GivenFiles | null {
   const text = new URLSearchParams(hash.replace(/^#/, "")).get(NAME);
   if (!text) return null;

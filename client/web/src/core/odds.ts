@@ -14,7 +14,7 @@ export interface Odds {
   moments: readonly Moment[];
 }
 
-/** A stretch of a match in which the odds changed. */
+/** Two moments, one after the other, between which the odds changed. */
 export interface Swing {
   before: Moment;
   after: Moment;
@@ -24,7 +24,7 @@ export interface Swing {
 
 const FORMAT = 1;
 
-/** Read the file of a match's odds; null: it has another form, or is of another match. */
+/** Read the odds of a match; null: another form, another match, or fewer than two moments. */
 export function readOdds(data: unknown, matchId: string): Odds | null {
   if (!isObject(data) || data.format !== FORMAT || data.match_id !== matchId) return null;
   if (!Array.isArray(data.moments) || data.moments.length < 2) return null;
@@ -43,7 +43,12 @@ export function chanceAt({ moments }: Odds, beat: number): number {
   return before.chance + part * (after.chance - before.chance);
 }
 
-/** The stretches in which the odds changed most, the largest change first. */
+/**
+ * The moments between which the odds changed most, the largest change first.
+ *
+ * @param most Most of them that are returned.
+ * @param least Smallest change of the chance that counts.
+ */
 export function highlights({ moments }: Odds, most = 8, least = 0.05): Swing[] {
   return moments
     .slice(1)

@@ -1,8 +1,8 @@
-/** The organiser's timetable: which match is where, and what dropping one on another means. Pure. */
+/** The organiser's timetable: the matches of each court, and what a drop asks for. Pure. */
 
 import type { Move, OfficeView, Slot } from "./desk.gen";
 
-/** A court with what is played there, in the order of time. */
+/** A court with its matches: the one that is at the court, then the others in the order of time. */
 export interface Column {
   court: string;
   here: boolean;
@@ -28,16 +28,16 @@ export function canMove(slot: Slot): boolean {
 }
 
 /**
- * What it asks for to drop a match.
+ * The request for a match that was dropped.
  *
  * @param slot The match.
  * @param court Where it was dropped.
- * @param on The match on which it was dropped; null: below all others.
+ * @param on The match before which it was dropped; null: it was dropped on no match.
  * @returns The request; null if it changes nothing.
  */
 export function dropped(slot: Slot, court: string, on: Slot | null): Omit<Move, "secret"> | null {
   if (!canMove(slot) || on?.pairing === slot.pairing) return null;
-  // A match that runs can't come later: what is dropped on it comes after it, as the first.
+  // Nothing comes before a match that runs: what is dropped on it has its usual place at the court.
   const before = on && !on.running ? on.pairing : "";
   if (!before && court === slot.court && !slot.moved) return null;
   return {

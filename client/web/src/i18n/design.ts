@@ -10,7 +10,7 @@ export const design = {
   "design.join.go": ["Join", "入る"],
   "design.join.kept": [
     "Do not use your real name. What you do is kept under your nickname on your teacher's computer.",
-    "本名は使わないでください。作ったものは、ニックネームとともに先生のコンピューターに保存されます。",
+    "本名は使わないでください。作ったものは、ニックネームとともに先生のパソコンに保存されます。",
   ],
   "design.class.kept": ["everything is kept", "すべて保存済み"],
   "design.class.notKept": ["not kept yet", "まだ保存されていません"],
@@ -404,14 +404,14 @@ export const design = {
   ],
   "design.map.axes": [
     "To the right: speed, from [mm/s]. Upward: arousal, the height of the feet over the period, from [mm/s]. The frame is your gait's cell.",
-    "右へ：速さの下限［mm/秒］。上へ：覚醒度（足の高さ ÷ 周期）の下限［mm/秒］。枠は自分の歩容のマスです。",
+    "右へ：速さの下限［mm/秒］。上へ：活発さ（足の高さ ÷ 周期）の下限［mm/秒］。枠は自分の歩容のマスです。",
   ],
-  "design.map.arousal": ["arousal", "覚醒度"],
+  "design.map.arousal": ["arousal", "活発さ"],
   "design.map.calm": ["calm", "穏やか"],
   "design.map.excited": ["excited", "活発"],
   "design.map.place": [
     "speed from {speed}, arousal from {arousal}",
-    "速さ {speed} から、覚醒度 {arousal} から",
+    "速さ {speed} から、活発さ {arousal} から",
   ],
   "design.map.none": ["no gait was found here", "ここには歩容が見つかっていません"],
   "design.map.own": ["your gait's cell", "自分の歩容のマス"],

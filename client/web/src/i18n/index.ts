@@ -1,4 +1,4 @@
-/** Messages in the reader's language; every message stands in all languages, side by side. */
+/** Messages in the reader's language; each message has its texts in all languages side by side. */
 
 import { computed } from "@preact/signals";
 import { setting } from "../core/address";
@@ -32,7 +32,7 @@ export const catalogue = {
 };
 export type MessageName = keyof typeof catalogue;
 
-/** What was chosen; "" follows the browser. */
+/** The language that the reader chose; "": as the browser has it. */
 export const chosen = remembered<Language | "">("language", "");
 
 export const language = computed<Language>(() => {
@@ -43,18 +43,18 @@ export const language = computed<Language>(() => {
   return "en";
 });
 
-/** A message, with what belongs into its {holes}. */
+/** A message, with values in place of its {holes}. */
 export function t(name: MessageName, holes: Record<string, string | number> = {}): string {
   const text = catalogue[name][language.value === "ja" ? 1 : 0];
   return text.replace(/\{(\w+)\}/g, (hole, key: string) => String(holes[key] ?? hole));
 }
 
-/** What a court or a gateway says, in words; a text of an old record stays as it is. */
+/** A phrase of a court or a gateway in words; a plain text of an old record stays as it is. */
 export function said(what: Phrase | string): string {
   return render(what, language.value);
 }
 
-/** The same as a sentence that stands alone: reasons begin small and have no full stop. */
+/** The same as a whole sentence: with a capital letter and a full stop, which reasons lack. */
 export function sentence(what: Phrase | string): string {
   const text = said(what);
   const begun = text.charAt(0).toUpperCase() + text.slice(1);

@@ -85,7 +85,7 @@ export const play = {
   "files.postures": ["Level A: postures", "レベル A：姿勢"],
   "files.locomotion": ["Level B: locomotion", "レベル B：移動動作"],
   "files.contests": ["the contest's", "大会標準"],
-  "files.sample": ["the sample", "サンプル"],
+  "files.sample": ["the sample", "見本"],
   "files.none": ["none", "なし"],
   "files.given": ["(from this computer's folder)", "（このパソコンのフォルダーから）"],
   "files.made": ["made from {name}", "{name} から作成"],
@@ -96,7 +96,7 @@ export const play = {
   ],
   "files.sequence": ["Postures of key {digit}", "キー {digit} の姿勢"],
   "files.newKey": ["another key", "キーを追加"],
-  "files.sampleSequences": ["Back to the sample", "サンプルに戻す"],
+  "files.sampleSequences": ["Back to the sample", "見本に戻す"],
   "files.changed": ["On your disk, {names} has changed.", "{names} が変更されました。"],
   "files.changedWrong": [
     "On your disk, {names} has changed and can't be used.",

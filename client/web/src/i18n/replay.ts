@@ -35,7 +35,7 @@ export const replay = {
   "replay.shared": ["The address of this moment is copied", "この場面の URL をコピーしました"],
   "replay.notShared": [
     "Recordings on this machine have no address: give others the file",
-    "この端末のファイルには URL がありません。共有するにはファイルを渡してください",
+    "この端末のファイルには URL がありません。ほかの人に見せるには、ファイルを渡してください",
   ],
   "replay.transport": ["Playback", "再生操作"],
   "replay.noteCut": [
@@ -62,8 +62,8 @@ export const replay = {
   "odds.title": ["Odds", "勝率"],
   "odds.now": ["{first} : {second} %", "{first} : {second} %"],
   "odds.about": [
-    "What the position is worth: the chance to win if two equal bots took over here",
-    "局面の価値：ここから同じ強さのボット 2 台が引き継いだ場合の勝率",
+    "The chance to win if bots took over both robots here: what the position is worth, not who plays better",
+    "ここからボットが両方のロボットを引き継いだ場合の勝率です。局面の価値を表し、操作のうまさは表しません",
   ],
   "odds.curve": ["Odds over the match, left above, right below", "試合中の勝率（上が左、下が右）"],
   "odds.highlights": ["Highlights", "ハイライト"],

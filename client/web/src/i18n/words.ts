@@ -6,7 +6,7 @@ import { type MessageName, said, t } from "./index";
 
 export { BEATS_PER_S };
 
-/** A time of the clock, "2:05": the second that has begun counts. */
+/** A time of the clock, rounded up to a second: "2:05". */
 export function clock(ticks: number): string {
   const seconds = Math.ceil(Math.max(0, ticks) / BEATS_PER_S);
   return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
@@ -19,7 +19,7 @@ export function logClock(ticks: number): string {
   return `${Math.floor(tenths / 600)}:${seconds}`;
 }
 
-/** Ticks that are left at a frame or an event, or were played where a match has no end. */
+/** Ticks left at a frame or an event; in a match without a time limit, ticks played. */
 export function clockTicks({ clock_ticks }: { clock_ticks: number }, sheet: Sheet): number {
   const lasts = Math.round(sheet.duration_s * BEATS_PER_S);
   return lasts ? lasts - clock_ticks : clock_ticks;
@@ -30,7 +30,7 @@ export function eventClock(event: Event, sheet: Sheet | null): string {
   return sheet ? logClock(clockTicks(event, sheet)) : "";
 }
 
-/** A team's name; its seat's where nobody has joined. */
+/** The name of a seat's team; the seat's name while it has no team. */
 export function team(sheet: Sheet, index: number): string {
   const seat = sheet.seats[index];
   return seat ? seat.team || seatName(seat.id) : "";
@@ -46,14 +46,14 @@ export function seatName(id: string): string {
   return id === "left" || id === "right" || id === "solo" ? t(`seat.${id}`) : id;
 }
 
-/** A marker as one says it: "corner 2". */
+/** A marker in words: "corner 2". */
 export function markerName(name: string): string {
   const [, kind, number] = /^(corner|flag)(\d+)$/.exec(name) ?? [];
   if (kind) return t(`marker.${kind}` as MessageName, { number: number! });
   return /^c\d+r\d+$/.test(name) ? t("marker.disc", { name }) : name;
 }
 
-/** Why a seat's keys do nothing now, or that it is not heard; "" if all is well or play is over. */
+/** Why a seat's keys do nothing now, or that it is silent; "" if all is well or play is over. */
 export function seatState(frame: Frame, index: number): string {
   const seat = frame.seats[index];
   if (!seat || frame.phase >= Phase.FINISHED) return "";
@@ -70,7 +70,7 @@ export function leader(frame: Frame): { index: number; points: number } | null {
   return { index: left > right ? 0 : 1, points: Math.abs(left - right) };
 }
 
-/** What the phase means for those who look on, and what comes next. */
+/** What the phase means for spectators, and what comes next. */
 export function hint(match: Match): string {
   const frame = match.frame.value;
   const sheet = match.sheet.value;
@@ -101,7 +101,7 @@ export function hint(match: Match): string {
   }
 }
 
-/** Who has won, by the newest word on it: the referee's, else the rules'; "" while open. */
+/** Who has won, in words: by the referee's declaration, else by the rules; "" while it is open. */
 export function outcome(match: Match): string {
   const sheet = match.sheet.value;
   const winner = winnerOf(match);
@@ -111,7 +111,7 @@ export function outcome(match: Match): string {
   return t("hint.wins", { team: team(sheet, index) });
 }
 
-/** The winner's seat id or "draw", the referee's word before the rules'; null while it is open. */
+/** The winner's seat id or "draw", by the referee's declaration, else by the rules; null: open. */
 export function winnerOf(match: Match): string | null {
   const events = match.events.value;
   const declared = events.findLast(({ data }) => data.decision === "declare")?.data.arguments;
@@ -128,7 +128,12 @@ export function byRules(events: readonly Event[]): string | null {
 function missing(frame: Frame, sheet: Sheet): string {
   for (const [index, seat] of frame.seats.entries()) {
     const name = team(sheet, index);
-    if (!(seat.flags & SeatFlag.JOINED)) return t("hint.joining", { seat: name });
+    if (!(seat.flags & SeatFlag.JOINED)) {
+      const { team: assigned, id } = sheet.seats[index]!;
+      return assigned
+        ? t("hint.joining", { team: assigned })
+        : t("hint.joiningSeat", { seat: seatName(id) });
+    }
     if (!(seat.flags & SeatFlag.READY)) return t("hint.notReady", { team: name });
   }
   return t("hint.opens");

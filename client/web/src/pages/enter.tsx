@@ -1,4 +1,4 @@
-/** A team enters: the event's code, its name, its files; later its link shows how it stands. */
+/** A team enters with event code, name and files; then the page shows its state and its link. */
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";

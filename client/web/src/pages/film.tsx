@@ -1,8 +1,8 @@
 /**
- * A recording for `lacoc film`: it shows exactly the moment that it is told, and then stands still.
+ * A recording for `lacoc film`: the page shows exactly the moment that it is told, and then waits.
  *
  * Nothing here depends on the time of day or on this machine's speed: there is no animation, and
- * views draw when the shutter says so. `window.__film` is all that the film's program uses.
+ * views draw when the shutter says so. `lacoc film` uses only `window.__film`.
  */
 
 import { signal } from "@preact/signals";
@@ -24,13 +24,13 @@ interface Step {
   cut: boolean;
 }
 
-/** What the film's program does with the page. */
+/** What `lacoc film` does with the page. */
 interface Film {
   /** The first and the last beat of the recording, once it is open and can be drawn. */
   open(): Promise<[number, number]>;
   /** Go through some pictures in order; the last one is drawn when it resolves. */
   show(steps: Step[]): Promise<void>;
-  /** What is used for drawing: "low" or "high", or "map" without WebGL. */
+  /** How the page draws: "low" or "high", or "map" without WebGL. */
   quality(): string;
 }
 
@@ -69,7 +69,7 @@ window.__film = {
   async show(steps) {
     for (const [index, { beat, cut }] of steps.entries()) {
       recording.value?.seek(beat);
-      // The page's parts follow a signal in a microtask; cameras look at what they made of it.
+      // The page's parts follow the recording in a microtask; the cameras need what they have made.
       await turn();
       if (cut) shutter.cut();
       shutter.expose(beat * MS_PER_BEAT, index === steps.length - 1);
@@ -88,7 +88,7 @@ const channel = new MessageChannel();
 const turns: (() => void)[] = [];
 channel.port1.onmessage = () => turns.shift()?.();
 
-/** Resolves when all that is due in this turn of the event loop is done; no timer delays it. */
+/** Resolves in the next turn of the event loop, after all microtasks; no timer delays it. */
 function turn(): Promise<void> {
   return new Promise((resolve) => {
     turns.push(resolve);

@@ -63,7 +63,12 @@ effect(() => {
   window.__replay = now.is === "open" ? now.player : undefined;
 });
 
-/** @param get Gets the files; is told how to ask whether they are still wanted. */
+/**
+ * Open a recording and show it; without a beat it plays from its beginning.
+ *
+ * @param get Gets the files; its argument tells whether they are still wanted.
+ * @param server Name of the recording on the server; null: it is from this machine.
+ */
 async function show(
   get: (fresh: () => boolean) => Promise<RecordFile[]>,
   server: string | null,
@@ -86,6 +91,7 @@ async function show(
     state.value = { is: "open", player, server };
     if (server !== null) {
       const odds = await oddsOf(server, recording.record.header.match_id).catch(() => null);
+      if (!fresh()) return;
       player.odds.value = odds;
     }
     if (beat === null) player.play();
@@ -97,7 +103,7 @@ async function show(
   }
 }
 
-/** Show the match that a fork goes on from beside it, at the same beat; or put it away. */
+/** Show the origin of a fork beside it, at the same beat; or take it away again. */
 async function showBeside(player: Player): Promise<void> {
   const { origin } = player.recording.record.header.setup;
   if (player.beside.value || !origin) {
@@ -290,7 +296,7 @@ function Transport({ player }: { player: Player }) {
   );
 }
 
-/** Apart from its neighbours, as it is drawn anew with each beat. */
+/** A component of its own, because it is drawn again at each beat. */
 function Position({ recording }: { recording: Recording }) {
   const { firstBeat, lastBeat } = recording;
   const beat = useComputed(() => Math.floor(recording.beat.value)).value;

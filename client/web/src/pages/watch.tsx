@@ -1,4 +1,4 @@
-/** The spectators' page: the match as on television, and nothing that one could break. */
+/** The spectators' page: the match as a broadcast shows it; nothing here changes the match. */
 
 import { computed, signal } from "@preact/signals";
 import { amount, flag, goToCourt, setting } from "../core/address";
@@ -26,7 +26,7 @@ import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 
 const WIDE_PX = 1280;
-/** Among the names of courts, which are never empty. */
+/** Stands for the director in the list of courts, whose names are never empty. */
 const DIRECTOR = "";
 
 const court = new Court(
@@ -40,7 +40,7 @@ const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const number = part(court, (frame) => frame.match, null as number | null);
 /** The match that is shown, also where the director cuts from court to court. */
 const shownMatch = computed(() => `${court.programme.value?.court ?? ""}/${number.value}`);
-/** The match whose result was put away. */
+/** The match whose result card was closed. */
 const putAway = signal("");
 /** After the end of a match its last picture does not count as old. */
 const isStale = computed(() => court.begun.value && !court.live.value && !isOver(court));

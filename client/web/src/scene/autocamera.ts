@@ -8,12 +8,13 @@
 import { Phase } from "../core/wire";
 import { type Aim, FOV_RAD, fit, isCalm, type Rig, type Shot } from "./cameras";
 
-/** No shot is shorter, or the eye gets lost. */
+/** A close shot lasts at least this long while play goes on. */
 const LEAST_MS = 4200;
-/** Show the whole field again after this time: it shows who leads. */
+/** A close shot lasts at most this long; then the whole field shows who leads. */
 const CLOSE_MOST_MS = 8500;
+/** The whole field is shown at least this long. */
 const WIDE_LEAST_MS = 8000;
-/** Robots nearer than this are worth a look, and until they are farther apart than that. */
+/** Robots that come nearer than this are shown together, until they are `APART_M` apart. */
 const NEAR_M = 0.5;
 const APART_M = 0.68;
 const NEAR_FOR_MS = 500;
@@ -132,7 +133,7 @@ export class AutoCamera {
   private held: Shot | null = null;
   private heldMs = 0;
 
-  /** The robots shake as they walk; the camera does not. */
+  /** Follow a shot slowly: robots shake as they walk, and the camera must not. */
   private steady(goal: Shot, nowMs: number): Shot {
     const part = 1 - Math.exp(-Math.min(200, nowMs - this.heldMs) / 500);
     this.heldMs = nowMs;

@@ -10,11 +10,11 @@ export interface Exposed {
   cut(): void;
 }
 
-/** Whoever has it decides what a view shows, in place of the browser's own pictures. */
+/** Says when views draw and for which time, in place of the browser's animation frames. */
 export class Shutter {
   private readonly views = new Set<Exposed>();
 
-  /** @param smooth Whether edges are smooth in low quality too, where that costs much time. */
+  /** @param smooth Whether edges are smooth also in low quality, although that takes much time. */
   constructor(readonly smooth: boolean) {}
 
   add(view: Exposed): void {
@@ -38,8 +38,8 @@ export class Shutter {
   /**
    * Let all views go on to a time.
    *
-   * The automatic camera and what moves depend on the times before. So each film is told all its
-   * times in order, also those that another page draws.
+   * The automatic camera and what moves depend on the times before. So each page is told all times
+   * of the film in order, also those that another page draws.
    *
    * @param nowMs Time of the film.
    * @param drawn False: only go on, which costs little.

@@ -18,7 +18,7 @@ interface Props {
 
 const LOOK_MS = 80;
 const ROBOT_M = 0.1;
-/** Else a flag's letter can't be read. */
+/** Smallest radius that is drawn: the letter of a flag must be readable. */
 const LEAST_MARKER_M = 0.05;
 const SHADE = "rgb(0 0 0 / 30%)";
 const NEUTRAL = "#5d6674";
@@ -101,7 +101,7 @@ export function Board({ match, onPick, picked }: Props) {
   );
 }
 
-/** Whether a key presses a button; it does nothing else then, as in what a pick may open. */
+/** Whether a key presses a button. It then does nothing else, such as in a dialog that opens. */
 function isPress(event: KeyboardEvent): boolean {
   const press = (event.key === "Enter" || event.key === " ") && !event.ctrlKey;
   if (press) event.preventDefault();

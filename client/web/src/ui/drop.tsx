@@ -1,4 +1,4 @@
-/** Files dropped on the page: anywhere, as a browser would leave the page for what misses a frame. */
+/** Files dropped anywhere on the page: where nothing takes them, a browser would leave the page. */
 
 import type { ReadonlySignal, Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
@@ -7,7 +7,7 @@ import { useEffect } from "preact/hooks";
 /**
  * Take what is dropped while this component is there.
  *
- * @param dragging Kept on whether files are over the page.
+ * @param dragging Set to whether files are over the page.
  */
 export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]) => void): void {
   useEffect(() => {
@@ -41,7 +41,7 @@ interface Props {
   children: ComponentChildren;
 }
 
-/** What is said over the whole page while files are over it. */
+/** What is shown over the whole page while files are dragged over it. */
 export function Dropping({ dragging, children }: Props) {
   return dragging.value ? <div class="dropping">{children}</div> : null;
 }

@@ -1,4 +1,4 @@
-/** Mistakes of a student's file as a list: where each is, what was found and what was expected. */
+/** Mistakes in files as a list: where each is, what was found and what was expected. */
 
 import type { Mistake } from "../core/wire";
 import { said, t } from "../i18n";

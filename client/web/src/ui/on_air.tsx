@@ -9,7 +9,7 @@ import "./on_air.css";
 
 const BETWEEN = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
 
-/** The court on air and the reason; nothing where the page follows one court. */
+/** The court on air and the reason; nothing without a director, and before it begins. */
 export function OnAir({ court }: { court: Court }) {
   const programme = court.programme.value;
   if (!programme || programme.begins_s > 0) return null;
@@ -25,7 +25,7 @@ export function OnAir({ court }: { court: Court }) {
   );
 }
 
-/** The newest results of all courts, while no match is on air. */
+/** The newest results of all courts, while the court on air waits for its next match. */
 export function LatestResults({ court }: { court: Court }) {
   const phase = useMemo(() => phaseOf(court), [court]).value;
   const results = court.programme.value?.results ?? [];

@@ -1,4 +1,4 @@
-/** The way to the recording of the match that is over, as soon as the gateway has it. */
+/** The link to the recording of a match that is over, and its odds, when the gateway has them. */
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";

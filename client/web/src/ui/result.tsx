@@ -15,11 +15,11 @@ const SHOWN = new Set<number>([Phase.FINISHED, Phase.OFFICIAL, Phase.VOID]);
 
 interface Props {
   match: Match;
-  /** There is a way to put the card away. */
+  /** Closes the card; without it there is no button for that. */
   onClose?: () => void;
-  /** There is a way to the recording, once there is one. */
+  /** Whether the card leads to the recording, once there is one. */
   withReplay?: boolean;
-  /** No other match follows: the court has closed. */
+  /** Whether no other match follows, because the court has closed. */
   isLast?: boolean;
 }
 

@@ -5,7 +5,7 @@ import { byId, isMatch, type Match, origin, type StageView } from "./sheet";
 export interface Box {
   match: Match;
   column: number;
-  /** Of its middle. */
+  /** Row of its middle. */
   row: number;
 }
 
@@ -23,7 +23,7 @@ export interface Heading {
   /** Number of its matches. */
   matches: number;
   column: number;
-  /** Of the upper edge of the highest box below it. */
+  /** Row of the upper edge of the highest box below it. */
   row: number;
 }
 
@@ -54,8 +54,8 @@ const THIRD = "p";
  * Lay out a bracket.
  *
  * Each part (winners' and losers' bracket) is a tree: a match stands in the middle of those whose
- * winners meet in it, and who comes without a match takes no row. The finals stand right of all
- * parts.
+ * winners meet in it, and a team that comes from no match takes no row. The finals stand to the
+ * right of all parts.
  *
  * @param cut What to show of it; by default all.
  */

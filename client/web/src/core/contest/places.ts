@@ -6,7 +6,7 @@ import { type ContestSheet, champions, isOver, isStillIn } from "./sheet";
 export interface Place {
   team: string;
   rank: number;
-  /** The stage of that rank; "": the last one, so that the rank is that of the whole contest. */
+  /** The stage of that rank; "": the only table of the last one, so it is the contest's rank. */
   stage: string;
   /** Group of the stage, such as "a"; "": it has only one. */
   group: string;
@@ -39,7 +39,7 @@ export function places(sheet: ContestSheet): Place[] {
   return [...found.values()];
 }
 
-/** Whether a team has lost its way in a bracket that goes on. */
+/** Whether a team has lost a match after which it is out of a bracket. */
 function knockedOut(sheet: ContestSheet, team: string): boolean {
   return sheet.stages.some((view) =>
     view.matches.some(

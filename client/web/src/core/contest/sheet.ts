@@ -17,7 +17,7 @@ export * from "./sheet.gen";
 
 export type Source = Pairing["sources"][number];
 
-/** Stands for the team of a place that is empty for ever. */
+/** Stands for the team of a place that stays empty, such as a bye's. */
 const NOBODY = "";
 
 /** Matches that belong together: a round, of all groups where a stage has groups. */
@@ -74,7 +74,7 @@ export function isStillIn(view: StageView, team: string): boolean {
   return view.matches.some((match) => !isDecided(match) && match.teams.includes(team));
 }
 
-/** The rounds of a stage in their order. A bracket has no byes: its best teams begin later. */
+/** The rounds of a stage in their order. Byes of a bracket are left out: their teams begin later. */
 export function rounds(view: StageView): Round[] {
   const bracket = isKnockout(view);
   const found = new Map<string, Round>();
@@ -112,7 +112,7 @@ export function byId(view: StageView): Map<string, Match> {
   return new Map(view.matches.map((match) => [match.pairing.id, match]));
 }
 
-/** The places of a match as they sit: in its only game, or in the first one to come. */
+/** The places of a match, left seat first: as in its only game, or in the first one to come. */
 export function seating(match: Match): readonly [0 | 1, 0 | 1] {
   const games = match.games ?? [];
   const seats = games.length === 1 && isDecided(match) ? games[0]!.teams : match.next_seats;
@@ -125,7 +125,7 @@ export function countsGames(match: Match, view: StageView): boolean {
   return (view.stage.settings.games ?? 1) > 1 || (match.games?.length ?? 0) > 1;
 }
 
-/** What a match stands at, by place; null before the first game. */
+/** The score of a match, by place; null before the first game. */
 export function score(match: Match, view: StageView): [number, number] | null {
   const games = match.games ?? [];
   if (!games.length) return null;

@@ -11,7 +11,7 @@ import { BEATS_PER_S, clock } from "../../i18n/words";
 import { TeamLink } from "./parts";
 import { gameTitle } from "./words";
 
-/** Games that can be played next: so many are listed. */
+/** Most games to come that are listed. */
 const COMING_MOST = 8;
 
 interface Props {
@@ -77,19 +77,20 @@ export function Now({ sheet, most = COMING_MOST }: Props) {
 function Live({ score: now }: { score: CourtScore | null }) {
   if (!now || now.phase < Phase.PLAYING) return null;
   const [left = 0, right = 0] = now.scores;
+  const shown_s = now.duration_s ? now.duration_s - now.clock_s : now.clock_s;
   return (
     <p class="live-score">
       <b>
         {left} : {right}
       </b>{" "}
-      <span>{clock((now.duration_s - now.clock_s) * BEATS_PER_S)}</span>
+      <span>{clock(shown_s * BEATS_PER_S)}</span>
     </p>
   );
 }
 
 interface SidesProps {
   teams: readonly [string, string];
-  /** What their match stands at. */
+  /** The score of their match. */
   stands?: readonly [number, number] | null;
 }
 
@@ -104,7 +105,7 @@ function Sides({ teams: [left, right], stands = null }: SidesProps) {
   );
 }
 
-/** What the match of a running game stands at, the team on the left first; null: it just began. */
+/** The score of a running game's match, the left team first; null before its first result. */
 function stands(
   sheet: ContestSheet,
   pairing: string,

@@ -16,7 +16,7 @@ import { t } from "../../i18n";
 import { addressed, chosenTeam, GameScore, matchId, TeamLink } from "./parts";
 import { courtOf, numberTitle, originTitle, scheduleTitle } from "./words";
 
-/** With more matches than this, rounds that are over are closed. */
+/** With more matches than this, only the current round is open. */
 const OPEN_MOST = 60;
 
 interface Props {

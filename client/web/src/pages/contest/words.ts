@@ -41,7 +41,7 @@ export function roundTitle(
   if (section === "p") return t("contest.thirdPlace");
   if (section === "f") return t(round === 1 ? "contest.final" : "contest.decidingFinal");
   if (section === "l") return t("contest.losersRound", { round });
-  // A round with byes is as large as its places.
+  // Rounds are told by their number: with byes, the number of matches does not say which it is.
   const last = Math.max(...roundsOf(view, section));
   const double = view.matches.some(({ pairing }) => pairing.section === "l");
   if (!double && section === "w" && round === last) return t("contest.final");

@@ -20,7 +20,7 @@ const LOOK_MS = 3000;
 export class Entrant {
   readonly desk = new Desk();
   readonly event = signal<EventInfo | null>(null);
-  /** How the entry of the token that is kept here stands; null: there is none. */
+  /** The entry of the team whose token this browser keeps; null: there is none. */
   readonly entry = signal<OwnEntry | null>(null);
   readonly link = signal<TeamLink | null>(null);
   readonly isWeighing = signal(false);
@@ -47,7 +47,7 @@ export class Entrant {
     return this.send((files) => ({ do: "apply", secret: code, team, files }));
   }
 
-  /** Hand other files in. */
+  /** Hand in other files for the team. */
   change(): Promise<boolean> {
     const secret = this.entry.peek()?.token ?? "";
     return this.send((files) => ({ do: "change", secret, files }));

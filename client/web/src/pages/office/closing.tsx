@@ -1,4 +1,4 @@
-/** Entries are closed, and the first stage is drawn: asked once, because it can't be undone. */
+/** Asks before entries are closed and the first stage is drawn, because that can't be undone. */
 
 import type { OfficeView } from "../../core/desk";
 import { t } from "../../i18n";

@@ -64,7 +64,7 @@ export function TeamDialog({ organiser, team }: Props) {
   );
 }
 
-/** Late files: the organiser lets the team use them, and says why. */
+/** Files that came after the end of entries: the organiser allows them, and says why. */
 export function ApproveDialog({ organiser, team }: Props) {
   const reason = useSignal("");
   return (
@@ -91,16 +91,20 @@ export function ApproveDialog({ organiser, team }: Props) {
   );
 }
 
-/** A team leaves: what that changes is shown first. */
+/** The organiser takes a team out; the dialog shows what that changes. */
 export function LeaveDialog({ organiser, team }: Props) {
   const reason = useSignal("");
   const expelled = useSignal(false);
   const effect = useSignal<Effect | null>(null);
   const disqualify = expelled.value;
   useEffect(() => {
+    let newest = true;
     void organiser.preview({ do: "take_out", team, disqualify }).then((found) => {
-      effect.value = found;
+      if (newest) effect.value = found;
     });
+    return () => {
+      newest = false;
+    };
   }, [organiser, team, disqualify]);
   return (
     <Dialog title={t("office.leave.title", { team })} onClose={() => organiser.close()}>
@@ -112,7 +116,7 @@ export function LeaveDialog({ organiser, team }: Props) {
             do: "take_out",
             team,
             disqualify,
-            reason: reason.value,
+            reason: reason.value.trim(),
             really: true,
           } as const;
           if (await organiser.act(wish)) organiser.close();

@@ -9,7 +9,7 @@ import type { Organiser } from "./organiser";
 interface Props {
   organiser: Organiser;
   view: OfficeView;
-  /** Whether only those are shown that wait. */
+  /** Whether only teams are shown that wait for the organiser. */
   waiting?: boolean;
 }
 
@@ -120,7 +120,7 @@ function Row({ organiser, row, open }: RowProps) {
   );
 }
 
-/** Whether a name has what is searched for. */
+/** Whether a name contains what is searched for. */
 export function matches(name: string, wanted: string): boolean {
   const plain = (text: string) => text.normalize("NFKC").toLocaleLowerCase();
   return plain(name).includes(plain(wanted.trim()));

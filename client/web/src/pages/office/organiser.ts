@@ -19,10 +19,10 @@ import { said, sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 
 const LOOK_MS = 1500;
-/** More sentences than this are not read one by one. */
+/** More answers than this become one toast with their number. */
 const MANY = 2;
 
-/** What lies over the page. */
+/** The dialog or the paper that is open. */
 export type Over =
   | { is: "team"; team: string }
   | { is: "leave"; team: string }
@@ -45,9 +45,9 @@ export class Organiser {
   readonly view = signal<OfficeView | null>(null);
   readonly links = signal<TeamLinks | null>(null);
   readonly over = signal<Over | null>(null);
-  /** Why the office does not answer; null: it does. */
+  /** Why the last request for the overview failed; null: it did not. */
   readonly trouble = signal<Phrase | null>(null);
-  /** The teams that wait for a word, the oldest first. */
+  /** The teams that wait for the organiser's decision. */
   readonly waiting = computed<readonly TeamRow[]>(
     () => this.view.value?.teams.filter(({ state }) => state === "waits" || state === "late") ?? [],
   );
@@ -59,7 +59,7 @@ export class Organiser {
     this.again(0);
   }
 
-  /** Ask for something; what is refused is said, and comes back as null. */
+  /** Send a request; a refusal is shown in a toast, and the answer is then null. */
   async act<T = Said>(wish: Wish): Promise<T | null> {
     try {
       const answer = await this.desk.ask<T>({ ...wish, secret: this.key } as AnyRequest);
@@ -72,7 +72,7 @@ export class Organiser {
     }
   }
 
-  /** Ask for something, and say what was done. */
+  /** Send a request, and show in toasts what was done; false: it was refused. */
   async do(wish: Wish): Promise<boolean> {
     const answer = await this.act<Said>(wish);
     const lines = answer?.said ?? [];
@@ -81,7 +81,7 @@ export class Organiser {
     return answer !== null;
   }
 
-  /** What a decision would change; null: it was refused. */
+  /** Ask what a decision would change; null: the question was refused. */
   preview(wish: Wish): Promise<Effect | null> {
     return this.act<Effect>(wish);
   }

@@ -1,4 +1,4 @@
-/** What is printed, as it lies on paper: the browser prints it, also into a PDF. */
+/** What the organiser prints; the browser can also print it into a PDF. */
 
 import { useEffect } from "preact/hooks";
 import { places } from "../../core/contest/places";
@@ -91,7 +91,7 @@ function Results({ sheet }: { sheet: ContestSheet }) {
   );
 }
 
-/** A page for each team. */
+/** A certificate for each team that has its final place. */
 function Certificates({ sheet }: { sheet: ContestSheet }) {
   const all = places(sheet);
   const day = new Date().toLocaleDateString(language.value, { dateStyle: "long" });
@@ -123,7 +123,7 @@ function Certificates({ sheet }: { sheet: ContestSheet }) {
   );
 }
 
-/** A card for each team with its link, and one for the door. */
+/** A card with the link of each team, and one with the address of /enter while entries are open. */
 function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) {
   const links = organiser.links.value;
   if (!links) return <p class="muted">{t("contest.loading")}</p>;

@@ -20,14 +20,14 @@ import { matches } from "./entries";
 import type { Organiser } from "./organiser";
 
 const KINDS = ["result", "replay", "no-show", "void"] as const;
-/** So many matches are listed. */
+/** Most matches that are listed. */
 const LISTED = 30;
 
 interface Props {
   organiser: Organiser;
 }
 
-/** The matches that have, or can get, a result: those that were played last come first. */
+/** The matches whose teams are known: decided ones first, those of the last rounds on top. */
 export function Rulings({ organiser }: Props) {
   const wanted = useSignal("");
   const sheet = organiser.feed.sheet.value;
@@ -105,7 +105,7 @@ interface DialogProps extends Props {
   pairing: string;
 }
 
-/** What is decided, with what it changes. */
+/** The dialog for a decision; it shows what the decision would change. */
 export function RuleDialog({ organiser, pairing }: DialogProps) {
   const sheet = organiser.feed.sheet.value;
   const there = sheet && found(sheet, pairing);
@@ -133,10 +133,14 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
   useEffect(() => {
     effect.value = null;
     if (!isWhole) return;
-    // The reason changes nothing, but a decision must have one.
+    let newest = true;
+    // The reason does not change the effect, but a decision must have one.
     void organiser.preview({ ...wish, reason: "–" }).then((seen) => {
-      effect.value = seen;
+      if (newest) effect.value = seen;
     });
+    return () => {
+      newest = false;
+    };
   }, [organiser, isWhole, kind.value, game.value, team.value, left.value, right.value]);
   if (!sheet || !there || !seats) return null;
   const numbers = gamesOf(there.match);

@@ -1,4 +1,4 @@
-/** The timetable: a column a court. A match can be dragged, or moved with its button. */
+/** The timetable, a column for each court. A match can be dragged, or moved with its button. */
 
 import { type Signal, useSignal } from "@preact/signals";
 import type { OfficeView, Slot } from "../../core/desk";
@@ -6,7 +6,7 @@ import { type Column, canMove, columns, dropped } from "../../core/timetable";
 import { language, said, t } from "../../i18n";
 import type { Organiser } from "./organiser";
 
-/** So many matches of a court are shown at first. */
+/** Most matches of a court that are shown at first. */
 const SHOWN = 10;
 
 interface Props {

@@ -47,7 +47,7 @@ export function SeekBar({ player }: { player: Player }) {
   );
 }
 
-/** What happened where, and who was ahead. */
+/** The parts of the bar that do not move: lead, odds, and a mark for each event. */
 function Happened({ player }: { player: Player }) {
   const { recording } = player;
   const hovered = useSignal<Event | null>(null);
@@ -146,7 +146,7 @@ function partOf({ firstBeat, lastBeat }: Recording, beat: number): number {
   return Math.min(1, Math.max(0, (beat - firstBeat) / (lastBeat - firstBeat)));
 }
 
-/** A length of beats, "1:05". */
+/** A number of beats as minutes and seconds, "1:05". */
 export function seconds(beats: number): string {
   const whole = Math.floor(Math.max(0, beats) / BEATS_PER_S);
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;

@@ -1,4 +1,4 @@
-/** What is said of a fork, and its origin beside it. */
+/** The note on a fork, and the names of fork and origin when both are shown. */
 
 import type { ReadonlySignal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
@@ -14,7 +14,7 @@ interface Props {
   onBeside?: () => void;
 }
 
-/** Nothing, unless the recording is a fork. */
+/** A note that the recording is a fork; nothing for other recordings. */
 export function ForkNote({ recording, beside, onBeside }: Props) {
   const { origin } = recording.record.header.setup;
   if (!origin) return null;
@@ -35,7 +35,7 @@ export function ForkNote({ recording, beside, onBeside }: Props) {
   );
 }
 
-/** Which of two lines a picture shows, and its score. */
+/** Says whether a picture shows the fork or its origin, and the score there. */
 export function LineScore({ name, match }: { name: string; match: Match }) {
   const scores = useMemo(() => scoresOf(match), [match]).value;
   return (

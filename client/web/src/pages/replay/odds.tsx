@@ -1,4 +1,4 @@
-/** The odds of a recording: what they are now, and the moments in which they changed most. */
+/** The odds of a recording: those at the beat that is shown, and where they changed most. */
 
 import { useComputed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
@@ -9,7 +9,7 @@ import { BEATS_PER_S, clockTicks, logClock, team } from "../../i18n/words";
 import { chancesAt } from "../../ui/odds";
 import type { Player } from "./player";
 
-/** Apart from its neighbours, as it is drawn anew with each beat. */
+/** A component of its own, because it is drawn again at each beat. */
 export function ChancesNow({ player, odds }: { player: Player; odds: Odds }) {
   const shown = useComputed(() => chancesAt(odds, player.recording.beat.value)).value;
   return (
@@ -52,7 +52,7 @@ function clockAt(played_s: number, sheet: Sheet): string {
   return logClock(clockTicks({ clock_ticks: Math.round(played_s * BEATS_PER_S) }, sheet));
 }
 
-/** The chance of the seat that gained. */
+/** The chance of the seat that gained, in percent. */
 function percent(chance: number, change: number): number {
   return Math.round(100 * (change > 0 ? chance : 1 - chance));
 }

@@ -10,9 +10,9 @@ import { isScoring, isTold } from "../../ui/thirds";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8] as const;
 
-/** So much before an event one comes in, to see how it came about. */
+/** A jump to an event goes to this long before it, so that it is seen happening. */
 const RUN_UP_BEATS = BEATS_PER_S;
-/** "The previous event" is the one before that, if this one was only just reached. */
+/** For this long after a jump to an event, "previous event" means the one before that event. */
 const JUST_BEATS = 1.5 * BEATS_PER_S;
 
 export class Player extends Playback {

@@ -35,7 +35,7 @@ export interface Style {
 interface Props {
   match: Match;
   style: Style;
-  /** Pixels of the window for one of the sheet of 1920 x 1080. */
+  /** Pixels of the window for each pixel of the 1920 x 1080 that are drawn. */
   scale: ReadonlySignal<number>;
 }
 
@@ -45,7 +45,7 @@ interface More {
   inCentre?: ComponentChildren;
 }
 
-/** The scale that fits a sheet of 1920 x 1080 into the window. */
+/** The scale that fits 1920 x 1080 pixels into the window. */
 export function scaleOfWindow(): number {
   return Math.min(innerWidth / WIDTH_PX, innerHeight / HEIGHT_PX);
 }

@@ -8,7 +8,7 @@ import type { CameraName } from "../../scene/View";
 const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
 const ALONE: readonly CameraName[] = ["auto", "arena", "top", "chase", "map"];
 
-/** Keys 1 to 6. */
+/** What keys 1 to 6 do: each chooses a camera. */
 export function cameraKeys(
   camera: Signal<CameraName>,
   sheet: () => Sheet | null,

@@ -6,7 +6,7 @@ import { CAMERAS, type CameraName } from "../../scene/View";
 
 const QUALITIES: readonly Quality[] = ["auto", "low", "high"];
 
-/** Longer than this nobody delays a stream. */
+/** Longest delay that an address can ask for [s]. */
 export const DELAY_MOST_S = 600;
 
 /** The camera of the address; the automatic one else. */
