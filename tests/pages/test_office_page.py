@@ -214,7 +214,7 @@ def papers(office: Page) -> None:
 
 
 def on_a_phone(open_page: OpenPage, event: Event) -> None:
-    """Open both pages on a phone in Japanese: none scrolls sideways, and axe-core finds nothing."""
+    """On a phone in Japanese nothing scrolls sideways, and axe-core finds no serious mistake."""
     for path in (event.office, f"{event.url}/enter"):
         page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
         page.goto(path)
