@@ -44,6 +44,8 @@ _GAMES: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 _BIN = 0.05
 _LARGEST = 5
+_LEAST = 0.01
+"""Smaller changes of a chance are no swing here; `lacoc replay highlights` leaves out more."""
 
 
 def main() -> int:
@@ -109,7 +111,7 @@ def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
         curve, looked = (
             [*compute(wish, _Here(), None, lambda done, of: None)][-1] for wish in (near, far)
         )
-        chosen = odds.highlights(looked.moments)
+        chosen = odds.highlights(looked.moments, least=_LEAST)
         largest = odds.swings(curve.moments)[:_LARGEST]
         return {
             "number": number,
@@ -173,7 +175,7 @@ def _tell_swings(rows: list[dict[str, Any]]) -> int:
     found = of = 0
     for row in rows:
         for first, last, change in row["largest"]:
-            if not change:
+            if abs(change) < _LEAST:
                 continue
             of += 1
             found += any(a < last and first < b for a, b, _ in row["highlights"])

@@ -69,6 +69,33 @@ def test_swings_and_where_to_look() -> None:
     assert odds.between(playing, [], moment_pair(100, 110), 10) is None
 
 
+def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
+    """There is a moment before and after each of the largest changes; near ones count as one."""
+    playing = range(1000, 1400)
+    leads = [0.0] * 400
+    for index, change in ((50, 1.0), (55, 3.0), (200, 2.0), (300, -1.0), (395, -8.0)):
+        leads[index:] = [lead + change for lead in leads[index:]]
+    assert odds.jumps(playing, leads, 20, 2) == [1050, 1070, 1395, 1399]
+    assert odds.jumps(playing, leads, 20, 9) == [1050, 1070, 1200, 1220, 1300, 1320, 1395, 1399]
+    assert odds.jumps(playing, [5.0] * 400, 20, 3) == []
+    assert odds.jumps([], [], 20, 3) == []
+
+
+def test_near_moments_share_their_forks() -> None:
+    """Forks count for moments up to a second away; the end keeps its chance."""
+    margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 101: (1.0, 1.0)}
+    found = [
+        Moment(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
+        for beat, some in margins.items()
+    ]
+    end = Moment(beat=110, clock_s=2.2, margins=(9.0,), chance=0.5)
+    pooled = odds.pooled([end, *found])
+    assert [one.beat for one in pooled] == [0, 50, 101, 110]
+    both = odds.chance([3.0, 1.0, -2.0, -4.0])
+    assert [one.chance for one in pooled] == [both, both, odds.chance([1.0, 1.0]), 0.5]
+    assert [one.margins for one in pooled[:-1]] == [*margins.values()]
+
+
 def moment_pair(first: int, last: int) -> odds.Swing:
     return odds.Swing(moment(first, 0.5), moment(last, 0.6))
 

@@ -115,18 +115,18 @@ def compute(
     if ends is not None:
         moments[ends.beat] = ends
 
-    def result(names: Sequence[Moment]) -> Odds:
+    def result() -> Odds:
         return Odds(
             match_id=source.match_id,
             record_hash=source.hash,
             seats=(first, second),
             bots=wish.bots,
-            moments=tuple(sorted(names, key=lambda moment: moment.beat)),
+            moments=odds.pooled(moments.values()),
         )
 
     wanted = odds.grid(course.playing, round(wish.step_s * BEATS_PER_S))
     count = len(wanted) + wish.closer + len(moments)
-    around = odds.jumps(course.playing, course.leads, _LEAST_BEATS, wish.closer // 4)
+    around = odds.jumps(course.playing, course.leads, _LEAST_BEATS, wish.closer // 2)
     wanted = sorted({*wanted, *around})
     while wanted:
         jobs = {beat: _job(wish, beat, kept) for beat in wanted}
@@ -138,8 +138,9 @@ def compute(
                 raise UserError(found)
             moments[beat] = _moment(source, wish, course, beat, (*before, *found))
             progress(len(moments), count)
-        yield result([*moments.values()])
-        wanted = _closer(course, moments, count)
+        so_far = result()
+        yield so_far
+        wanted = _closer(course, so_far.moments, count)
 
 
 class Course:
@@ -284,12 +285,12 @@ def _moment(
     )
 
 
-def _closer(course: Course, moments: dict[int, Moment], count: int) -> list[int]:
+def _closer(course: Course, moments: Sequence[Moment], count: int) -> list[int]:
     """Return the moments to add next: in the largest swings that are long enough."""
     room = min(_AT_ONCE, count - len(moments))
     found = (
         odds.between(course.playing, course.told, swing, _LEAST_BEATS)
-        for swing in odds.swings([*moments.values()])
+        for swing in odds.swings(moments)
     )
     return list(islice((beat for beat in found if beat is not None), max(0, room)))
 

@@ -3,11 +3,11 @@
 At some moments of the match, bots play forks to the end. A moment has few forks, so the share that
 the first seat won would be a rough number. The chance is instead the probability that it would win
 one more fork if margins (its points less those of the other) are normally distributed: Student's
-t.
+t. Moments close to each other share their forks.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -17,6 +17,9 @@ PRIOR_SPREAD = 1.0
 """Standard deviation of margins [points] that is assumed before any fork is seen."""
 PRIOR_WEIGHT = 2
 """Number of forks that weigh as much as this assumption."""
+NEAR_S = 1.0
+"""Moments at most so far apart on the clock share their forks [s]."""
+_SPARE_S = 0.001  # differences of times are not exact
 
 
 class Moment(msgspec.Struct, frozen=True, kw_only=True):
@@ -58,6 +61,28 @@ def chance(margins: Sequence[float]) -> float:
     freedom = PRIOR_WEIGHT + count - 1
     spread = math.sqrt((PRIOR_WEIGHT * PRIOR_SPREAD**2 + squares) / freedom)
     return student(mean / (spread * math.sqrt(1 + 1 / count)), freedom)
+
+
+def pooled(moments: Iterable[Moment]) -> tuple[Moment, ...]:
+    """Return moments in their order, with the chances that follow from all their forks.
+
+    A second earlier or later, two bots go on from nearly the same position. So the forks of moments
+    at most `NEAR_S` away count too. The end of the match keeps its chance.
+
+    Args:
+        moments: moments of a match, with the forks of each.
+    """
+    ordered = sorted(moments, key=lambda moment: moment.beat)
+    forked = [moment for moment in ordered if moment.key]
+
+    def of(moment: Moment) -> Moment:
+        if not moment.key:
+            return moment
+        near = [one for one in forked if abs(one.clock_s - moment.clock_s) <= NEAR_S + _SPARE_S]
+        found = chance([margin for one in near for margin in one.margins])
+        return msgspec.structs.replace(moment, chance=found)
+
+    return tuple(map(of, ordered))
 
 
 def student(t: float, freedom: int) -> float:
