@@ -92,6 +92,7 @@ def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: i
     assert tables(organiser.sheet(file)) == tables(organiser.sheet(played / "contest.toml"))
 
 
+@pytest.mark.long
 def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> None:
     """If processes are killed, their games are played again, and the tables are the same."""
     file = contest_played.enter(tmp_path / "killed")

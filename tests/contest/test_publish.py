@@ -138,6 +138,7 @@ def test_the_commands_from_an_empty_folder_to_standings(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_exit_codes_and_languages(
     copied: Path, lacoc: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

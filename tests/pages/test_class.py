@@ -160,6 +160,7 @@ def test_the_teacher_sets_rules_hands_out_and_takes_home(
     assert "Cem" in text
 
 
+@pytest.mark.long
 def test_projector_mode_hides_names_everywhere(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:
@@ -225,6 +226,7 @@ def test_the_page_goes_on_after_the_gateways_end(
     assert desk.order() == ["Lea"]
 
 
+@pytest.mark.long
 def test_a_tournament_ends_in_large_standings(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:

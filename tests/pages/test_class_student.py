@@ -187,6 +187,7 @@ def kill(process: Any) -> None:
     process.communicate(timeout=60)
 
 
+@pytest.mark.long
 def test_alone_changes_come_back_after_a_kill(
     open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
 ) -> None:

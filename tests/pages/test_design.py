@@ -228,6 +228,7 @@ def test_the_coach_works_and_can_be_stopped(
     page.sees(".coach >> text=Which numbers matter?")
 
 
+@pytest.mark.long
 def test_other_gaits_are_watched_and_taken(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -284,6 +285,7 @@ def test_a_table_goes_to_the_page_on_which_teams_enter(
     assert "Loco-data.txt" in tab.url
 
 
+@pytest.mark.long
 def test_a_table_goes_to_practice(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -302,6 +304,7 @@ def test_a_table_goes_to_practice(
     assert violations(page.page) == []
 
 
+@pytest.mark.long
 def test_predict_compare_and_the_way_back(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -369,6 +372,7 @@ def test_what_is_pasted_dropped_and_composed(
     page.cell_is(3, 2, "12")
 
 
+@pytest.mark.long
 def test_a_file_that_changed_meanwhile_is_asked_about(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -426,6 +430,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     page.misses("#tab-coach, #tab-phase, .phase-dots")
 
 
+@pytest.mark.long
 def test_a_phone_in_japanese_tries_and_compares(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:

@@ -41,6 +41,7 @@ def alphas(page: Page, blank: Page) -> dict[str, float]:
     return found
 
 
+@pytest.mark.long
 def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
     """The overlay obeys the flags in its address, and shows no scroll bars and no pointer."""
     venue.court()

@@ -128,6 +128,7 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
     page.stands("seated")
 
 
+@pytest.mark.long
 def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
     """Files may be dropped anywhere on the page, and the browser does not leave the page."""
     page = opened(venue, sit)
@@ -556,6 +557,7 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
     page.sees(".link-state.good")
 
 
+@pytest.mark.long
 def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
     """The page shows who won and why, links to the replay, and keeps its seat."""
     page = seated(venue, sit, "--seconds", "1")

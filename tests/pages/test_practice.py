@@ -130,6 +130,7 @@ def test_a_reload_goes_on(practise: Practise) -> None:
     page.key_stands(2)
 
 
+@pytest.mark.long
 def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> None:
     """A workbook can be loaded during practice, and the pad then shows its keys (rules 2)."""
     sample = sample_gait_files("hexapod")
@@ -167,6 +168,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.sees(".stands", "B 1: posture")
 
 
+@pytest.mark.long
 def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_path: Path) -> None:
     """The form shows the folder's files, and the page offers to load a changed file."""
     book = tmp_path / "Loco-data.xlsx"

@@ -444,6 +444,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
     expect(page.locator(".acting.mine")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
     """The second click of a double click does not repeat the decision or make the next one."""
     page = at_the_desk(referee())
@@ -549,6 +550,7 @@ def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
         page.keyboard.press("Escape")
 
 
+@pytest.mark.long
 def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
     """One referee acts, and another one watches until taking over."""
     first, second = at_the_desk(referee(), "Kim"), referee()

@@ -418,6 +418,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
     show.misses(".notes")
 
 
+@pytest.mark.long
 def test_damage(
     library: Venue, record: Record, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:

@@ -296,6 +296,7 @@ def test_clicks_say_what_was_clicked(stand: Stand, site: Path) -> None:
         assert stand.page.evaluate("stand.picked.value")["seat"] == seat
 
 
+@pytest.mark.long
 def test_a_flag_can_be_clicked_at_its_pole(stand: Stand, site: Path) -> None:
     """A click on the thin pole of a flag reports the flag."""
     recorded = Recorded(site, "flag-strike")
@@ -373,6 +374,7 @@ def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
     assert share_of(stand.pixels(), BLUE) < 0.5 * before
 
 
+@pytest.mark.long
 def test_in_software_it_begins_coarse(stand: Stand) -> None:
     """Without a graphics card low quality is chosen automatically, and a person can change it."""
     stand.open("othello.bin", speed=0, q="auto")
@@ -389,6 +391,7 @@ def test_two_views_side_by_side(stand: Stand) -> None:
     assert math.dist(*eyes) > 0.3
 
 
+@pytest.mark.long
 def test_cameras_glide(stand: Stand) -> None:
     """When another camera is chosen, the picture's viewpoint moves to another place."""
     stand.open("othello.bin", speed=0, q="low", beat=500)

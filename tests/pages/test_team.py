@@ -69,6 +69,7 @@ settings.match.start = "ready"
             run.kill()
 
 
+@pytest.mark.long
 def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, console: Any) -> None:
     """With the team's link a page shows what comes next, and plays at whichever court it is.
 

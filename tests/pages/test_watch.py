@@ -208,6 +208,7 @@ def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: A
     assert numbers > 0
 
 
+@pytest.mark.long
 def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
     """Keys choose the camera and open the panel and settings, but not while a dialog is open."""
     venue.court()

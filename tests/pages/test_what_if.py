@@ -80,6 +80,7 @@ def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: O
     assert violations(page) == []
 
 
+@pytest.mark.long
 def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: OpenPage) -> None:
     """A fork is marked in the list and on the page; its match is shown at the same beat."""
     page = open_page(viewport={"width": 1366, "height": 768}, locale="ja-JP")

@@ -173,6 +173,7 @@ def test_arousal_is_height_over_period() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_small_map(workers: Workers) -> None:
     """Two rounds of a search fill more than one cell; the same seed finds the same gaits."""
     task = task_for("quadruped")
