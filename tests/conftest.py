@@ -37,7 +37,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Select the tests of this run, and put the soak tests first, because they take longest.
+    """Select the tests of this run, and let those that take minutes begin first.
 
     With --long, run tests marked long and all property tests; without it, tests not marked long.
     """
@@ -47,4 +47,24 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         again = config.getoption("long") and item.get_closest_marker("hypothesis") is not None
         (wanted if long is config.getoption("long") or again else others).append(item)
     config.hook.pytest_deselected(items=others)
-    items[:] = sorted(wanted, key=lambda item: "soak" not in item.path.parts)
+    items[:] = spread(wanted, int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
+
+
+def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
+    """Put each test that takes minutes first among those of one process.
+
+    Args:
+        items: the tests, in the order of their files.
+        processes: number of processes; each gets an equal part of the order.
+    """
+    slow = sorted((item for item in items if minutes(item)), key=minutes, reverse=True)
+    ordered = [item for item in items if not minutes(item)]
+    for number, item in enumerate(slow):
+        ordered.insert(number % processes * -(-len(items) // processes), item)
+    return ordered
+
+
+def minutes(item: pytest.Item) -> float:
+    """Return how many minutes a test takes, as its mark `long(minutes=...)` says; else 0."""
+    mark = item.get_closest_marker("long")
+    return float(mark.kwargs.get("minutes", 0)) if mark else 0.0

@@ -21,7 +21,7 @@ def test_no_robot_that_is_let_in_leaps() -> None:
     assert max(refused_m) > 2 * FARTHEST_M  # some refused robots did leave it
 
 
-@pytest.mark.long
+@pytest.mark.long(minutes=8)
 def test_no_search_finds_a_leap() -> None:
     """Of 2,000 random robots and 2,000 variants, none that is accepted leaves its start place."""
     found = list(search(2000, 2000, os.cpu_count() or 1, seed=0))

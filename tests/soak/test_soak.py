@@ -16,7 +16,7 @@ a leak of 0.1 MB in each match gives more than this limit.
 """
 
 
-@pytest.mark.long
+@pytest.mark.long(minutes=6)
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own counts are read")
 def test_nothing_grows_and_nothing_is_left_over() -> None:
     """No process gains threads, files, sockets or children after the warm-up; all records verify.
