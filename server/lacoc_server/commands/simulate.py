@@ -62,8 +62,8 @@ def simulate_command(
         int | None,
         typer.Option(
             metavar="N",
-            help="Everybody plays N others, in both seats as evenly as possible, instead of "
-            "everybody. With an odd number of players, one rests in each round.",
+            help="Each player meets N others instead of all of them, in both seats as evenly as "
+            "possible. With an odd number of players, one rests in each round.",
             min=1,
         ),
     ] = None,

@@ -133,7 +133,7 @@ export const design = {
   "design.compare": ["Compare", "比べる"],
   "design.compareHint": [
     "Show the trial before this one as a ghost, with all differences",
-    "前の試行を半透明で重ね、数値の差を表示します",
+    "前の試行を半透明で重ね、数値の差をすべて表示します",
   ],
   "design.compared": ["{one} and {other}", "{one} と {other}"],
   "design.pressed": ["Key that is tried", "試すキー"],
@@ -186,7 +186,7 @@ export const design = {
   "design.selectRow": ["Select the row", "行を選択"],
   "design.seamJump": [
     "A jump: from the last posture of the key back to the first, this joint turns much farther than in any other step",
-    "つなぎ目の跳び：最後の姿勢から最初の姿勢に戻るとき、この関節だけ大きく動きます",
+    "急な動き：キーの最後の姿勢から最初の姿勢に戻るとき、この関節はほかの動きよりずっと大きく動きます",
   ],
   "design.step.of": ["Posture {step} of the key", "このキーの {step} 番目の姿勢"],
   "design.bad.empty": ["There is no number here", "数値がありません"],
@@ -233,7 +233,7 @@ export const design = {
     "Rows {keys} become the mirror of the key's first half",
     "行 {keys} を、キーの前半の左右反転にします",
   ],
-  "design.tool.live": ["keep both halves mirrored", "半分どうしを常に反転に保つ"],
+  "design.tool.live": ["keep both halves mirrored", "前半と後半を常に左右反転に保つ"],
   "design.tool.leg": ["Copy leg {from} to {to}", "脚 {from} を {to} に写す"],
   "design.tool.copy": ["copying a leg", "脚の複写"],
   "design.tool.addRow": ["Add a row", "行を追加"],
@@ -326,7 +326,7 @@ export const design = {
   "design.coach.matters": ["Which numbers matter?", "どの数値が効く？"],
   "design.coach.improve": [
     "Search for a better gait. Change",
-    "よりよい歩容を探します。変える数：",
+    "よりよい歩容を探します。変える数値の個数：",
   ],
   "design.coach.cell": ["one number", "1 個"],
   "design.coach.cell.hint": ["the best single change", "最もよい 1 か所"],
@@ -411,7 +411,7 @@ export const design = {
   "design.map.excited": ["excited", "活発"],
   "design.map.place": [
     "speed from {speed}, arousal from {arousal}",
-    "速さ {speed} から、活発さ {arousal} から",
+    "速さ {speed} 以上、活発さ {arousal} 以上",
   ],
   "design.map.none": ["no gait was found here", "ここには歩容が見つかっていません"],
   "design.map.own": ["your gait's cell", "自分の歩容のマス"],

@@ -29,7 +29,7 @@ def decide(
         str, typer.Option(metavar="L:R", help="Points of the left and of the right seat.")
     ] = "",
     reason: Annotated[
-        str, typer.Option("--reason", metavar="TEXT", help="Why; everybody can read it.")
+        str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
     ] = "",
     yes: Annotated[bool, typer.Option("--yes", help="Do it without asking.")] = False,
     contest: Contest = FILE,
