@@ -177,7 +177,7 @@ def test_earlier_facts_must_still_be_there() -> None:
 
 
 def test_files_count_from_when_they_were_entered() -> None:
-    """A team may play with its newest files; after entries closed, also with those before them."""
+    """A team's newest files count; if they changed after entries closed, those before them too."""
     game = new(Played, pairing="a", game=1, teams=("A", "B"), scores=(0, 0), outcome="draw")
     facts = numbered(
         new(Entered, team="A", files="1"),
