@@ -243,7 +243,7 @@ def test_the_promised_number_of_forgeries_is_found_as_often_as_promised(
 
 
 def test_a_sample_takes_each_pair_equally_often() -> None:
-    """Every pair of 5 games is chosen about equally often, and the same seed chooses the same."""
+    """All pairs of 5 games are drawn about equally often; one seed always draws the same pair."""
     counts = dict.fromkeys(combinations(range(5), 2), 0)
     for seed in range(5000):
         one, two = sorted(sample(range(5), 2, seed))

@@ -17,7 +17,7 @@ export const design = {
   "design.class.closed": ["closed", "閉じています"],
   "design.class.coachPart": [
     "Your teacher has closed the other searches of the coach for now.",
-    "コーチのほかの探索は、今は先生が使えないようにしています。",
+    "コーチのほかの探索は、今は使えません（先生が止めています）。",
   ],
   "design.class.who": ["You are {name}", "あなたは {name} さんです"],
   "design.class.leaveHint": [
@@ -374,17 +374,17 @@ export const design = {
     "{place} は {count} 個中 {rank} 番目です。",
   ],
   "design.coach.legend": [
-    "the stronger, the more the number matters. Marks in a cell: +10° above, −10° below; green is faster, red is slower",
+    "the stronger the colour, the more the number matters. Marks in a cell: +10° above, −10° below; green is faster, red is slower",
     "色が濃いほど効く数値です。セルの印は上が +10°、下が −10°。緑は速く、赤は遅くなります",
   ],
   "design.coach.mark": ["+10°: {up} mm/s, −10°: {down} mm/s", "+10°：{up} mm/s、−10°：{down} mm/s"],
   "design.coach.nothing": [
-    "The coach found nothing better of this size.",
+    "The coach found no better gait with a change of this size.",
     "この大きさの変更では、よりよい歩容は見つかりませんでした。",
   ],
   "design.coach.guessGain": [
-    "Found something ({size}). How much better will it be?",
-    "見つかりました（{size}）。どれくらいよくなるでしょう？",
+    "A better gait was found: change {size}. How much better will it be?",
+    "よりよい歩容が見つかりました（変える数値：{size}）。どれくらいよくなるでしょう？",
   ],
   "design.coach.gain.little": ["a little", "少し"],
   "design.coach.gain.half": ["by half", "1.5 倍"],
@@ -397,7 +397,7 @@ export const design = {
   "design.coach.others": ["Or look at other gaits", "ほかの歩容を見る："],
   "design.map": ["Map of gaits", "歩容の地図"],
   "design.map.hint": ["calm to excited, slow to fast", "穏やか～活発、遅い～速い"],
-  "design.map.soFar": ["{filled} cells filled", "{filled} マス"],
+  "design.map.soFar": ["{filled} cells filled", "{filled} マスが埋まりました"],
   "design.map.filled": [
     "{filled} of {cells} cells have a gait. The number in a cell is its speed in mm/s.",
     "{cells} マス中 {filled} マスに歩容があります。マスの数字は速さ（mm/秒）です。",
