@@ -97,6 +97,22 @@ def test_every_round_is_legal(teams: int, number: int, leaving: float, seed: int
         check_round(players, round_number)
 
 
+def test_a_round_that_needs_a_fault_is_paired_at_once() -> None:
+    """After two teams left, 12 teams must sit right and 10 left; one pair breaks a rule.
+
+    Here the engine alone would try pairings for minutes.
+    """
+    players = [
+        Player(team=f"t{number}", number=number, sides=[1 if number <= 12 else -1], floats=["none"])
+        for number in range(1, 23)
+    ]
+    for player in players[:11]:
+        player.points = 2
+    pairs = paired(players, 2)
+    assert sorted(one.number for pair in pairs for one in pair) == [*range(1, 23)]
+    assert total_faults(pairs) == (0, 0, 1)
+
+
 @settings(max_examples=8, deadline=None)
 @given(teams=st.integers(4, 16).map(lambda half: 2 * half), seed=st.integers(0, 2**32))
 def test_sides_differ_by_at_most_one(teams: int, seed: int) -> None:

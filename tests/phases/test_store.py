@@ -113,7 +113,7 @@ def test_a_student_votes_once_and_nobody_sees_for_what(path: Path) -> None:
 @pytest.mark.slow
 def test_a_killed_program_loses_nothing_that_was_acknowledged(path: Path) -> None:
     """Kills at random moments lose no acknowledged evidence, and no table older than 2 s."""
-    kills = [kill_once(path, after_s) for after_s in (0.0, 0.02, 0.11, 0.3, 2.6)]
+    kills = [kill_once(path, after_s) for after_s in (0.0, 0.11, 2.6)]
 
     assert [kill.lost for kill in kills] == [0] * len(kills)
     assert kills[-1].acknowledged > kills[0].acknowledged

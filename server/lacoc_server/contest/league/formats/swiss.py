@@ -142,16 +142,18 @@ def seated(one: Player, other: Player) -> tuple[str, str]:
 def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
     """Pair the players of a round; with an odd number one has a bye.
 
-    When the rules can't all be kept, the engine's pairs break any of them; the matching does not.
+    Where the rules can't all be kept, the matching decides which are broken.
 
     Returns:
         The pairs in the order of their tables, a bye last.
     """
     if not players:
         return []
-    found = dutch(players, round_number) if len(players) <= LARGEST else []
-    if not _legal(found, players):
-        found = fewest_faults(players)
+    found = fewest_faults(players)
+    # Where there is no way without a fault, the engine would try all ways, which may take for ever.
+    if len(players) <= LARGEST and _legal(found, players):
+        by_system = dutch(players, round_number)
+        found = by_system if _legal(by_system, players) else found
     return sorted(
         found,
         key=lambda pair: (
