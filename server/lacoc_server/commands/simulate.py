@@ -37,8 +37,8 @@ def simulate_command(
         list[str],
         typer.Argument(
             help="Who plays: bots of the arena (such as 'straight' and 'planner'), your_bot.py, or "
-            "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two play "
-            "one match; more play everybody against everybody, or --rounds."
+            "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two "
+            "players play one match; more meet each other once, or as --rounds says."
         ),
     ],
     arena: Annotated[
@@ -79,7 +79,7 @@ def simulate_command(
         typer.Option(
             "--leave-out",
             help="Leave out and name those who can't play: their files have mistakes, or their "
-            "robot does not stand. Without this nothing begins.",
+            "robot does not stand. Without this option, no match begins if there is such a player.",
         ),
     ] = False,
     record: Annotated[

@@ -16,8 +16,8 @@ def decide(
     decision: Annotated[
         Literal["replay", "result", "void", "no-show"],
         typer.Argument(
-            help="replay: the game is played again. result: it counts with --score. void: the "
-            "match counts for nobody. no-show: --team did not come."
+            help="replay: the game is played again. result: the game counts with the points of "
+            "--score. void: the match counts for nobody. no-show: --team did not come."
         ),
     ],
     pairing: Annotated[

@@ -79,7 +79,7 @@ def fork_command(
         typer.Option(
             metavar="DIR",
             help="Folder for the records of forks; by default that of the record. With --times, "
-            "records are written only if this is given.",
+            "records are written only if this option is given.",
         ),
     ] = None,
     arena: Annotated[
