@@ -38,7 +38,7 @@ def simulate_command(
         typer.Argument(
             help="Who plays: bots of the arena (such as 'straight' and 'planner'), your_bot.py, or "
             "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two "
-            "players play one match; more meet each other once, or as --rounds says."
+            "players play one match; of more, each plays every other, or as --rounds says."
         ),
     ],
     arena: Annotated[
