@@ -40,8 +40,9 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
     """Weigh a robot in: list every mistake in its file, or describe the robot.
 
     The robot is tried in physics: it must stay in place when it stands, with the gait files beside
-    it or in its start posture. By default the limits of the rules count, with --contest those of
-    the contest. With --json the mistakes are a list, which is empty for a robot without mistakes.
+    its robot file, or in its start posture if there are none. By default the limits of the rules
+    count, with --contest those of the contest. With --json the mistakes are a list, which is empty
+    for a robot without mistakes.
     """
     notes: list[Phrase] = []
     try:
@@ -86,10 +87,11 @@ def export(
     out: Annotated[Path, typer.Argument(metavar="OUT", help="The MJCF file to write (.xml).")],
     contest: options.ContestFile = None,
 ) -> None:
-    """Write a robot as plain MJCF, which any MuJoCo opens; an older file is kept.
+    """Write a robot as plain MJCF, which any MuJoCo opens.
 
-    The file has a floor, and in its keyframe "stand" the robot stands there. This command needs
-    MuJoCo, which the extra "server" installs.
+    The file has a floor, and in its keyframe "stand" the robot stands there. If there is a file of
+    that name already, it is kept under another name. This command needs MuJoCo, which the extra
+    "server" installs.
     """
     spec = _read(robot, contest)
     from lacoc_robots.model import export_mjcf  # a contestant's machine may have no MuJoCo

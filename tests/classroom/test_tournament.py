@@ -73,7 +73,7 @@ def test_a_tournament_of_a_class(tmp_path: Path) -> None:
         quinn, zoe = last.left_out
         assert (quinn.name, quinn.mistakes) == ("Quinn", ())
         assert quinn.why is not None
-        assert "no key that walks" in render(quinn.why)
+        assert "no key with which the robot walks" in render(quinn.why)
         assert (zoe.name, zoe.why) == ("Zoë", None)
         assert {mistake.file for mistake in zoe.mistakes} == {"level B of Loco-data.txt"}
         assert faults(quinn.why) == [f for m in zoe.mistakes for f in faults(m.phrase)] == []

@@ -26,7 +26,7 @@ def called(cup: Cup, court: str = "north") -> Called:
 
 
 def test_free_courts_that_are_there_get_games() -> None:
-    """Each court that was heard lately gets a game, no team gets two; a held game is left out."""
+    """Each court that was heard lately gets a game; no team gets two; no held game is called."""
     cup = Cup()
     seen = {"north": Seen(NOW_MS), "gone": Seen(NOW_MS - LOST_MS), "south": Seen(NOW_MS)}
     given = calls(cup.contest, seen, NOW_MS, 0)
@@ -39,7 +39,7 @@ def test_free_courts_that_are_there_get_games() -> None:
 
 
 def test_a_game_that_was_moved_goes_back_unless_it_has_begun() -> None:
-    """It is called again where it was moved; a game that is played stays."""
+    """A moved game is taken back and called to its new court; one that has begun stays."""
     cup = Cup()
     call = called(cup)
     seen = {"north": Seen(NOW_MS, call.id), "south": Seen(NOW_MS)}
@@ -116,7 +116,7 @@ def test_a_game_that_is_not_needed_comes_back() -> None:
 
 
 def test_a_group_called_f_plays_no_final() -> None:
-    """Groups have letters as the parts of a bracket have."""
+    """Matches of the groups f, l and p are named as groups, not as parts of a bracket."""
     contest = Cup(teams=34, groups=17).contest
     (view,) = contest.stages
     said = {fixture(contest, view, match, 1).code for match in view.matches}

@@ -89,7 +89,7 @@ class Room:
         self.desk = Desk(self.book, KEY, CODE, lambda: known)
 
     def ask(self, request: AnyRequest) -> object:
-        """Ask as the network does: encoded."""
+        """Encode a request as the network does, and return the desk's answer."""
         return self.desk.judge(encode(request))
 
     @property
@@ -126,7 +126,7 @@ def said(answer: object) -> str:
 
 
 def test_a_team_enters_by_page(room: Room) -> None:
-    """It applies, the organiser approves, and the fact is that of the command."""
+    """A team applies; when the organiser approves, a fact with its files is appended."""
     applied = room.ask(Apply(secret="k7q m3x", team=" Bees ", files=sample()))
     assert isinstance(applied, OwnEntry)
     assert (applied.team, applied.state) == ("Bees", "waits")
@@ -146,7 +146,7 @@ def test_a_team_enters_by_page(room: Room) -> None:
 
 
 def test_files_are_replaced_until_entries_close_then_with_a_reason(room: Room) -> None:
-    """Before, a team changes its files itself; after, the organiser decides, and says why."""
+    """Until entries close, a team replaces its files; later the organiser must approve them."""
     room.enter("Ants")
     applied = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert isinstance(applied, OwnEntry)
@@ -186,14 +186,17 @@ def test_all_mistakes_are_told_and_the_organiser_sees_them(room: Room) -> None:
 
 @pytest.mark.parametrize("name", ["Ants", "ANTS", "Ａnts", " ants ", "Bees"])
 def test_a_name_has_one_owner(room: Room, name: str) -> None:
-    """A name that is in or waits is taken, also with other capitals, wide letters or spaces."""
+    """The name of a team that has entered or applied is taken.
+
+    Another team can't have it with other capitals, wide letters or spaces either.
+    """
     room.enter("Ants")
     room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert said(room.ask(Apply(secret=CODE, team=name, files=sample()))) == "desk.name-taken"
 
 
 def test_a_declined_name_is_free_and_its_link_opens_nothing(room: Room) -> None:
-    """Whoever takes the name next gets another token."""
+    """The link of a declined team opens nothing; whoever takes its name gets another token."""
     first = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert isinstance(first, OwnEntry)
     room.ask(Decline(secret=KEY, team="Bees"))
@@ -205,7 +208,7 @@ def test_a_declined_name_is_free_and_its_link_opens_nothing(room: Room) -> None:
 
 
 def test_applications_are_there_after_a_restart(room: Room) -> None:
-    """They lie on the disk, with the files."""
+    """Applications and their files are on the disk, so a restarted office has them."""
     room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     with Applications(room.where.applications) as again:
         assert again.waiting.keys() == {"Bees"}
@@ -213,7 +216,7 @@ def test_applications_are_there_after_a_restart(room: Room) -> None:
 
 
 def test_entries_close_once_and_need_two_teams(room: Room) -> None:
-    """Closing is a fact; a team that waits then does not take part."""
+    """Closing entries appends a fact; a team that is still waiting does not take part."""
     room.enter("Ants")
     assert said(room.ask(CloseEntries(secret=KEY))) == "contest.few-teams"
     room.enter("Bees")
@@ -226,7 +229,7 @@ def test_entries_close_once_and_need_two_teams(room: Room) -> None:
 
 
 def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
-    """The preview appends nothing; the decision is the fact of the command, and moves ranks."""
+    """A preview appends no fact; the decision has the shown effect on matches and ranks."""
     room.enter("Ants", "Bees")
     room.ask(CloseEntries(secret=KEY))
     room.draw()
@@ -256,7 +259,7 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
 
 
 def test_a_match_is_moved(room: Room) -> None:
-    """The view has it where it was moved; a wrong court is refused."""
+    """After a move, the view has the match at its new court and time; a wrong court is refused."""
     room.enter("Ants", "Bees", "Crabs", "Dogs")
     room.ask(CloseEntries(secret=KEY))
     room.draw()
@@ -275,7 +278,7 @@ def test_a_match_is_moved(room: Room) -> None:
 
 
 def test_an_unchanged_view_is_not_sent_again(room: Room) -> None:
-    """If the page has the newest view, the answer has none."""
+    """If a page already has the newest view, the answer to it has no view."""
     answer = room.ask(Overview(secret=KEY, known=room.view.version))
     assert isinstance(answer, Overviewed)
     assert answer.view is None
@@ -303,7 +306,7 @@ def test_a_token_of_the_command_is_known_at_once(room: Room) -> None:
 
 
 def test_roles_hold(room: Room) -> None:
-    """No role can do what is another's, and after many guesses the answer is to slow down."""
+    """No role can do what only another role may do; after many guesses the desk asks to wait."""
     room.enter("Ants", "Bees")
     token = room.tokens.of("Ants")
     before = (room.facts, room.applications.waiting)
@@ -339,7 +342,7 @@ def test_roles_hold(room: Room) -> None:
 
 
 def test_what_is_no_request_is_refused(room: Room) -> None:
-    """Bytes of any kind get an answer, and nothing else happens."""
+    """Bytes that are no request are refused, and nothing is drawn."""
     for payload in (b"", b"\xc1", b"\x80", encode({"do": "draw"}), b"x" * 200_000):
         assert said(room.desk.judge(payload)) == "desk.bad-request"
     assert not any(isinstance(fact, Drawn) for fact in room.facts)

@@ -159,7 +159,7 @@ def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
 
 
 def test_a_team_leaves_once(cup: Cup) -> None:
-    """A team can withdraw once and be disqualified later; a team that is not there can't leave."""
+    """A team can withdraw once and be disqualified later; one that never entered can't leave."""
     cup.enter("Ann")
     for _ in range(2):
         cup.out("Ann")

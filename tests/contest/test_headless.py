@@ -33,7 +33,7 @@ def games(played: Path) -> int:
 
 
 def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: Path) -> None:
-    """Two other processes give the same tables, byte for byte, as this process alone."""
+    """Two worker processes give the same tables, byte for byte, as this process alone."""
     again = contest_played.enter(tmp_path / "again")
     assert contest_played.play(again, jobs=2) == games(played)
     first, second = (organiser.sheet(file) for file in (played / "contest.toml", again))
@@ -48,7 +48,7 @@ def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: P
 
 
 def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied: Path) -> None:
-    """Games with a whole record are not played again, not even in a new contest with them."""
+    """Games with a whole record are not played again, not even in a new contest with its copy."""
     assert contest_played.play(copied) == 0
     again = contest_played.enter(tmp_path / "new")
     shutil.copytree(played / "records", again.parent / "records")
@@ -77,7 +77,10 @@ def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:
     "how", [pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGKILL]
 )
 def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: int) -> None:
-    """After a kill, only games without a record are played, and the tables are the same."""
+    """A contest that was stopped or killed plays only the games without a record.
+
+    Its tables are those of an undisturbed contest.
+    """
     file = contest_played.enter(tmp_path / "stopped")
     records = file.parent / "records"
     words = ["contest", "run", "contest.toml", "--headless", "--jobs", "1", "--json"]
@@ -94,7 +97,10 @@ def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: i
 
 @pytest.mark.long
 def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> None:
-    """If processes are killed, their games are played again, and the tables are the same."""
+    """If worker processes are killed, their games are played again.
+
+    The tables are those of an undisturbed contest.
+    """
     file = contest_played.enter(tmp_path / "killed")
     where = ContestFolder(file)
     kills = 3
@@ -135,7 +141,7 @@ def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
 
 
 def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> None:
-    """A team that leaves before the draw is not drawn; later it loses its open matches."""
+    """A team that leaves before the draw is not drawn; one that leaves later loses open matches."""
     file = contest_played.enter(tmp_path / "left", CONTEST + SWISS)
     organiser.take_out(file, "Eve", "ill", disqualified=False)
     where = ContestFolder(file)

@@ -48,7 +48,7 @@ def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -
 
 
 def test_stages_with_other_levels_are_other_games(tmp_path: Path) -> None:
-    """A team is weighed in for each arena, and again where other levels are open."""
+    """Stages of one arena share a weigh-in, unless they open other levels of control."""
     stages = [
         f'[stage.{name}]\nformat = "swiss"\nsettings.match.{setting}\n'
         for name, setting in (

@@ -177,7 +177,7 @@ def test_earlier_facts_must_still_be_there() -> None:
 
 
 def test_files_count_from_when_they_were_entered() -> None:
-    """A team may play with its newest files; after entries closed, also with those before them."""
+    """A team's newest files count; if they changed after entries closed, those before them too."""
     game = new(Played, pairing="a", game=1, teams=("A", "B"), scores=(0, 0), outcome="draw")
     facts = numbered(
         new(Entered, team="A", files="1"),
@@ -243,7 +243,7 @@ def test_the_promised_number_of_forgeries_is_found_as_often_as_promised(
 
 
 def test_a_sample_takes_each_pair_equally_often() -> None:
-    """Every pair of 5 games is chosen about equally often, and the same seed chooses the same."""
+    """All pairs of 5 games are drawn about equally often; one seed always draws the same pair."""
     counts = dict.fromkeys(combinations(range(5), 2), 0)
     for seed in range(5000):
         one, two = sorted(sample(range(5), 2, seed))

@@ -1,4 +1,4 @@
-"""Defines a target for each reader of foreign bytes; only undocumented errors leave a target."""
+"""Defines a target for each reader of foreign bytes; a target raises only undocumented errors."""
 
 import os
 import tempfile

@@ -245,7 +245,12 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
         ("Loco-data.txt", "LocoTra.txt", "0" + ",0" * 100, "the longest sequence has 101 postures"),
         ("Loco-data.txt", "Loco-data.xlsx", "0", "--keys makes locomotion from postures"),
         ("LocoTra-data.txt", "LocoTra.txt", "0", "--keys makes locomotion from postures"),
-        ("Loco-data.txt", "Loco-data.ods", None, "the name of B must end with .txt or .xlsx"),
+        (
+            "Loco-data.txt",
+            "Loco-data.ods",
+            None,
+            "the name of the file to write must end with .txt or .xlsx",
+        ),
         ("Loco-data.txt", "no/folder.txt", None, "No such file or directory"),
         ("many.txt", "Loco-data.txt", None, "many.txt has 11 different postures"),
         ("bad.txt", "Loco-data.txt", None, "1 mistake."),

@@ -287,4 +287,4 @@ def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):
     assert read_gait(text.encode(), "x", notes=notes) == read_gait(FIGURE_4_1.encode(), "x")
     (note,) = map(render, notes)
     assert said in note
-    assert note.endswith("The order of the columns counts, not the legend.")
+    assert note.endswith("Each angle goes to the joint of its column, whatever the legend says.")

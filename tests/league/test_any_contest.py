@@ -1,4 +1,4 @@
-"""Tests of random contests: each step is legal, and any order of the facts gives the same."""
+"""Tests of random contests: each step is legal, and facts in any order give the same contest."""
 
 from collections import Counter
 from random import Random

@@ -52,7 +52,7 @@ def test_sides_are_even(players: int, rounds: int) -> None:
 
 @given(PLAYERS, ROUNDS)
 def test_pairs_that_meet_twice_swap_seats(players: int, rounds: int) -> None:
-    """If two players meet several times, each sits left as often as the other, or once more."""
+    """If two players meet several times, they sit left equally often, or one of them once more."""
     seated = Counter(pairings(players, rounds))
     assert all(abs(seated[a, b] - seated[b, a]) <= 1 for a, b in seated)
 

@@ -278,7 +278,7 @@ def test_forged_commands_are_refused_and_counted(
 def test_a_flood_on_one_seat_does_not_touch_the_other(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """During a flood on one seat, all keys of the other take effect, half of them in 200 ms."""
+    """During a flood on one seat, all keys of the other take effect, half of them within 200 ms."""
     one = held(session, "right")
     flood = other_session.publisher(KEYS.command("left"))
     trips = []

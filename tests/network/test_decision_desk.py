@@ -64,7 +64,7 @@ def test_a_request_is_refused_with_its_reason(
 
 
 def test_the_refusal_of_a_wrong_decision_lists_all_decisions() -> None:
-    """A decision that does not fit its key is refused with a list of the decisions there are."""
+    """A decision under another one's name is refused with a list of the decisions there are."""
     refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
     assert isinstance(refusal, Refusal)
     words = render(refusal.why)

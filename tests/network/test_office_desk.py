@@ -81,7 +81,7 @@ def test_an_assignment_is_answered_when_its_match_is_open() -> None:
 
 
 def test_a_call_that_comes_twice_is_prepared_once() -> None:
-    """A call that the court has is accepted again at once; after another call it is refused."""
+    """A call that is sent again is accepted at once, or refused if the court has another call."""
     desk = Desk()
     desk.hold("c1", Phase.LOBBY)
     for phase in (Phase.READY, Phase.PLAYING, Phase.OFFICIAL, Phase.VOID):

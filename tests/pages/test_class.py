@@ -238,7 +238,7 @@ def test_a_tournament_ends_in_large_standings(
     desk.focuses("#tab-rules")
     desk.press("ArrowRight")
     expect(desk.find("#tab-play")).to_be_focused()
-    desk.page.get_by_label("Opponents each").fill("1")
+    desk.page.get_by_label("Opponents of each").fill("1")
     desk.page.get_by_label("Seconds a match").fill("10")
     desk.page.click(".projector")
     desk.page.click(".start button[type=submit]")

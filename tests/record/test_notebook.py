@@ -1,4 +1,4 @@
-"""A record as arrays has what the record has, and a bad record is refused with a sentence."""
+"""Tests of records read as arrays: nothing is lost, and a bad record is refused with a message."""
 
 import dataclasses
 import importlib.util

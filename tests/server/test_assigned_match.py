@@ -108,7 +108,7 @@ def test_a_match_without_a_referee_waits_after_its_result() -> None:
 
 
 def test_teams_that_play_on_keep_their_seats_with_the_new_files() -> None:
-    """A team stays if its token opened the same seat; it gets its files of the new match.
+    """A team whose token is assigned the same seat again stays, with its files of the new match.
 
     A team of the same name whose seat was opened with another token does not stay.
     """

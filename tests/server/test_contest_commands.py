@@ -75,7 +75,7 @@ def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
 def test_show_as_json(tmp_path: Path) -> None:
     """`show --json` gives a command line for each seat, for the referee and for spectators.
 
-    That of a seat has the host given with `--host`, and the seat's token.
+    The command line of a seat has the host that `--host` names, and the seat's token.
     """
     file = tmp_path / "contest.toml"
     run("init", str(file), "--court", "hall")

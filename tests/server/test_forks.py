@@ -1,4 +1,4 @@
-"""Forks of a record: bit for bit the record without a change, and a court's way with one."""
+"""Tests of forks of a record: unchanged forks repeat it bit for bit, others go on as at a court."""
 
 import shutil
 from pathlib import Path
@@ -88,7 +88,7 @@ def test_a_fork_without_a_change_is_the_record(source: Source, tmp_path: Path) -
 
 
 def test_a_fork_names_its_origin(source: Source, tmp_path: Path) -> None:
-    """Its header has match, beat and record of the origin, also if that is a fork itself."""
+    """A fork's header names its origin: match, beat and record; a fork can be an origin too."""
     beat = beat_of(source, "FINISHED")
     first = fork(source, beat, match_id="first", folder=tmp_path)
     assert first.record is not None
@@ -106,7 +106,7 @@ def test_a_fork_names_its_origin(source: Source, tmp_path: Path) -> None:
 
 
 def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> None:
-    """An event taken back in a fork gives the scores of the referee's dry run at the end."""
+    """A fork that takes an event back ends with the scores that the referee's dry run gave."""
     events = flips(source)
     assert events
     match = resume(source.record.until(beat_of(source, "FINISHED"))).match
@@ -122,9 +122,9 @@ def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> 
 
 @pytest.mark.slow
 def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path) -> None:
-    """The bots that played go on as they did, and otherwise with other reactions.
+    """If the recorded bots take over, the end is the recorded one; other reactions change it.
 
-    A script's keys come at their times, also [x].
+    Keys of a script, also [x], come at their times; the other seat keeps its recorded keys.
     """
     first = beat_of(source, "PLAYING") + 1
     beat = first + 50
@@ -170,7 +170,7 @@ def test_an_unfinished_match_goes_on(source: Source, tmp_path: Path) -> None:
 
 
 def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
-    """A fork has not the call and the fixture of the match, and its id is not that of a match."""
+    """A fork of an assigned match has the call "fork" and its own fixture; no match has its id."""
     from lacoc_server.simulate.forks.origin import stem
     from lacoc_shared.messages.office import Assigned
 
@@ -187,7 +187,7 @@ def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
 
 
 def test_a_contest_with_a_fork_is_found_out(source: Source, tmp_path: Path) -> None:
-    """A fork in place of a published record is named as what it is."""
+    """If a fork replaces a published record, the check says which match it is a fork of."""
     (tmp_path / "records").mkdir()
     forked = fork(source, source.last_beat, match_id="f", folder=tmp_path / "records")
     assert forked.record is not None
@@ -240,7 +240,7 @@ def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path
     ],
 )
 def test_a_mistake_is_explained(words: tuple[str, ...], said: str, file: Path) -> None:
-    """Whatever is wrong with a wish for a fork, the error says what and what to do."""
+    """If options of `fork` are wrong, the error says which and why, and no fork is written."""
     code, found = run(fork_app, str(file), *words, "--out", str(file.parent))
     assert code != 0
     assert said in found
@@ -248,7 +248,10 @@ def test_a_mistake_is_explained(words: tuple[str, ...], said: str, file: Path) -
 
 
 def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: Path) -> None:
-    """No record, a damaged one and one of another MuJoCo are refused, each with its reason."""
+    """A file that is no record, a damaged record and one of another MuJoCo can't be forked.
+
+    Each is refused with its reason.
+    """
     text = tmp_path / "text.mcap"
     text.write_text("no record")
     code, said = run(fork_app, str(text), "--beat", "100")

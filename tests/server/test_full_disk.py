@@ -91,7 +91,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event with these words in its reason has come; its frame may come first."""
+    """Return whether an event whose reason has these words has arrived, even after its frame."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
@@ -100,7 +100,8 @@ def is_given(those: Party, reason: str) -> bool:
 def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: Path) -> None:
     """While the disk is full no beat passes; when there is room again, the match is halted.
 
-    Published frames of PLAYING were in the record before, and decisions are refused meanwhile.
+    Each frame of PLAYING is in the record before it is published. While the disk is full, decisions
+    are refused.
     """
     contest = write_contest(tmp_path / "contest.toml")
     seen: dict[int, bytes] = {}

@@ -76,7 +76,10 @@ def test_a_court_does_not_take_up_the_match_of_another(tmp_path: Path) -> None:
 
 
 def test_the_packed_match_of_another_court_hides_none(tmp_path: Path) -> None:
-    """A newer match of another court does not hide an unfinished match; one of its own does."""
+    """An unfinished match goes on unless its own court has a newer match.
+
+    Newer matches of other courts do not count.
+    """
     match_id = killed(tmp_path, "final")
     for court in ("semi-final", "final-b", "zoo"):
         (tmp_path / f"{LATER}-{court}-002.mcap").touch()

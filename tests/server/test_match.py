@@ -184,7 +184,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both seats press [x] in one tick, each gets its first place in either order of arrival."""
+    """If both seats press [x] in one tick, both get their first place, whichever comes first."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)

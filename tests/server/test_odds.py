@@ -1,4 +1,4 @@
-"""The odds of a match: the chance from margins, where to look, and what is kept."""
+"""Tests of odds: the chance from margins of forks, the choice of moments, and the kept file."""
 
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -30,7 +30,7 @@ MARGINS = st.lists(st.integers(-36, 36), min_size=1, max_size=12)
 
 @given(MARGINS)
 def test_the_chances_of_both_seats_add_up(found: list[int]) -> None:
-    """The chance is a probability, and that of the other seat is the rest."""
+    """Each seat's chance to win is from 0 to 1, and the chances of both seats add up to 1."""
     one, other = odds.chance(found), odds.chance([-margin for margin in found])
     assert 0 <= one <= 1
     assert one + other == pytest.approx(1)
@@ -39,7 +39,7 @@ def test_the_chances_of_both_seats_add_up(found: list[int]) -> None:
 
 @given(MARGINS, st.integers(1, 20))
 def test_more_points_are_a_better_chance(found: list[int], more: int) -> None:
-    """If every fork ended better, the chance is not worse."""
+    """If every fork ends with more points for a seat, its chance is at least as large."""
     assert odds.chance([margin + more for margin in found]) >= odds.chance(found)
 
 
@@ -48,7 +48,7 @@ def test_more_points_are_a_better_chance(found: list[int], more: int) -> None:
     [(1.0, 1, 0.75), (2.92, 2, 0.95), (2.015, 5, 0.95), (1.812, 10, 0.95), (0.0, 7, 0.5)],
 )
 def test_student(t: float, freedom: int, expected: float) -> None:
-    """The distribution has the values of the printed tables."""
+    """`student` gives the values of printed tables of Student's distribution."""
     assert odds.student(t, freedom) == pytest.approx(expected, abs=5e-4)
 
 
@@ -57,7 +57,7 @@ def moment(beat: int, chance: float) -> Moment:
 
 
 def test_swings_and_where_to_look() -> None:
-    """The largest change comes first, and the next look is just after an event in it."""
+    """Swings are sorted, the largest first; a swing's next moment is just after an event in it."""
     found = [moment(0, 0.5), moment(100, 0.55), moment(300, 0.95), moment(400, 0.6)]
     first, second, third = odds.swings(found)
     assert [one.before.beat for one in (first, second, third)] == [100, 300, 0]
@@ -70,7 +70,7 @@ def test_swings_and_where_to_look() -> None:
 
 
 def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
-    """There is a moment before and after each of the largest changes; near ones count as one."""
+    """There is a moment before and after each of the largest changes; near changes count as one."""
     playing = range(1000, 1400)
     leads = [0.0] * 400
     for index, change in ((50, 1.0), (55, 3.0), (200, 2.0), (300, -1.0), (395, -8.0)):
@@ -82,7 +82,7 @@ def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
 
 
 def test_near_moments_share_their_forks() -> None:
-    """Forks count for moments up to a second away; the end keeps its chance."""
+    """A fork counts for all moments up to a second away; the chance at the end stays as it is."""
     margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 101: (1.0, 1.0)}
     found = [
         Moment(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
@@ -117,7 +117,7 @@ class Counting:
 
 @pytest.mark.slow
 def test_the_odds_of_a_record(tmp_path: Path) -> None:
-    """Odds end with the result; what is known is not played again, and a swing is a highlight."""
+    """The last odds are those of the result, and forks that are kept are not played again."""
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "planner"), player(arena, 1, "straight")]
     result = simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
@@ -175,13 +175,16 @@ def test_the_command_lists_highlights(tmp_path: Path) -> None:
 
 
 def test_an_error_comes_back_as_words(tmp_path: Path) -> None:
-    """An error that a user can correct, as a missing record, is returned and not raised."""
+    """An error that a user can correct, such as a missing record, is returned and not raised."""
     job = ChanceJob(file=str(tmp_path / "none.mcap"), beat=1, bots=("a", "b"), variants=(1,))
     assert isinstance(margins(job), Phrase)
 
 
 def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
-    """Another game in a folder, bot file, record of a ghost or software gives another key."""
+    """The hash of kept forks changes with all that decides them.
+
+    That is the file of a bot, the record of a ghost, the folder of the game, and the software.
+    """
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "straight"), player(arena, 1, "straight")]
     simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
@@ -207,7 +210,7 @@ def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyP
 
 
 def test_odds_of_another_version_are_not_used(tmp_path: Path) -> None:
-    """A file of another layout is computed again."""
+    """A file of odds that has another format is not read."""
     path = tmp_path / "m.odds.json"
     odds_ = Odds(
         format=0, match_id="m", record_hash="", seats=("l", "r"), bots=("a", "b"), moments=()

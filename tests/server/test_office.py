@@ -155,7 +155,7 @@ def test_frozen_files_win(waiting: Office) -> None:
 
 
 def test_the_same_call_twice_opens_one_match(waiting: Office) -> None:
-    """The same call is accepted again and changes nothing; after another call it is refused."""
+    """A call that is sent again changes nothing; it is refused once the court has another call."""
     call = waiting.assign("Ants", "Bees")
     left = waiting.controller("left", "Ants")
     left.join()

@@ -487,7 +487,7 @@ def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
 
 
 def test_silence_and_hearing_are_only_told_once() -> None:
-    """A silence that is reported twice is logged once; the end of a silence is too."""
+    """A silence that is reported twice is logged once, and so is the end of a silence."""
     stage = Stage().to(P.PLAYING)
     for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
         stage.beat(item)

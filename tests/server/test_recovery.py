@@ -89,7 +89,7 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
         those.reach(Phase.HALTED)
         if those.frame.clock_ticks == seen.clock_ticks:
             assert (those.frame.poses, those.frame.digest) == (seen.poses, seen.digest)
-        words = "the court was started again on a computer that calculates a little differently"
+        words = "the court was started again on another computer, whose results differ slightly"
         those.until(lambda: any(words in render(event.said) for event in those.view.events))
         those.decide(Resume(), Phase.PLAYING)
         began = those.frame.clock_ticks

@@ -102,7 +102,7 @@ def test_a_saved_match_goes_on_as_if_it_was_not_saved(arena: str, data: st.DataO
 
 @pytest.mark.parametrize("phase", [p for p in P if p is not P.CREATED])
 def test_every_phase_can_be_saved(phase: Phase) -> None:
-    """A match of any phase goes on in a new match; in the lobby the field stays empty."""
+    """A match that is saved in any phase, and loaded into a new one, goes on as it would have."""
     stage = Stage("othello", QUICK).to(phase)
     match = Match(setup("othello", QUICK), stage._make)
     match.load(stage.match.save())

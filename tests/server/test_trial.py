@@ -136,14 +136,14 @@ def test_the_figures_of_the_sample(sample: Walk) -> None:
 
 
 def test_feet_that_are_down_are_low(sample: Walk) -> None:
-    """In over 95 % of the ticks, a foot is down by its load exactly if it is lower than 1 mm."""
+    """In over 95 % of the ticks, a foot that counts as down is lower than 1 mm, others higher."""
     part = slice(sample.span.first, sample.span.end)
     down = sample.down[part]
     assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95
 
 
 def test_contact_has_two_bounds() -> None:
-    """A foot comes down above 2 % of the weight, and stays down until its load is below 1 %."""
+    """A foot counts as down from a load of 2 % of the weight, until its load is below 1 %."""
     load_n = np.array([[0.015], [0.03], [0.015], [0.005], [0.015]])
     assert feet_down(load_n, 1.0)[:, 0].tolist() == [False, True, True, False, False]
 

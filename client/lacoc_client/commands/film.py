@@ -42,7 +42,7 @@ def film_command(
         View,
         typer.Option(
             help="What the camera shows: auto follows the action, left and right follow a robot, "
-            "split has a window behind each of them."
+            "split has two pictures, each from behind one robot."
         ),
     ] = View.AUTO,
     overlay: Annotated[
@@ -58,8 +58,8 @@ def film_command(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="With --highlights: JSON with the moments to choose from; by default those in "
-            "which the score changed.",
+            help="With --highlights: a JSON file with the moments to choose from; by default those "
+            "in which the score changed.",
         ),
     ] = None,
     poster: Annotated[
@@ -71,7 +71,8 @@ def film_command(
         typer.Option(help="Language of the overlay; by default that of this program."),
     ] = None,
     size: Annotated[
-        str, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the film; even numbers.")
+        str,
+        typer.Option(metavar="WIDTHxHEIGHT", help="Size of the film in pixels: two even numbers."),
     ] = "1280x720",
     fps: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 30,
     quality: Annotated[
@@ -84,7 +85,9 @@ def film_command(
     jobs: Annotated[
         int | None,
         typer.Option(
-            min=1, max=16, help="Browsers that draw at a time; by default one a core, at most four."
+            min=1,
+            max=16,
+            help="How many browsers draw at a time; by default one for each core, at most four.",
         ),
     ] = None,
 ) -> None:

@@ -85,8 +85,8 @@ def web_command(
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="Address of the desk of a contest's office, which 'lacoc contest run' gives; with "
-            "it there are the pages /office and /enter.",
+            help="Address of the desk of a contest's office; 'lacoc contest run' passes it on. If "
+            "it is given, the pages /office and /enter are served.",
         ),
     ] = None,
     metrics: options.Metrics = None,

@@ -72,8 +72,8 @@ def demo_command(
     browser, or in the terminal if there is no browser. At the end the record is simulated again and
     must give the same match, bit for bit. In a terminal the page and its replay stay until Ctrl-C.
 
-    With --contest, eight bots play a tournament; with --headless too, without courts and as fast as
-    the machine can. Its folder is published, and everything in it is checked.
+    With --contest, eight bots play a tournament. Add --headless to play it without courts, as fast
+    as the machine can. The folder of the contest is published, and everything in it is checked.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all started processes end too
     if contest:

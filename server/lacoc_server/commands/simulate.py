@@ -37,8 +37,8 @@ def simulate_command(
         list[str],
         typer.Argument(
             help="Who plays: bots of the arena (such as 'straight' and 'planner'), your_bot.py, or "
-            "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two play "
-            "one match; more play everybody against everybody, or --rounds."
+            "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two "
+            "players play one match; of more, each plays every other, or as --rounds says."
         ),
     ],
     arena: Annotated[
@@ -62,8 +62,8 @@ def simulate_command(
         int | None,
         typer.Option(
             metavar="N",
-            help="Everybody plays N others, in both seats as evenly as possible, instead of "
-            "everybody. With an odd number of players, one rests in each round.",
+            help="Each player meets N others instead of all of them, in both seats as evenly as "
+            "possible. With an odd number of players, one rests in each round.",
             min=1,
         ),
     ] = None,
@@ -79,7 +79,7 @@ def simulate_command(
         typer.Option(
             "--leave-out",
             help="Leave out and name those who can't play: their files have mistakes, or their "
-            "robot does not stand. Without this nothing begins.",
+            "robot does not stand. Without this option, no match begins if there is such a player.",
         ),
     ] = False,
     record: Annotated[

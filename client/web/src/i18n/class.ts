@@ -24,8 +24,8 @@ export const classroom = {
   "class.studios": ["Studio ready", "スタジオ稼働中"],
   "class.studiosMany": ["{count} studios ready", "スタジオ {count} 台稼働中"],
   "class.noStudio": [
-    "Waiting for a studio. Students can edit, but not try yet.",
-    "スタジオを待っています。編集はできますが、まだ歩かせることはできません。",
+    "Waiting for a studio. Students can edit their tables, but can't let robots walk yet.",
+    "スタジオを待っています。生徒は表を編集できますが、まだロボットを歩かせられません。",
   ],
   "class.projector": ["Projector mode", "投影モード"],
   "class.projectorHint": [
@@ -41,8 +41,8 @@ export const classroom = {
     "まだ誰も参加していません。生徒はアドレスを開き、コードを入力します。",
   ],
   "class.holds": [
-    "The order waits while you are on the cards.",
-    "カードを操作している間は並べ替えません。",
+    "The cards keep their order while you use them.",
+    "カードを操作している間は、カードを並べ替えません。",
   ],
   "class.legend.met": ["done", "達成"],
   "class.legend.now": ["now", "今ここ"],
@@ -68,7 +68,7 @@ export const classroom = {
   "class.tries": ["Trials", "試行"],
   "class.lastTrial": ["Last trial", "前回の試行"],
   "class.progress": ["Phase {number}: {title}", "段階 {number}：{title}"],
-  "class.act.lower": ["Take the hand down", "挙手を下ろす"],
+  "class.act.lower": ["Take the hand down", "挙手を取り消す"],
   "class.act.show": ["Big screen", "大画面"],
   "class.act.showHint": [
     "Let this robot walk, large enough for the whole room",
@@ -105,8 +105,8 @@ export const classroom = {
   "class.coach": ["The coach may", "コーチにできること"],
   "class.coach.none": ["do nothing", "何もしない"],
   "class.coach.matters": ["show which numbers matter", "効く数値を示す"],
-  "class.coach.cell": ["change one number", "1 個だけ変える"],
-  "class.coach.three": ["change three numbers", "3 個まで変える"],
+  "class.coach.cell": ["change one number", "数値を 1 個だけ変える"],
+  "class.coach.three": ["change up to three numbers", "数値を 3 個まで変える"],
   "class.coach.table": ["change the whole table", "表全体を変える"],
   "class.explain": ["Explain first", "先に説明する"],
   "class.explainHint": [
@@ -146,7 +146,7 @@ export const classroom = {
   "class.play.game": ["Game", "競技"],
   "class.play.othello": ["Othello", "オセロ"],
   "class.play.flag-strike": ["Flag strike", "フラッグストライク"],
-  "class.play.rounds": ["Opponents each", "1 人あたりの対戦相手"],
+  "class.play.rounds": ["Opponents of each", "1 人あたりの対戦相手の数"],
   "class.play.seconds": ["Seconds a match", "1 試合の秒数"],
   "class.play.start": ["Start", "開始"],
   "class.play.stop": ["Stop", "中止"],
@@ -176,7 +176,7 @@ export const classroom = {
   "class.screen.close": ["Back (Esc)", "戻る（Esc）"],
   "class.screen.next": ["Next student (→)", "次の生徒（→）"],
   "class.screen.previous": ["Previous student (←)", "前の生徒（←）"],
-  "class.screen.wait": ["The robot walks …", "計算しています…"],
+  "class.screen.wait": ["Computing the walk …", "歩行を計算しています…"],
   "class.screen.speed": ["forward", "前進"],
   "class.screen.full": ["Full screen", "全画面"],
 } as const satisfies Record<string, readonly [string, string]>;

@@ -17,7 +17,7 @@ export const design = {
   "design.class.closed": ["closed", "閉じています"],
   "design.class.coachPart": [
     "Your teacher has closed the other searches of the coach for now.",
-    "コーチのほかの探索は、今は先生が使えないようにしています。",
+    "コーチのほかの探索は、今は使えません（先生が止めています）。",
   ],
   "design.class.who": ["You are {name}", "あなたは {name} さんです"],
   "design.class.leaveHint": [
@@ -133,7 +133,7 @@ export const design = {
   "design.compare": ["Compare", "比べる"],
   "design.compareHint": [
     "Show the trial before this one as a ghost, with all differences",
-    "前の試行を半透明で重ね、数値の差を表示します",
+    "前の試行を半透明で重ね、数値の差をすべて表示します",
   ],
   "design.compared": ["{one} and {other}", "{one} と {other}"],
   "design.pressed": ["Key that is tried", "試すキー"],
@@ -186,7 +186,7 @@ export const design = {
   "design.selectRow": ["Select the row", "行を選択"],
   "design.seamJump": [
     "A jump: from the last posture of the key back to the first, this joint turns much farther than in any other step",
-    "つなぎ目の跳び：最後の姿勢から最初の姿勢に戻るとき、この関節だけ大きく動きます",
+    "急な動き：キーの最後の姿勢から最初の姿勢に戻るとき、この関節はほかの動きよりずっと大きく動きます",
   ],
   "design.step.of": ["Posture {step} of the key", "このキーの {step} 番目の姿勢"],
   "design.bad.empty": ["There is no number here", "数値がありません"],
@@ -233,7 +233,7 @@ export const design = {
     "Rows {keys} become the mirror of the key's first half",
     "行 {keys} を、キーの前半の左右反転にします",
   ],
-  "design.tool.live": ["keep both halves mirrored", "半分どうしを常に反転に保つ"],
+  "design.tool.live": ["keep both halves mirrored", "前半と後半を常に左右反転に保つ"],
   "design.tool.leg": ["Copy leg {from} to {to}", "脚 {from} を {to} に写す"],
   "design.tool.copy": ["copying a leg", "脚の複写"],
   "design.tool.addRow": ["Add a row", "行を追加"],
@@ -326,7 +326,7 @@ export const design = {
   "design.coach.matters": ["Which numbers matter?", "どの数値が効く？"],
   "design.coach.improve": [
     "Search for a better gait. Change",
-    "よりよい歩容を探します。変える数：",
+    "よりよい歩容を探します。変える数値の個数：",
   ],
   "design.coach.cell": ["one number", "1 個"],
   "design.coach.cell.hint": ["the best single change", "最もよい 1 か所"],
@@ -374,17 +374,17 @@ export const design = {
     "{place} は {count} 個中 {rank} 番目です。",
   ],
   "design.coach.legend": [
-    "the stronger, the more the number matters. Marks in a cell: +10° above, −10° below; green is faster, red is slower",
+    "the stronger the colour, the more the number matters. Marks in a cell: +10° above, −10° below; green is faster, red is slower",
     "色が濃いほど効く数値です。セルの印は上が +10°、下が −10°。緑は速く、赤は遅くなります",
   ],
   "design.coach.mark": ["+10°: {up} mm/s, −10°: {down} mm/s", "+10°：{up} mm/s、−10°：{down} mm/s"],
   "design.coach.nothing": [
-    "The coach found nothing better of this size.",
+    "The coach found no better gait with a change of this size.",
     "この大きさの変更では、よりよい歩容は見つかりませんでした。",
   ],
   "design.coach.guessGain": [
-    "Found something ({size}). How much better will it be?",
-    "見つかりました（{size}）。どれくらいよくなるでしょう？",
+    "A better gait was found: change {size}. How much better will it be?",
+    "よりよい歩容が見つかりました（変える数値：{size}）。どれくらいよくなるでしょう？",
   ],
   "design.coach.gain.little": ["a little", "少し"],
   "design.coach.gain.half": ["by half", "1.5 倍"],
@@ -397,7 +397,7 @@ export const design = {
   "design.coach.others": ["Or look at other gaits", "ほかの歩容を見る："],
   "design.map": ["Map of gaits", "歩容の地図"],
   "design.map.hint": ["calm to excited, slow to fast", "穏やか～活発、遅い～速い"],
-  "design.map.soFar": ["{filled} cells filled", "{filled} マス"],
+  "design.map.soFar": ["{filled} cells filled", "{filled} マスが埋まりました"],
   "design.map.filled": [
     "{filled} of {cells} cells have a gait. The number in a cell is its speed in mm/s.",
     "{cells} マス中 {filled} マスに歩容があります。マスの数字は速さ（mm/秒）です。",
@@ -411,7 +411,7 @@ export const design = {
   "design.map.excited": ["excited", "活発"],
   "design.map.place": [
     "speed from {speed}, arousal from {arousal}",
-    "速さ {speed} から、活発さ {arousal} から",
+    "速さ {speed} 以上、活発さ {arousal} 以上",
   ],
   "design.map.none": ["no gait was found here", "ここには歩容が見つかっていません"],
   "design.map.own": ["your gait's cell", "自分の歩容のマス"],

@@ -80,7 +80,7 @@ export const office = {
   "office.decide": ["Decide", "決定する"],
   "office.decideOf": ["Decide about {versus}", "{versus} について決定する"],
   "office.decision": ["Decision", "決定"],
-  "office.decision.result": ["It counts with this result", "この結果にする"],
+  "office.decision.result": ["The game counts with this result", "ゲームをこの結果にする"],
   "office.decision.replay": ["The game is played again", "ゲームをもう一度行う"],
   "office.decision.no-show": ["A team did not come", "チームが来なかった"],
   "office.decision.void": ["The match counts for nobody", "試合を無効にする"],

@@ -202,7 +202,7 @@ export const play = {
     "{level} {key}: posture {posture} of {count}",
     "{level} {key}：姿勢 {posture}／{count}",
   ],
-  "pad.standsOne": ["{level} {key} stands", "{level} {key} を保持"],
+  "pad.standsOne": ["{level} {key}: posture is held", "{level} {key}：姿勢を保持"],
   "pad.none": ["No key yet", "まだキーは押されていません"],
   "pad.restart": ["Restart", "再スタート"],
   "pad.restartIn": ["in {seconds} s", "あと {seconds} 秒"],

@@ -65,7 +65,10 @@ export const replay = {
     "The chance to win if bots took over both robots here: what the position is worth, not who plays better",
     "ここからボットが両方のロボットを引き継いだ場合の勝率です。局面の価値を表し、操作のうまさは表しません",
   ],
-  "odds.curve": ["Odds over the match, left above, right below", "試合中の勝率（上が左、下が右）"],
+  "odds.curve": [
+    "Odds during the match: left team above, right team below",
+    "試合中の勝率（上が左のチーム、下が右のチーム）",
+  ],
   "odds.highlights": ["Highlights", "ハイライト"],
   "odds.swing": ["{team}: {before} → {after} %", "{team}：{before} → {after} %"],
   "replay.noteHide": ["Hide", "閉じる"],

@@ -38,13 +38,15 @@ def verify(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="The same contest as it was published before, or its facts.json: what it said "
-            "then must still be there.",
+            help="A folder of this contest that was published earlier, or its facts.json: all that "
+            "it said must still be there.",
         ),
     ] = None,
     sample: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Prove the records of only N games, by chance."),
+        typer.Option(
+            metavar="N", min=1, help="Prove the records of only N games, chosen at random."
+        ),
     ] = None,
     seed: Annotated[
         int | None,

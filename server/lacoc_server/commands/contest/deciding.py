@@ -16,8 +16,8 @@ def decide(
     decision: Annotated[
         Literal["replay", "result", "void", "no-show"],
         typer.Argument(
-            help="replay: the game is played again. result: it counts with --score. void: the "
-            "match counts for nobody. no-show: --team did not come."
+            help="replay: the game is played again. result: the game counts with the points of "
+            "--score. void: the match counts for nobody. no-show: --team did not come."
         ),
     ],
     pairing: Annotated[
@@ -29,7 +29,7 @@ def decide(
         str, typer.Option(metavar="L:R", help="Points of the left and of the right seat.")
     ] = "",
     reason: Annotated[
-        str, typer.Option("--reason", metavar="TEXT", help="Why; everybody can read it.")
+        str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
     ] = "",
     yes: Annotated[bool, typer.Option("--yes", help="Do it without asking.")] = False,
     contest: Contest = FILE,

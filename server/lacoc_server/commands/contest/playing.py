@@ -22,7 +22,7 @@ Contest = Annotated[
 ]
 _Team = Annotated[str, typer.Argument(metavar="TEAM", help="Name of the team.")]
 _Reason = Annotated[
-    str, typer.Option("--reason", metavar="TEXT", help="Why; everybody can read it.")
+    str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
 ]
 
 
@@ -103,8 +103,8 @@ def run(
         bool,
         typer.Option(
             "--entries",
-            help="Let teams enter on the page /enter first: until entries_close, or until you "
-            "close entries on the page /office, which stays open after the last game until Ctrl-C. "
+            help="First let teams enter on the page /enter, until entries_close or until you close "
+            "entries on the page /office. /office stays open after the last game, until Ctrl-C. "
             "Not with --headless.",
         ),
     ] = False,
@@ -114,12 +114,12 @@ def run(
 
     The office of the contest runs here, with all courts of the contest file, the pages, and the
     bots of teams that are bots. A free court gets the next game; its result comes from the court.
-    Ctrl-C, or even kill -9, loses nothing: started again, the contest goes on.
+    Ctrl-C, or even kill -9, loses nothing: start it again, and the contest goes on.
 
-    With --headless there is no network: bots play as fast as the machine can. The files of
-    both teams, the rules and the software name a game, and a game whose record is there is not
-    played again. If one entry changes, a new contest with the same folder of records plays only
-    the games of that team.
+    With --headless there is no network: bots play as fast as the machine can. A game is known by
+    the files of both teams, the rules and the software. If its record is there, it is not played
+    again. If one entry changes, a new contest with the same folder of records plays only the games
+    of that team.
     """
     from lacoc_server.contest.headless.pool import Pool, interrupted_by_signals
 

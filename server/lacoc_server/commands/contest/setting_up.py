@@ -138,7 +138,10 @@ def init(
         int, typer.Option(metavar="N", help="Number of courts, with --event.", min=1, max=64)
     ] = 1,
 ) -> None:
-    """Write a contest file with comments and fresh tokens; an older one is kept."""
+    """Write a contest file with comments and fresh tokens.
+
+    If there is a file of that name already, it is kept under another name.
+    """
     Keys(court)
     if event:
         arenas.load(arena)
@@ -192,7 +195,7 @@ def keys(
         list[str] | None,
         typer.Option(
             metavar="HOST",
-            help="Name or number by which others reach the courts' machine; can be given more "
+            help="Name or IP address by which others reach the courts' machine; can be given more "
             "than once.",
         ),
     ] = None,

@@ -25,10 +25,11 @@ File = Annotated[Path, typer.Argument(help="The record: a .mcap file.")]
 Players = Annotated[
     str | None,
     typer.Option(
-        metavar="A,B", help="Bots that play the forks, by seat; by default the game's best bot."
+        metavar="A,B",
+        help="Bots that play the forks, in the order of the seats; by default the game's best bot.",
     ),
 ]
-Times = Annotated[int, typer.Option(metavar="K", help="Forks at each moment.", min=2)]
+Times = Annotated[int, typer.Option(metavar="K", help="Number of forks at each moment.", min=2)]
 Every = Annotated[float, typer.Option(help="Seconds of play between two moments.", min=1.0)]
 ArenaFolder = Annotated[
     Path | None,

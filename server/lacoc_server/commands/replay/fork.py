@@ -31,7 +31,7 @@ def fork_command(
     beat: Annotated[
         int,
         typer.Option(
-            metavar="N", help="First beat that may be other than in the record (20 ms each)."
+            metavar="N", help="First beat that may differ from the record (a beat is 20 ms)."
         ),
     ],
     take_back: Annotated[
@@ -54,22 +54,24 @@ def fork_command(
         str | None,
         typer.Option(
             metavar="A,B",
-            help="Who plays from there, by seat: a bot, your_bot.py, or - for the recorded keys.",
+            help="Who plays from that beat on, in the order of the seats: a bot, your_bot.py, or - "
+            "for the recorded keys.",
         ),
     ] = None,
     times: Annotated[
         int,
         typer.Option(
             metavar="K",
-            help="How many forks are played. The bots react a little later, in each fork by other "
-            "times. More than one also gives odds.",
+            help="How many forks are played. Bots react a little later, by times that differ from "
+            "fork to fork. More than one fork also gives odds.",
             min=1,
         ),
     ] = 1,
     seconds: Annotated[
         float | None,
         typer.Option(
-            help="How long the fork goes on at most; by default until play ends.", min=0.1
+            help="How many seconds the fork goes on at most; by default until play ends.",
+            min=0.1,
         ),
     ] = None,
     out: Annotated[
@@ -77,7 +79,7 @@ def fork_command(
         typer.Option(
             metavar="DIR",
             help="Folder for the records of forks; by default that of the record. With --times, "
-            "records are written only if this is given.",
+            "records are written only if this option is given.",
         ),
     ] = None,
     arena: Annotated[

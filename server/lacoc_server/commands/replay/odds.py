@@ -19,10 +19,10 @@ def odds_command(
     jobs: options.Jobs = None,
     json: options.Json = False,
 ) -> None:
-    """Print the chance to win over the course of a match, from forks with bots in the seats.
+    """Print how the chance to win changes during a match, computed from forks that bots play.
 
-    The chance is that of two bots which take over at that moment, so it tells what the position is
-    worth, not who plays better. It is computed more closely where it changes most.
+    The chance is that of two bots that take over at a moment. So it tells what the position is
+    worth, not who plays better. It is computed at more moments where it changes most.
 
     The odds are kept beside the record, as MATCH.odds.json; /replay shows them as a curve. Forks
     that were played are not played again.
