@@ -179,7 +179,7 @@ class _Checker:
         self._known: dict[tuple[bytes, str, bytes], list[str]] = {}
 
     def findings(self, folder: Path) -> Iterator[str]:
-        """Yield what does not follow."""
+        """Yield what is wrong with a published folder, as sentences."""
         try:
             facts = read(folder)
             yield from map(render, check_published(folder, facts))
@@ -450,7 +450,7 @@ def _records_swapped(copy: _Copy) -> None:
 
 
 def _other_contest(copy: _Copy) -> None:
-    """Take a record of another contest with the same teams; a part also takes its result."""
+    """Take a record of another contest with the same teams; most of the time, its result too."""
     at, path = copy.record()
     there = copy.chance.choice(sorted((copy.other / RECORDS).iterdir()))
     result = Record.read(there).result

@@ -2,7 +2,7 @@
 
     python -m benchmarks.desk_forging [--attempts 10000] [--seed N]
 
-They stand where a gateway stands that was broken into: in Zenoh sessions at the desk's own address.
+They stand where a gateway would stand if it were broken into: in Zenoh sessions at the desk itself.
 They know the event code and the token of one team. They try to do what the organiser does, to enter
 or to change files for another team, to read what is another's, to answer in the desk's name, and to
 append facts with bytes of any kind. An honest organiser asks in between, and must be answered.
@@ -163,7 +163,7 @@ class _Trial:
     # Forgeries
 
     def _organise(self) -> bytes:
-        """Make what only the organiser may ask."""
+        """Make a request that only the organiser may send, with a wrong secret."""
         secret = self._chance.choice(
             ("", self._code, self._mine, page_key(self._where.contest), self._guess(self._key))
         )

@@ -159,7 +159,7 @@ def understand(payload: bytes, kind: type[T]) -> T:
 
 @contextmanager
 def understood() -> Iterator[None]:
-    """Turn a `BadMessage` of a court into a sentence.
+    """Turn a `BadMessage` that the block raises into a `UserError` that people understand.
 
     Raises:
         UserError: in place of `BadMessage`.
@@ -172,7 +172,7 @@ def understood() -> Iterator[None]:
 
 
 def no_answer(session: Session, court: str) -> Phrase:
-    """Say why a court does not answer; if there is no such court, also which ones there are."""
+    """Say why a court does not answer; if no court has this name, list the courts that run."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:

@@ -78,7 +78,7 @@ class Spectator:
         """Take in what arrived.
 
         Returns:
-            The newest frame, if it is a new one.
+            The newest frame; None if none came since the last call, or its sheet is not here yet.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -214,7 +214,10 @@ class Spectator:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events, but not while a requested list, which is older, is under way."""
+        """Take in new events; while a list of events is requested, leave them for later.
+
+        The list is older than they are, so it must be taken in first.
+        """
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
             if event is not None and self._view.add_event(event, mail.payload):

@@ -178,7 +178,7 @@ def recorded() -> Event:
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])
 def test_recorded_matches(ahead_s: float) -> None:
-    """Of the four largest swings of four matches three are on air, at most half a second late."""
+    """At least three of the four largest swings in all matches are on air, 0.5 s late at most."""
     event = recorded()
     shown = direct(event, 250.0, ahead_s)
     swings: list[tuple[int, float, str]] = []
@@ -239,7 +239,7 @@ def halted(time_s: float) -> list[CourtNow]:
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])
 def test_a_halted_match_goes_on(ahead_s: float) -> None:
-    """The countdown after a halt frees no close end, and it begins no new match."""
+    """The countdown after a halt allows no cut from a close end, and counts as no new match."""
     shown = direct(halted, 60.0, ahead_s)
     assert [one.court for one in shown if one.at_s > 6.0] == []
     assert shown[-1].court == "final"

@@ -91,7 +91,7 @@ def test_a_film_is_as_long_as_the_replay(
 def test_views_differ_and_a_still_is_a_picture(
     recorded: Path, with_browser: str, tmp_path: Path
 ) -> None:
-    """Each view is another picture, of the size that was asked for."""
+    """Each view gives a picture of its own, of the size that was asked for."""
     seen = set()
     for view, overlay in ((View.ARENA, True), (View.SPLIT, False)):
         look = Look(view, overlay, "en", WIDTH, HEIGHT, Quality.LOW)

@@ -39,7 +39,7 @@ def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> 
 def test_shots_are_in_order_and_within_the_match(
     ends: tuple[int, int], beats: list[int], opening: bool
 ) -> None:
-    """Shots do not touch, lie in the match, show each moment in it, and end with its end."""
+    """Shots lie in the match without touching and show each moment; the last one ends with it."""
     first, last = ends
     shots = plan.highlights([Moment(beat) for beat in beats], first, last, opening=opening)
 

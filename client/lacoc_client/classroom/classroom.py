@@ -207,7 +207,7 @@ class Classroom:
         self._tell_card(student)
 
     async def admit(self, student: ClassStudent) -> None:
-        """Let the next browser that shows the class code in under this student's name."""
+        """Let in, as this student, the next browser with the class code and the student's name."""
         student.token_hash = ""
         await student.diary.write(student.kept_token())
 

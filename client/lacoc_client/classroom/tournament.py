@@ -207,7 +207,10 @@ class Tournament:
 
 
 class _Team(msgspec.Struct, frozen=True):
-    """A player of the command: nickname, and the name of each file as the player knows it."""
+    """A player of the tournament: the nickname, and what the player calls each file.
+
+    `files` maps the name under which a file was written to the name that the player gave it.
+    """
 
     name: str
     files: dict[str, str]

@@ -44,8 +44,8 @@ class CameraPage:
         """Go through some pictures, and return the last one as PNG.
 
         Args:
-            steps: all pictures since the last call, in order: what moves and the automatic camera
-                go on with each of them.
+            steps: all pictures since the last call, in order: the page goes through each, so that
+                moving parts and the automatic camera are where they must be in the last.
         """
         told = [{"beat": step.beat, "cut": step.cut} for step in steps]
         self._page.evaluate(_SHOW, told)

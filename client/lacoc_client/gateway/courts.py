@@ -93,7 +93,7 @@ class Courts:
         return say("gateway.full", most=most)
 
     async def watch_files(self) -> None:
-        """Tell the pages that may act when the files on this machine have changed."""
+        """Watch the files on this machine; when they change, tell all pages that may act."""
         own = self.home.prefill.files if self.home.prefill is not None else None
         while own is not None:
             await asyncio.sleep(_FILES_S)

@@ -70,7 +70,7 @@ def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
 
 @dataclass(frozen=True)
 class Different:
-    """A rule that one group must have a number of different things, such as a leg six postures."""
+    """A rule that a group must have `count` different things, such as six postures of a leg."""
 
     things: Callable[[Evidence], Iterable[tuple[Hashable, Hashable]]]
     """Takes a piece of evidence; returns its pairs of a group and a thing."""
@@ -141,7 +141,7 @@ class TriedWhere:
     """What is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the trial with the largest share, the last one if several do."""
+        """Return the outcome of the trial with the largest share; of equal ones, of the last."""
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [_all([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
         return max(best, key=_share, default=Outcome(0.0, (self.none,)))
@@ -183,12 +183,12 @@ class After:
 
 @dataclass(frozen=True)
 class OneVersion:
-    """A rule that the evidence of one and the same version of the table must meet a rule."""
+    """A rule that another rule must be met by evidence of a single version of the table."""
 
     shown: Predicate
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the version with the largest share, the last one if several do."""
+        """Return the outcome of the version with the largest share; of equal ones, of the last."""
         versions: dict[str, list[Evidence]] = {}
         for one in evidence:
             if isinstance(one, Edited | Tried | Checked | Compared | Coached):
