@@ -1,12 +1,12 @@
 """`python -m benchmarks.contest_forging`: how many forgeries does `lacoc contest verify` find?
 
-A small contest is played and published. Then one thing after another in a copy of the folder is
-forged, so that it means something else: facts, entries, records, tables. After a forged fact the
-sheet and the tables are sometimes computed again, and the facts numbered again.
+A small contest is played and published. In each of many copies of the folder one thing is forged,
+so that it means something else: a fact, an entry, a record or a table of standings. After a forged
+fact the sheet and the standings are sometimes computed again, and the facts numbered again.
 
-Some histories fit together, and nobody can tell them from the true one: the last facts are missing,
-or a decision was added. An earlier publication finds them with `--earlier`, and each decision is
-listed; they are counted apart.
+Two kinds of forgery leave a history that nobody can tell from a true one: the last facts are
+missing, or a decision was added. The first is found with an earlier publication (`--earlier`); for
+the second, each decision is listed. Both kinds are counted apart.
 """
 
 import argparse

@@ -7,8 +7,8 @@ They know the event code and the token of one team. They try to do what the orga
 or to change files for another team, to read what is another's, to answer in the desk's name, and to
 append facts with bytes of any kind. An honest organiser asks in between, and must be answered.
 
-The command ends with 0 if nothing was accepted, changed (facts, applications, tokens), told of
-others or overheard, and the organiser was always answered.
+The command ends with 0 if no forgery was accepted or changed anything (facts, applications,
+tokens), nothing was told of other teams or overheard, and the organiser was always answered.
 """
 
 import argparse

@@ -184,7 +184,7 @@ class Cut(NamedTuple):
 
 
 def direct(courts: list[Placed], ahead_s: float) -> list[Cut]:
-    """Let the director watch an event; return when each court came on air, in time."""
+    """Let the director watch an event; return when each court came on air, in order of time."""
     director = Director(ahead_s)
     cuts: list[Cut] = []
     end_s = max(one.ends_s for one in courts) + ahead_s + 10.0

@@ -52,10 +52,13 @@ class Patience:
         self._told = ""
 
     def until(self, do: Callable[[], T]) -> T:
-        """Call `do` until it succeeds, while there is no court or the court says "not now".
+        """Call `do`; while there is no court, or the court says "not now", call it again.
+
+        Returns:
+            What `do` returns when it succeeds.
 
         Raises:
-            UserError: as `do`, if the error is final or the time is over.
+            UserError: that of `do`, if waiting can't help or the time is over.
             KeyboardInterrupt: if the command is asked to end.
         """
         end_s = time.monotonic() + (self.wait_s or 0.0)

@@ -42,8 +42,8 @@ def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
 def by_score(record: Record) -> list[Moment]:
     """Return the moments in which the score changed while the match was played.
 
-    What a referee changes while the match is halted is no moment. A swing is by how many points the
-    lead changed; with one seat, how many points it got.
+    What a referee changes while the match is halted is no moment. The swing of a moment is the
+    number of points by which the lead changed or, with one seat, by which its score changed.
 
     Raises:
         UserError: if a frame of the record can't be read.

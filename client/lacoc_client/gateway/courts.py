@@ -23,7 +23,7 @@ use other threads, so they never wait for these.
 
 
 class Courts:
-    """The feed and the referees of each court of a gateway, made when it is first asked for.
+    """The feed and the referees of each court of a gateway; they are made when first needed.
 
     Args:
         home: the gateway's settings.

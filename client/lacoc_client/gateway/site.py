@@ -1,4 +1,4 @@
-"""The gateway's paths: one page for all of them, its files, recordings, the WebSocket."""
+"""The gateway's paths: of pages (all are one HTML file), files, recordings and the WebSocket."""
 
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Sequence

@@ -89,7 +89,7 @@ class Different:
 
 @dataclass(frozen=True)
 class LastOf:
-    """A rule that among `last` answers in a row at least `right` must be right, at any time."""
+    """A rule that, somewhere in the evidence, `right` of `last` answers in a row must be right."""
 
     answer: Callable[[Evidence], bool | None]
     """Says whether an answer was right; None: this evidence is no answer."""
@@ -164,7 +164,7 @@ class All:
 
 @dataclass(frozen=True)
 class After:
-    """A rule that the evidence after one rule was met must meet another rule."""
+    """A rule that one rule must be met first, and then another one by later evidence alone."""
 
     first: Predicate
     then: Predicate
