@@ -347,7 +347,7 @@ def _fact_moved(copy: _Copy) -> None:
 
 
 def _late_entry(copy: _Copy) -> None:
-    """Add an entry after the deadline, or other files without a reason."""
+    """After entries are closed, add a team, or replace a team's files without a reason."""
     closed = next(at for at, fact in enumerate(copy.facts) if isinstance(fact, Closed))
     files = copy.facts[copy.index(Entered)]
     assert isinstance(files, Entered)

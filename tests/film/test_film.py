@@ -55,7 +55,7 @@ def alone(
 def test_two_browsers_make_the_same_film(
     recorded: Path, alone: tuple[Path, list[np.ndarray]], tmp_path: Path
 ) -> None:
-    """Every picture is there, and shows the same moment however many browsers draw."""
+    """Two browsers draw as many pictures as one browser, and each is nearly the same."""
     _, pictures = alone
     again = made(recorded, tmp_path / "b.mp4", browsers=2)
 

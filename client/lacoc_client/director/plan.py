@@ -82,7 +82,7 @@ def is_worth_it(
 
     Args:
         on_air: the court on air.
-        moment: a moment at another court, now.
+        moment: a moment that begins now, at a court that is not on air.
         coming: all other moments that are known and not over, at any court.
         cuts: the times of earlier cuts.
         prices: what moments and cuts are worth.

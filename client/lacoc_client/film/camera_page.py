@@ -1,4 +1,4 @@
-"""The page /film in a Chromium of its own: it is told a moment, and gives the picture of it."""
+"""The page /film in a Chromium of its own: it is told a beat, and gives the picture of it."""
 
 import base64
 from collections.abc import Iterator, Sequence
@@ -28,7 +28,7 @@ class CameraPage:
     """An open page; only the thread that opened it may use it.
 
     Args:
-        page: the page of a record, loaded.
+        page: the page of a record, which has loaded.
     """
 
     def __init__(self, page: Page) -> None:

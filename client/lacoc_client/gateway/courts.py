@@ -42,7 +42,7 @@ class Courts:
         """Number of pages that were refused because there were too many."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """Return a court's feed, started, and its referees; without a name, the first court's.
+        """Return a court's started feed and its referees; without a name, those of the first court.
 
         Raises:
             UserError: if this gateway has no such court.
@@ -58,7 +58,7 @@ class Courts:
         return self._feeds[name]
 
     def _all(self) -> list[CourtFeed]:
-        """Return the feeds of all courts of this gateway, started."""
+        """Return the started feeds of all courts of this gateway."""
         return [self.find(name)[0] for name in list(self.home.courts)]
 
     @property

@@ -79,7 +79,7 @@ class Different:
     """Takes how many things are missing in the group that has most."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Count the different things of each group, and return the outcome of the largest."""
+        """Count the different things of each group; return the outcome of the largest group."""
         groups: defaultdict[Hashable, set[Hashable]] = defaultdict(set)
         for one in evidence:
             for group, thing in self.things(one):

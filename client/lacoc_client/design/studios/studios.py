@@ -37,5 +37,5 @@ class Studios:
         return None if self.present else self._askers[0].why
 
     def free(self) -> Asker:
-        """Return the way to the studio with the least to do; to an absent one if none is there."""
+        """Return the way to the studio with the least to do; if none is there, any of the ways."""
         return min(self._askers, key=lambda asker: (asker.studio is None, asker.open))
