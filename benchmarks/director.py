@@ -161,7 +161,7 @@ class Placed:
                 yield Moment(self.begins_s + after.beat * BEAT_S, self.name, size)
 
     def closing(self) -> list[tuple[float, float]]:
-        """Return when nobody may cut away: the parts of its last 30 s in which it is close."""
+        """Return when no cut may leave the match: while it is close in its last 30 s."""
         found: list[tuple[float, float]] = []
         end_s = self.ends_s
         from_s = end_s - LAST_S - 1.0
@@ -344,7 +344,7 @@ def _ahead(point: Point) -> int:
 
 
 def lines(kept: Path | None) -> list[Line]:
-    """Play all matches, or read them from a file; write them into it if it is not there."""
+    """Read all matches from a file; without this file, play them and write it."""
     if kept is not None and kept.exists():
         return msgspec.json.decode(kept.read_bytes(), type=list[Line])
     with ProcessPoolExecutor(os.cpu_count()) as pool:

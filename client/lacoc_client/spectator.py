@@ -182,7 +182,7 @@ class Spectator:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Return whether the sheet belongs to a frame; request the sheet if it does not come.
+        """Return whether the sheet belongs to a frame; if it is long in coming, request it.
 
         The court sends a frame a moment before its sheet, and the scene may change again, so a
         frame without its sheet is skipped.
@@ -224,7 +224,7 @@ class Spectator:
                 self._keep(event)
 
     def _keep(self, event: Event) -> None:
-        """Keep a new event until it is taken; drop events older than the match before."""
+        """Keep a new event until it is taken; drop those of matches before the previous one."""
         if self._new_events and self._new_events[-1].match != event.match:
             last = (event.match - 1, event.match)
             self._new_events = [one for one in self._new_events if one.match in last]
@@ -254,7 +254,7 @@ class _Lacking:
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer, once; None while it is not there."""
+        """Return the answer, each answer once; None while none has come."""
         if self._question is None:
             return None
         try:

@@ -271,7 +271,7 @@ def _must_allow(learner: Learner, size: str | None) -> None:
     """Check that the coach may search for a change of this size.
 
     Raises:
-        UserError: if the teacher has closed it.
+        UserError: if the teacher has closed such searches.
     """
     if not learner.student.rules.allows(size):
         raise UserError(say("class.coach-closed"))

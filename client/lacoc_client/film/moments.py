@@ -94,7 +94,7 @@ def from_file(path: Path) -> list[Moment]:
     """Read moments from a file: JSON, `{"moments": [{"beat": 1234, "swing": 0.4}]}`.
 
     Raises:
-        UserError: if it can't be read, or is something else.
+        UserError: if the file can't be read, or has no such JSON.
     """
     try:
         if path.stat().st_size > _LARGEST_BYTES:

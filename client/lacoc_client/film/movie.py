@@ -70,7 +70,7 @@ class Movie:
 
 @contextmanager
 def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
-    """Open a film for writing; when the block ends, it is at its place.
+    """Open a film for writing; when the block has ended, the film is at `out`.
 
     If the block fails, or the program is killed, no new file gets the film's name, and an older
     file of this name stays. When the film is whole, an older file is kept under a numbered name.
