@@ -109,7 +109,7 @@ class _Copy:
 
         Args:
             whole: whether they are numbered again, from 1 on.
-            again: whether sheet and tables are computed from them.
+            again: whether sheet and standings are computed from them.
         """
         if whole:
             self.facts = [
@@ -121,7 +121,7 @@ class _Copy:
             self.tables()
 
     def tables(self) -> None:
-        """Compute sheet and tables from the facts."""
+        """Compute sheet and standings from the facts."""
         sheet = sheets.sheet(_NAME, compute(self.facts, FORMATS))
         for name, content in {SHEET: sheets.encode(sheet), **tables(sheet)}.items():
             (self.folder / name).write_bytes(content)

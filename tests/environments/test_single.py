@@ -1,4 +1,4 @@
-"""Environments of one agent: against a bot, in rows, and a robot that learns to walk."""
+"""Environments of one agent: against a bot, many in rows, and a robot that learns to walk."""
 
 import warnings
 from pathlib import Path
@@ -120,14 +120,14 @@ def test_a_seed_chooses_the_seat() -> None:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_each_row_is_a_single_environment(arena: str, threads: int) -> None:
-    """Each row equals a single environment bit for bit, over several episodes."""
+    """Each row of a vector environment equals a single one bit for bit, over several episodes."""
     rows(arena, threads, steps=90, count=3)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_each_row_is_a_single_environment_for_10_000_steps(arena: str) -> None:
-    """Each row equals a single environment over 10,000 steps, with episodes of 30 s."""
+    """Each row of a vector environment equals a single one, also over 10,000 steps."""
     rows(arena, 2, steps=10_000, count=3, seconds=30.0)
 
 

@@ -60,7 +60,7 @@ class Classroom:
 
     Args:
         folder: folder of the class.
-        studios: the ways to the studios; they are started and closed here.
+        studios: the connections to the studios; they are started and closed here.
         addresses: addresses that students can open.
         robot: the robot of the class; None: the workshop's.
 

@@ -255,7 +255,7 @@ def robot_with(asked: requests.SetRobotAsk) -> FileContent:
 
 
 def parsed(asked: requests.ParseAsk) -> Any:
-    """Read a file that was dropped on a page, or a sheet that was pasted; may block.
+    """Read a file that was dropped on a page, or a whole pasted spreadsheet; may block.
 
     Raises:
         FileRefused: with every mistake of a gait file.
