@@ -206,7 +206,7 @@ class _Trial:
         return encode(self._chance.choice(kinds))
 
     def _any_bytes(self) -> bytes:
-        """Change some bytes of a request of the organiser with a wrong key."""
+        """Make a request of the organiser with a wrong key, and change some of its bytes."""
         request = bytearray(encode(Approve(secret=self._guess(self._key), teams=(_WAITS,))))
         for _ in range(self._chance.randint(1, 4)):
             request[self._chance.randrange(len(request))] = self._chance.randrange(256)

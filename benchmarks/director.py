@@ -176,7 +176,7 @@ class Placed:
 
 
 class Cut(NamedTuple):
-    """When a court came on air."""
+    """A cut: when a court came on air, and why."""
 
     at_s: float
     court: str

@@ -211,7 +211,7 @@ def _attack(
     honest: list[_Honest],
     people: dict[str, Access],
 ) -> tuple[int, Forged]:
-    """Attack in all ways; return how many forged decisions the court made, and the commands."""
+    """Attack in all ways; return how many forged decisions were made, and the forged commands."""
     answered: list[int] = []
     tokens = [people[seat].token for seat in SEATS]
     deciders = [

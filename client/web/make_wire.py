@@ -227,7 +227,7 @@ def desk_types() -> str:
 
 
 def _head(core: str) -> list[str]:
-    """Begin a file; `core` is the way to the folder of that name."""
+    """Return the first lines of a file; `core` is the relative path of the folder "core"."""
     imports = [f'import type {{ {k.__name__} }} from "{core}{m}";' for k, m in _IMPORTS.items()]
     return [
         "// Made by client/web/make_wire.py from the Python structs; not edited by hand.",

@@ -38,7 +38,7 @@ Event = Callable[[float], Sequence[CourtNow]]
 
 
 def direct(event: Event, end_s: float, ahead_s: float) -> list[Shown]:
-    """Let a director watch an event; return what was on air, by the time that is shown."""
+    """Let a director watch an event; return what was on air, with times of play."""
     director = Director(ahead_s)
     shown: list[Shown] = []
     for look in range(round((end_s + ahead_s) / LOOK_S)):
@@ -99,7 +99,7 @@ AHEAD = st.sampled_from([0.0, 2.0, AHEAD_S])
 
 
 def invented(scripts: Sequence[Script]) -> Event:
-    """Make an event of scripts."""
+    """Make an event in which each script is played at a court of its own."""
 
     def event(time_s: float) -> Sequence[CourtNow]:
         there = (one.now(f"court-{index}", time_s) for index, one in enumerate(scripts))

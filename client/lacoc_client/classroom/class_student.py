@@ -46,7 +46,7 @@ class ClassStudent(Student):
 
     @property
     def is_idle(self) -> bool:
-        """Whether the student is not there, and has never done more than come in."""
+        """Whether the student has no page open, and has never done more than come in."""
         did = any(not isinstance(one, Joined) for one in self.diary.evidence)
         return not (self.viewers or did or self.diary.draft)
 

@@ -368,7 +368,7 @@ class Classroom:
 
 
 def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
-    """Sort evidence or documents by the name of the student, in their order."""
+    """Group evidence or documents by the name of the student; the order within a group stays."""
     groups: dict[str, list[_T]] = {}
     for one in kept:
         groups.setdefault(one.student, []).append(one)

@@ -1,4 +1,4 @@
-"""The courts of a gateway, and their limits on pages."""
+"""The courts of a gateway, and how many pages it lets in."""
 
 import asyncio
 

@@ -261,7 +261,7 @@ class CourtFeed:
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """If the court has another version of the protocol, stop showing it until a new sheet."""
+        """If a new sheet has another version of the protocol, hide the court until the next one."""
         if self._other_version not in (None, before):
             self._connected = False
             self.log(render(self._wrong_version or ""), "link", connected=False)

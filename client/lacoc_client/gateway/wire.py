@@ -213,7 +213,7 @@ def read_id(data: bytes) -> int | None:
 
 
 def message(kind: Kind, payload: bytes) -> bytes:
-    """Make a message to pages as a finished WebSocket frame, which all of them can be sent."""
+    """Make a finished WebSocket frame of a message; the same bytes can go to all pages."""
     size = len(payload) + 1
     if size < 126:
         head = bytes((0x82, size, kind))

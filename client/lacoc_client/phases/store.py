@@ -76,7 +76,7 @@ class ClassStore:
         return self._no_room or self._damage
 
     def add(self, student: str, evidence: Evidence, at_s: float) -> "Future[int]":
-        """Keep evidence, and with it the documents of the student that wait.
+        """Keep evidence; write with it the student's documents that still wait.
 
         Args:
             student: name of the student.
