@@ -33,8 +33,8 @@ class EventLog(Generic[T]):
         Args:
             match: number of the open match, from the court's health.
             beat: beat of that health.
-            number: number of the newest event then, counted from 1 without a gap; 0: the health
-                does not say.
+            number: number of the newest event at that beat, counted from 1 without a gap; 0: the
+                health does not say.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:

@@ -227,7 +227,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]
     """Write the files of each player into a folder.
 
     Returns:
-        The players, each by the word that names it on the command line.
+        The players by word: the word stands for the player on the command line.
 
     Raises:
         OSError: if a file can't be written.

@@ -27,8 +27,8 @@ class Movie:
 
     Args:
         container: the open file.
-        width: of its pictures [px].
-        height: of its pictures [px].
+        width: width of each picture [px].
+        height: height of each picture [px].
         fps: pictures a second.
     """
 
@@ -77,8 +77,8 @@ def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
 
     Args:
         out: the film's path.
-        width: of its pictures [px], even.
-        height: of its pictures [px], even.
+        width: width of each picture [px], even.
+        height: height of each picture [px], even.
         fps: pictures a second.
 
     Raises:

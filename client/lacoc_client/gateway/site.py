@@ -111,7 +111,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
     """Return the route of a contest's newest sheet.
 
     Args:
-        path: its file, which need not be there yet; None: there is no contest.
+        path: the sheet's file, which need not exist yet; None: there is no contest.
     """
     files = None if path is None else PageFiles(path.parent)
 

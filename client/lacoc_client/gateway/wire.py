@@ -240,7 +240,7 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
     Args:
         own: the files.
-        used: version of the files with which the page now asks for a seat; None: it asks for none.
+        used: version of the files with which the page now asks for a seat; None: it does not ask.
     """
     names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
     refused = own.refused

@@ -130,6 +130,6 @@ def _calculated(book: str) -> str:
 
 
 def _without(xml: bytes, element: bytes, ending: bytes) -> bytes:
-    """Return XML without those elements of this name in which an attribute ends with `ending`."""
+    """Return XML without each element of this name in which an attribute ends with `ending`."""
     pattern = rb"<(?:\w+:)?" + element + rb"\b[^>]*" + re.escape(ending) + rb"\"[^>]*/>"
     return re.sub(pattern, b"", xml)
