@@ -254,7 +254,7 @@ class _Lacking:
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer, each answer once; None while none has come."""
+        """Return the answer when it has come, and only once; else None."""
         if self._question is None:
             return None
         try:

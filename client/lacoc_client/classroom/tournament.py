@@ -227,7 +227,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]
     """Write the files of each player into a folder.
 
     Returns:
-        The players by word: the word stands for the player on the command line.
+        The players, by the word that stands for each on the command line.
 
     Raises:
         OSError: if a file can't be written.

@@ -95,7 +95,7 @@ def is_worth_it(
     ahead = sorted(one for one in best if prices.value(one))
 
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
-        """Return the best worth of the moments from an index on, less the costs of the cuts."""
+        """Return the most that moments from an index on can be worth, less the costs of cuts."""
         if index == len(ahead):
             return 0.0
         one = ahead[index]

@@ -89,7 +89,7 @@ class Different:
 
 @dataclass(frozen=True)
 class LastOf:
-    """A rule that, somewhere in the evidence, `right` of `last` answers in a row must be right."""
+    """A rule that some `last` answers in a row must have at least `right` right ones."""
 
     answer: Callable[[Evidence], bool | None]
     """Says whether an answer was right; None: this evidence is no answer."""
@@ -164,7 +164,7 @@ class All:
 
 @dataclass(frozen=True)
 class After:
-    """A rule that one rule must be met first, and then another one by later evidence alone."""
+    """A rule that a first rule must be met, and then a second one by later evidence alone."""
 
     first: Predicate
     then: Predicate
