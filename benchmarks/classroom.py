@@ -1,4 +1,4 @@
-"""A class of students for a lesson: processor time, how late the teacher sees it, what kills cost.
+"""A class for a lesson: its processor time, how late the teacher sees trials, what kills lose.
 
     python -m benchmarks.classroom --students 30 --minutes 45 --speed 2 --kills 10
 

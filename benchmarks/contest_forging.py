@@ -1,12 +1,12 @@
 """`python -m benchmarks.contest_forging`: how many forgeries does `lacoc contest verify` find?
 
-A small contest is played and published. Then one thing after another in a copy of the folder is
-forged, so that it means something else: facts, entries, records, tables. After a forged fact the
-sheet and the tables are sometimes computed again, and the facts numbered again.
+A small contest is played and published. In each of many copies of the folder one thing is forged,
+so that it means something else: a fact, an entry, a record or a table of standings. After a forged
+fact the sheet and the standings are sometimes computed again, and the facts numbered again.
 
-Some histories fit together, and nobody can tell them from the true one: the last facts are missing,
-or a decision was added. An earlier publication finds them with `--earlier`, and each decision is
-listed; they are counted apart.
+Two kinds of forgery leave a history that nobody can tell from a true one: the last facts are
+missing, or a decision was added. The first is found with an earlier publication (`--earlier`); for
+the second, each decision is listed. Both kinds are counted apart.
 """
 
 import argparse
@@ -109,7 +109,7 @@ class _Copy:
 
         Args:
             whole: whether they are numbered again, from 1 on.
-            again: whether sheet and tables are computed from them.
+            again: whether sheet and standings are computed from them.
         """
         if whole:
             self.facts = [
@@ -121,7 +121,7 @@ class _Copy:
             self.tables()
 
     def tables(self) -> None:
-        """Compute sheet and tables from the facts."""
+        """Compute sheet and standings from the facts."""
         sheet = sheets.sheet(_NAME, compute(self.facts, FORMATS))
         for name, content in {SHEET: sheets.encode(sheet), **tables(sheet)}.items():
             (self.folder / name).write_bytes(content)
@@ -179,7 +179,7 @@ class _Checker:
         self._known: dict[tuple[bytes, str, bytes], list[str]] = {}
 
     def findings(self, folder: Path) -> Iterator[str]:
-        """Yield what does not follow."""
+        """Yield what is wrong with a published folder, as sentences."""
         try:
             facts = read(folder)
             yield from map(render, check_published(folder, facts))
@@ -347,7 +347,7 @@ def _fact_moved(copy: _Copy) -> None:
 
 
 def _late_entry(copy: _Copy) -> None:
-    """Add an entry after the deadline, or other files without a reason."""
+    """After entries are closed, add a team, or replace a team's files without a reason."""
     closed = next(at for at, fact in enumerate(copy.facts) if isinstance(fact, Closed))
     files = copy.facts[copy.index(Entered)]
     assert isinstance(files, Entered)
@@ -450,7 +450,7 @@ def _records_swapped(copy: _Copy) -> None:
 
 
 def _other_contest(copy: _Copy) -> None:
-    """Take a record of another contest with the same teams; a part also takes its result."""
+    """Take a record of another contest with the same teams; most of the time, its result too."""
     at, path = copy.record()
     there = copy.chance.choice(sorted((copy.other / RECORDS).iterdir()))
     result = Record.read(there).result

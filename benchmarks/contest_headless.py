@@ -1,4 +1,4 @@
-"""Plays a contest of bots without a network in several ways, and compares tables and times.
+"""Plays a contest of bots without a network in several ways; compares standings and times.
 
     python -m benchmarks.contest_headless --teams 20 --seconds 5
 
@@ -123,7 +123,7 @@ def _contest(
 
 
 def _play(file: Path, engine: Engines) -> tuple[int, float, object]:
-    """Play a contest; return how many games were played, the time [s], and the tables."""
+    """Play a contest; return how many games were played, the time [s], and the standings."""
     where = ContestFolder(file)
     with FactStore(where.facts) as store, engine as opened:
         note_plans(store, where.plans)

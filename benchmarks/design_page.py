@@ -5,8 +5,8 @@
 - From a key in a cell to the robot's new posture, in the page; beside it the time of one picture,
   because a machine without a graphics card draws slowly.
 - From Try to the figures; beside it the same trial in one process without page and network.
-- A scripted beginner makes a first gait from a table in which all postures stand. Each number costs
-  1.5 s and each reading of a result 3 s, besides what the page itself takes.
+- A scripted beginner makes a first gait from a new table, in whose postures the robot stands. Each
+  number costs 1.5 s and each reading of a result 3 s, besides what the page itself takes.
 """
 
 import argparse

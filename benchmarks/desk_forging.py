@@ -2,13 +2,13 @@
 
     python -m benchmarks.desk_forging [--attempts 10000] [--seed N]
 
-They stand where a gateway stands that was broken into: in Zenoh sessions at the desk's own address.
+They stand where a gateway would stand if it were broken into: in Zenoh sessions at the desk itself.
 They know the event code and the token of one team. They try to do what the organiser does, to enter
 or to change files for another team, to read what is another's, to answer in the desk's name, and to
 append facts with bytes of any kind. An honest organiser asks in between, and must be answered.
 
-The command ends with 0 if nothing was accepted, changed (facts, applications, tokens), told of
-others or overheard, and the organiser was always answered.
+The command ends with 0 if no forgery was accepted or changed anything (facts, applications,
+tokens), nothing was told of other teams or overheard, and the organiser was always answered.
 """
 
 import argparse
@@ -163,7 +163,7 @@ class _Trial:
     # Forgeries
 
     def _organise(self) -> bytes:
-        """Make what only the organiser may ask."""
+        """Make a request that only the organiser may send, with a wrong secret."""
         secret = self._chance.choice(
             ("", self._code, self._mine, page_key(self._where.contest), self._guess(self._key))
         )
@@ -181,7 +181,7 @@ class _Trial:
         return encode(self._chance.choice(kinds))
 
     def _for_another(self) -> bytes:
-        """Make an entry, or other files, for a team that is not ours."""
+        """Make a request that enters a team that is not ours, or replaces its files."""
         team, token = self._chance.choice([*self._others.items()])
         looks = self._chance.choice((team, team.upper(), f" {team} ", team.lower()))
         kinds: tuple[Any, ...] = (
@@ -206,7 +206,7 @@ class _Trial:
         return encode(self._chance.choice(kinds))
 
     def _any_bytes(self) -> bytes:
-        """Change some bytes of a request of the organiser with a wrong key."""
+        """Make a request of the organiser with a wrong key, and change some of its bytes."""
         request = bytearray(encode(Approve(secret=self._guess(self._key), teams=(_WAITS,))))
         for _ in range(self._chance.randint(1, 4)):
             request[self._chance.randrange(len(request))] = self._chance.randrange(256)

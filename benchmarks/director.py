@@ -4,8 +4,8 @@
 
 Bots play each match without a network. Then all matches are put on one clock, as an event would
 have them: in `spread` each begins within the first three minutes, by chance, and in `at_once` all
-begin together. The director looks at all courts ten times a second, as the gateway does: `ahead`
-with all shown later, as on the pages, and `not_ahead` without that.
+begin together. The director looks at all courts ten times a second, as the gateway does. In
+`ahead` everything is shown later than it is played, as on the pages; in `not_ahead` it is not.
 
 A swing is a change of the difference in points. What counts as a moment of the event:
 
@@ -14,10 +14,11 @@ A swing is a change of the difference in points. What counts as a moment of the 
 - `changes`: each swing at each court.
 
 The swing of a window or a second is the largest one at any court in it, and of equal ones the
-first. Of each kind the tenth with the largest swings counts. One is on air if its court is on air
-at the swing, or 0.5 s later at the latest. The director has two rules: at most four cuts a minute,
-and no cut away from a match that is close in its last 30 s. `best` is what a director could reach
-that knows the future and keeps these rules, by dynamic programming over all ways to cut.
+first. Of each kind only those 10 % count whose swings are the largest. A moment is on air if its
+court is on air at the swing, or at most 0.5 s later. The director has two rules: at most four cuts
+a minute, and no cut away from a match that is close in its last 30 s. `best` is what a director
+could reach that knows the future and keeps these rules, by dynamic programming over all ways to
+cut.
 
 It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of the windows of `spread` on
 air.
@@ -160,7 +161,7 @@ class Placed:
                 yield Moment(self.begins_s + after.beat * BEAT_S, self.name, size)
 
     def closing(self) -> list[tuple[float, float]]:
-        """Return when nobody may cut away: the parts of its last 30 s in which it is close."""
+        """Return when no cut may leave the match: while it is close in its last 30 s."""
         found: list[tuple[float, float]] = []
         end_s = self.ends_s
         from_s = end_s - LAST_S - 1.0
@@ -175,7 +176,7 @@ class Placed:
 
 
 class Cut(NamedTuple):
-    """When a court came on air."""
+    """A cut: when a court came on air, and why."""
 
     at_s: float
     court: str
@@ -183,7 +184,7 @@ class Cut(NamedTuple):
 
 
 def direct(courts: list[Placed], ahead_s: float) -> list[Cut]:
-    """Let the director watch an event; return when each court came on air, in time."""
+    """Let the director watch an event; return when each court came on air, in order of time."""
     director = Director(ahead_s)
     cuts: list[Cut] = []
     end_s = max(one.ends_s for one in courts) + ahead_s + 10.0
@@ -204,13 +205,13 @@ def on_air(cuts: list[Cut], moment: Moment) -> bool:
 
 
 def tenth(moments: list[Moment]) -> list[Moment]:
-    """Return the tenth with the largest swings, the earlier ones of equal ones, in time."""
+    """Return the 10 % with the largest swings, in order of time; of equal swings the earlier."""
     ordered = sorted(moments, key=lambda one: (-one.size, one.at_s, one.court))
     return sorted(ordered[: max(1, round(len(moments) / 10))])
 
 
 def of_windows(moments: list[Moment], window_s: float) -> list[Moment]:
-    """Return the tenth of all windows with the largest swing in them, each as that swing."""
+    """Return the largest swing of a window, for the 10 % of all windows in which it is largest."""
     best: dict[int, Moment] = {}
     for one in sorted(moments):
         window = int(one.at_s / window_s)
@@ -236,9 +237,9 @@ class _Way(NamedTuple):
 def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
     """Return how many moments a director can show who knows them all and keeps the rules.
 
-    A cut is made as early as the rules let it: when its court has shown what it was wanted for, and
-    the fourth cut before it is a minute old. An earlier cut never forbids anything later, so this
-    loses no way.
+    Each cut is made as early as the rules allow: once the court on air has shown its moment, and
+    the fourth cut before this one is a minute old. No other ways are tried, because an earlier cut
+    forbids nothing that a later one allows.
     """
     closing = {one.name: one.closing() for one in courts}
     ways: dict[str, list[_Way]] = {}
@@ -343,7 +344,7 @@ def _ahead(point: Point) -> int:
 
 
 def lines(kept: Path | None) -> list[Line]:
-    """Play all matches, or read them from a file; write them into it if it is not there."""
+    """Read all matches from a file; without this file, play them and write it."""
     if kept is not None and kept.exists():
         return msgspec.json.decode(kept.read_bytes(), type=list[Line])
     with ProcessPoolExecutor(os.cpu_count()) as pool:

@@ -2,7 +2,7 @@
 
 python -m benchmarks.environments steps      # a step against mj_step along the same path
 python -m benchmarks.environments rows       # rows on two cores against one
-python -m benchmarks.environments loads      # forks of saves, equal to the end
+python -m benchmarks.environments loads      # episodes that go on from a save, equal to the end
 python -m benchmarks.environments records    # random episodes written as records and proven
 """
 

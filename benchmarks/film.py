@@ -32,10 +32,10 @@ def filming(seconds: float = 20.0, quality: Quality = Quality.SMOOTH) -> dict[st
     """Film a match of some seconds twice.
 
     Returns:
-        `pictures`; `length_s` of the film; `took_s` and `ratio` (`took_s` by `length_s`) of the
-        first film; `cpu_ratio`: processor time of browsers and encoder, spread evenly over two
-        cores, by `length_s`, which is the ratio on two cores that do nothing else; `same`: whether
-        both films have the same pictures; `bytes`; `cores` and `load`.
+        `pictures`; `length_s` of the film; `took_s`, and `ratio`, which is `took_s` divided by
+        `length_s`, of the first film; `cpu_ratio`: half of the processor time of browsers and
+        encoder, divided by `length_s`, which would be the ratio on two cores that do nothing else;
+        `same`: whether both films have the same pictures; `bytes`; `cores` and `load`.
     """
     found: dict[str, Any] = {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
     with tempfile.TemporaryDirectory() as name:

@@ -221,7 +221,7 @@ def _angle(copy: _Copy) -> None:
 
 
 def _commanded(record: Record) -> tuple[Any, ...]:
-    """Return the commanded angles of a record, up to the first beat where the match differs."""
+    """Return the angles that a replay commands, up to the first beat in which it differs."""
     try:
         judge = Judge(record, None, {})
         steps = [step for section in judge.sections() for step in section.steps]

@@ -211,7 +211,7 @@ def _attack(
     honest: list[_Honest],
     people: dict[str, Access],
 ) -> tuple[int, Forged]:
-    """Attack in all ways; return how many forged decisions the court made, and the commands."""
+    """Attack in all ways; return how many forged decisions were made, and the forged commands."""
     answered: list[int] = []
     tokens = [people[seat].token for seat in SEATS]
     deciders = [
@@ -288,7 +288,7 @@ def forge(key_expression: str, session: int, seq: int, secret: bytes) -> bytes:
 
 
 def _alter(heard: bytes, seq: int, chance: random.Random) -> bytes:
-    """Return a command that was heard, with another number and key, and perhaps another seal."""
+    """Change number and key of a command that was heard, and perhaps its seal; return it."""
     command = decode(heard, Command)
     mac = command.mac if chance.random() < 0.5 else chance.randbytes(MAC_BYTES)
     return encode(msgspec.structs.replace(command, seq=seq, key=chance.randrange(10), mac=mac))

@@ -135,7 +135,7 @@ class _Here:
 def _match(
     folder: Path, number: int, seconds: float
 ) -> tuple[Source, tuple[str, str], random.Random]:
-    """Play a match that is drawn by its number."""
+    """Play a match whose game, opening, bots and delays follow from its number."""
     chance = random.Random(number)
     name, settings = chance.choice(_GAMES)
     rules = {"match": {"duration_s": seconds, "countdown_s": 0.2}}

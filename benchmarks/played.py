@@ -85,7 +85,7 @@ def play(folder: Path, number: int, seconds: float) -> Path:
 
 
 def elsewhere(module: str, words: Iterable[str]) -> str:
-    """Run a module under the other arithmetic, and return what it prints."""
+    """Run a module under `OTHER_ARITHMETIC`, and return what it prints."""
     done = subprocess.run(
         [sys.executable, "-m", module, *words],
         env={**os.environ, **OTHER_ARITHMETIC},

@@ -140,7 +140,7 @@ def main() -> None:
 
 
 def _honest(matches: int, seconds: float) -> bool:
-    """Verify matches under both arithmetics; return whether every verdict is right."""
+    """Verify matches here and under another arithmetic; return whether every verdict is right."""
     with (
         tempfile.TemporaryDirectory() as name,
         ProcessPoolExecutor(_CORES, get_context("spawn")) as pool,
@@ -179,7 +179,7 @@ def _verdict(path: Path) -> dict[str, Any]:
 
 
 def _forged(count: int, seed: int) -> bool:
-    """Verify forgeries under both arithmetics; return whether none of them passed."""
+    """Verify forgeries here and under another arithmetic; return whether none of them passed."""
     with tempfile.TemporaryDirectory() as name:
         # Two pairs of matches; a pair has the same robots, so that sections can be swapped.
         paths = [play(Path(name), number, _FORGED_S) for number in (0, 30, 1, 31)]

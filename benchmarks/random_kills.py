@@ -73,7 +73,7 @@ def run(
 
     Returns:
         The kills of each process; the last output of each process that ended by itself; the number
-        of records that verify; and what is wrong with the others.
+        of records that verify; and what is wrong with the other records.
     """
     contest = folder / "contest.toml"
     contest.write_text(_contest(), encoding="utf-8")

@@ -27,7 +27,7 @@ _SETTLE_S = 2.0
 
 
 def watched(direct: int, pages: int, seconds: float, rounds: int) -> dict[str, Any]:
-    """Measure in turns without and with the crowd.
+    """Measure rounds without and with the crowd in turns.
 
     Args:
         direct: number of spectators with a session of their own with the court.

@@ -52,10 +52,13 @@ class Patience:
         self._told = ""
 
     def until(self, do: Callable[[], T]) -> T:
-        """Call `do` until it succeeds, while there is no court or the court says "not now".
+        """Call `do`; while there is no court, or the court says "not now", call it again.
+
+        Returns:
+            What `do` returns when it succeeds.
 
         Raises:
-            UserError: as `do`, if the error is final or the time is over.
+            UserError: that of `do`, if waiting can't help or the time is over.
             KeyboardInterrupt: if the command is asked to end.
         """
         end_s = time.monotonic() + (self.wait_s or 0.0)
@@ -159,7 +162,7 @@ def understand(payload: bytes, kind: type[T]) -> T:
 
 @contextmanager
 def understood() -> Iterator[None]:
-    """Turn a `BadMessage` of a court into a sentence.
+    """Turn a `BadMessage` that the block raises into a `UserError` that people understand.
 
     Raises:
         UserError: in place of `BadMessage`.
@@ -172,7 +175,7 @@ def understood() -> Iterator[None]:
 
 
 def no_answer(session: Session, court: str) -> Phrase:
-    """Say why a court does not answer; if there is no such court, also which ones there are."""
+    """Say why a court does not answer; if no court has this name, list the courts that run."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:

@@ -262,7 +262,7 @@ class Controller:
             now_s: `time.monotonic()`.
 
         Returns:
-            The newest frame, if it is a new one.
+            The newest frame; None if no frame came since the last call.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -323,7 +323,7 @@ class Controller:
         return ask(self._session, self._keys, key, request, Done).said
 
     def _send(self, upon: Frame | None = None) -> None:
-        """Send the standing command, with the frame that the player saw."""
+        """Send the newest command, with the frame that the player saw."""
         assert self._joined is not None
         frame, key_expression = upon or self.view.frame, self._keys.command(self.seat)
         seen = (frame.match, frame.beat) if frame is not None else (0, 0)

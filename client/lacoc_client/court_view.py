@@ -41,7 +41,7 @@ class CourtView(Generic[T]):
     can't be decoded, and changes nothing then.
 
     Args:
-        keep: makes what is kept of an event, from the event and its bytes.
+        keep: takes an event and its bytes; returns what is kept in `log`.
     """
 
     def __init__(self, keep: Callable[[Event, bytes], T]) -> None:

@@ -14,7 +14,7 @@ class EventLog(Generic[T]):
     """Keeps something for each event: the event itself, or its bytes.
 
     Events that a restarted court sends again are not new. Events come in order. So if one differs
-    from the known one, those before it stay valid and those after it are dropped.
+    from the known event with its number, events before it stay valid and later ones are dropped.
     """
 
     def __init__(self) -> None:
@@ -28,13 +28,13 @@ class EventLog(Generic[T]):
         return iter([kept for _, kept in self._known.values()])
 
     def differs(self, match: int, beat: int, number: int) -> bool:
-        """Return whether the court's log differs from this one, so that something did not arrive.
+        """Return whether the court's log differs from this one: then something did not arrive.
 
         Args:
             match: number of the open match, from the court's health.
             beat: beat of that health.
-            number: number of the newest event then, counted from 1 without a gap; 0: the health
-                does not say.
+            number: number of the newest event at that beat, counted from 1 without a gap; 0: the
+                health does not say.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:

@@ -78,7 +78,7 @@ class Spectator:
         """Take in what arrived.
 
         Returns:
-            The newest frame, if it is a new one.
+            The newest frame; None if none came since the last call, or its sheet is not here yet.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -182,7 +182,7 @@ class Spectator:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Return whether the sheet belongs to a frame; request the sheet if it does not come.
+        """Return whether the sheet belongs to a frame; if it is long in coming, request it.
 
         The court sends a frame a moment before its sheet, and the scene may change again, so a
         frame without its sheet is skipped.
@@ -214,14 +214,17 @@ class Spectator:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events, but not while a requested list, which is older, is under way."""
+        """Take in new events; while a list of events is requested, leave them for later.
+
+        The list is older than they are, so it must be taken in first.
+        """
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
             if event is not None and self._view.add_event(event, mail.payload):
                 self._keep(event)
 
     def _keep(self, event: Event) -> None:
-        """Keep a new event until it is taken; drop events older than the match before."""
+        """Keep a new event until it is taken; drop those of matches before the previous one."""
         if self._new_events and self._new_events[-1].match != event.match:
             last = (event.match - 1, event.match)
             self._new_events = [one for one in self._new_events if one.match in last]
@@ -251,7 +254,7 @@ class _Lacking:
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer, once; None while it is not there."""
+        """Return the answer when it has come, and only once; else None."""
         if self._question is None:
             return None
         try:

@@ -1,12 +1,11 @@
-"""Writes what the pages have of the Python code, as TypeScript.
+"""Writes the types and texts that the pages take from the Python code, as TypeScript.
 
     python client/web/make_wire.py
 
 src/core/wire.gen.ts has the court's messages as types, from the Python structs,
 src/core/desk.gen.ts those of an office's desk, src/core/contest/sheet.gen.ts the sheet of a
-contest, and src/i18n/words.gen.ts the table of everything that is said, without what only commands
-say.
-A test says when a file is behind.
+contest, and src/i18n/words.gen.ts the texts of everything that is said, except what only commands
+say. A test fails when a file does not fit the Python code any more.
 """
 
 import json
@@ -198,7 +197,7 @@ _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes
 
 
 def wire_types() -> str:
-    """The whole file."""
+    """Return the types and constants of messages: the text of src/core/wire.gen.ts."""
     parts = [*_head("./"), _constants(CONSTANTS)]
     parts += [_enum(kind) for kind in ENUMS]
     names = ", ".join(f'"{name}"' for name in messages.MARKER_STATES)
@@ -228,7 +227,7 @@ def desk_types() -> str:
 
 
 def _head(core: str) -> list[str]:
-    """Begin a file; `core` is the way to the folder of that name."""
+    """Return the first lines of a file; `core` is the relative path of the folder "core"."""
     imports = [f'import type {{ {k.__name__} }} from "{core}{m}";' for k, m in _IMPORTS.items()]
     return [
         "// Made by client/web/make_wire.py from the Python structs; not edited by hand.",
@@ -333,7 +332,7 @@ def _type(hint: Any) -> str:
 
 
 def words() -> str:
-    """Write the table of what is said, for pages."""
+    """Return the texts that pages show, by code: the content of src/i18n/words.gen.ts."""
     lines = "".join(
         f"  {json.dumps(code)}: {json.dumps([entry.en, entry.ja], ensure_ascii=False)},\n"
         for code, entry in table(ON_PAGES).items()

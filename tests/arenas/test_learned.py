@@ -53,7 +53,7 @@ def test_an_exported_policy_is_the_same(
 
 
 def test_the_file_is_a_bot(tmp_path: Path) -> None:
-    """The file has a function `bot`; in another game it says with how many numbers it learned."""
+    """The file is a bot; the error in another game says with how many numbers the bot learned."""
     file = tmp_path / "my_bot.py"
     file.write_text(export(some(7, [3], (1, 2), 0)), encoding="utf-8")
     spec = importlib.util.spec_from_file_location("my_bot", file)

@@ -98,7 +98,7 @@ def test_a_card_says_who_needs_help() -> None:
 
 
 def test_a_card_counts_only_walks_as_fast() -> None:
-    """The best speed is of a trial of key 2 without a fall; the last speed is of any trial."""
+    """The best speed counts only trials of key 2 without a fall; the last speed is of any key."""
     evidence: list[Evidence] = [
         Moved(phase=4),
         tried(speed_mm_s=70.0),

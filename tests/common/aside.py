@@ -1,4 +1,4 @@
-"""Runs what needs a thread without an event loop: the browser of a test of pages leaves one."""
+"""Runs functions in a thread of their own: a test's browser leaves an event loop in its thread."""
 
 import asyncio
 from collections.abc import Callable, Coroutine

@@ -203,7 +203,7 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -
 
 @pytest.mark.long
 def test_other_gaits_are_found(page: DesignClient) -> None:
-    """A map has the own gait at least; variants are bred only from tables that fit the robot."""
+    """A map has at least the page's own gait; variants are bred only from tables that fit."""
     fields = {"table": sample(page), "sequences": [[0], [8, 7, 6, 5], [1, 2, 3, 4]]}
     found = page.ask("map", job="map", **fields, seconds=0.0)
     own = next(cell for cell in found["cells"] if [cell["speed"], cell["arousal"]] == found["own"])

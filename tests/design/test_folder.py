@@ -209,7 +209,7 @@ def test_sequences_belong_into_text(folder: Folder) -> None:
 
 
 def test_bad_angles_are_mistakes_with_their_place(folder: Folder) -> None:
-    """A table with an angle out of range, or not a number, is refused with the angle's place."""
+    """A table is refused if an angle is out of range or no number; the place is named."""
     for angle_deg in (151.0, float("nan"), float("inf")):
         with pytest.raises(FileRefused) as refusal:
             folder.save("Loco-new.txt", turned(sample(), 2, angle_deg), ABSENT, force=False)

@@ -57,7 +57,7 @@ def test_one_number_changes_and_the_rest_stays(
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("text", [SAMPLES[0], OWN_LINK])
 def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: RobotEntry) -> None:
-    """The facts of the robot, read from the changed text, have the value in all legs."""
+    """The robot read from the changed text has the value in all legs, as the fact of that name."""
     old = facts(read_robot(text, "robot.toml"))[entry]
     value = (old[0] if isinstance(old, tuple) else old) * (1.02 if entry == "root_link_m" else 0.98)
     if entry in ("armature", "hold_s"):  # they stand at their lowest
@@ -100,6 +100,6 @@ def test_an_entry_that_was_left_out_is_added(text: str) -> None:
     ],
 )
 def test_a_text_without_a_place_for_the_number_is_refused(text: str, value: float) -> None:
-    """A broken file, a wrong kind of entry, and no number at all are refused with a reason."""
+    """A broken file, a wrong kind of entry, NaN and infinity are refused."""
     with pytest.raises(UserError):
         edit_robot(text, "body_length_m", value)

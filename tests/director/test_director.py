@@ -38,7 +38,7 @@ Event = Callable[[float], Sequence[CourtNow]]
 
 
 def direct(event: Event, end_s: float, ahead_s: float) -> list[Shown]:
-    """Let a director watch an event; return what was on air, by the time that is shown."""
+    """Let a director watch an event; return what was on air, with times of play."""
     director = Director(ahead_s)
     shown: list[Shown] = []
     for look in range(round((end_s + ahead_s) / LOOK_S)):
@@ -99,7 +99,7 @@ AHEAD = st.sampled_from([0.0, 2.0, AHEAD_S])
 
 
 def invented(scripts: Sequence[Script]) -> Event:
-    """Make an event of scripts."""
+    """Make an event in which each script is played at a court of its own."""
 
     def event(time_s: float) -> Sequence[CourtNow]:
         there = (one.now(f"court-{index}", time_s) for index, one in enumerate(scripts))
@@ -178,7 +178,7 @@ def recorded() -> Event:
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])
 def test_recorded_matches(ahead_s: float) -> None:
-    """Of the four largest swings of four matches three are on air, at most half a second late."""
+    """At least three of the four largest swings in all matches are on air, 0.5 s late at most."""
     event = recorded()
     shown = direct(event, 250.0, ahead_s)
     swings: list[tuple[int, float, str]] = []
@@ -239,7 +239,7 @@ def halted(time_s: float) -> list[CourtNow]:
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])
 def test_a_halted_match_goes_on(ahead_s: float) -> None:
-    """The countdown after a halt frees no close end, and it begins no new match."""
+    """The countdown after a halt allows no cut from a close end, and counts as no new match."""
     shown = direct(halted, 60.0, ahead_s)
     assert [one.court for one in shown if one.at_s > 6.0] == []
     assert shown[-1].court == "final"

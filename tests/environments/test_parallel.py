@@ -33,7 +33,7 @@ def env(request: pytest.FixtureRequest) -> LacocParallelEnv:
 
 
 def play(env: LacocParallelEnv, seed: int, steps: int = 10_000) -> list[Any]:
-    """Play with random actions of a seed; return all that the environment gave."""
+    """Play with random actions, drawn with a seed; return all that the environment gave."""
     chance = np.random.default_rng(seed)
     given: list[Any] = []
     while env.agents and len(given) < steps:
@@ -43,7 +43,7 @@ def play(env: LacocParallelEnv, seed: int, steps: int = 10_000) -> list[Any]:
 
 
 def same(one: list[Any], other: list[Any]) -> bool:
-    """Say whether two runs gave the same, bit for bit."""
+    """Return whether two runs are equal: observations bit for bit, and all else."""
     return len(one) == len(other) and all(
         all(a[0][agent].tobytes() == b[0][agent].tobytes() for agent in a[0]) and a[1:] == b[1:]
         for a, b in zip(one, other, strict=True)
@@ -63,7 +63,7 @@ def test_the_checks_of_pettingzoo(arena: str, actions: Any) -> None:
 
 @pytest.mark.long
 def test_the_checks_of_pettingzoo_over_1000_cycles() -> None:
-    """The same with whole matches' settings, 1,000 cycles long."""
+    """The library's own test also finds nothing in 1,000 cycles of matches of usual length."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for arena in GAMES:
@@ -71,7 +71,7 @@ def test_the_checks_of_pettingzoo_over_1000_cycles() -> None:
 
 
 def test_a_seed_gives_the_same_episode(env: LacocParallelEnv) -> None:
-    """Whole episodes with one seed are equal bit for bit, also of another environment."""
+    """Episodes with the same seed are equal bit for bit, also in two environments."""
     again = LacocParallelEnv(env.court.arena.name, settings=SHORT)
     runs, openings = [], []
     for seed, one in ((3, env), (4, env), (3, again), (4, again)):
@@ -86,7 +86,10 @@ def test_a_seed_gives_the_same_episode(env: LacocParallelEnv) -> None:
 
 
 def test_rewards_add_up_to_the_lead(env: LacocParallelEnv) -> None:
-    """Rewards add up to the final lead, and those of both agents to zero; then no agent is left."""
+    """A seat's rewards add up to the change of its lead; the other seat's are their negatives.
+
+    After the end there is no agent any more.
+    """
     env.reset(seed=1)
     first = env._leads[0]
     given = play(env, 1)
@@ -99,9 +102,9 @@ def test_rewards_add_up_to_the_lead(env: LacocParallelEnv) -> None:
 
 
 def test_forks_are_equal_to_the_end(env: LacocParallelEnv, tmp_path: Path) -> None:
-    """From random saves an episode goes on bit for bit, in this environment and in a new one.
+    """A save that is loaded goes on as the episode did, in its own environment and in a new one.
 
-    Both write the same frames into their records.
+    The ends are equal bit for bit, and both environments write the same frames into their records.
     """
     chance = np.random.default_rng(5)
     new = LacocParallelEnv(env.court.arena.name, settings=SHORT)
@@ -122,7 +125,7 @@ def test_forks_are_equal_to_the_end(env: LacocParallelEnv, tmp_path: Path) -> No
 
 
 def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path) -> None:
-    """The record of an episode, also of half of one, is the same match bit for bit."""
+    """The record of an episode, whole or ended early, is proven; one that ended early is void."""
     for name, steps in (("whole", 10_000), ("half", 20)):
         env.reset(seed=8)
         play(env, 8, steps)
@@ -148,7 +151,7 @@ def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path)
 
 @pytest.mark.parametrize("arena", GAMES)
 def test_an_episode_is_the_match_that_is_simulated(arena: str, tmp_path: Path) -> None:
-    """Bots that press the actions' keys in `lacoc simulate` end in the same state."""
+    """An episode ends in the state of a simulated match whose bots press the same keys."""
     env = LacocParallelEnv(arena, settings=SHORT)
     env.reset(options={"place": 0, "late_ticks": (7, 7)})
     while env.agents:
@@ -175,7 +178,7 @@ def test_an_episode_is_the_match_that_is_simulated(arena: str, tmp_path: Path) -
 
 
 def test_both_seats_see_the_same_when_the_field_is_turned(env: LacocParallelEnv) -> None:
-    """At the start, both seats see the same numbers, but for the last bits of physics."""
+    """While both seats do the same, they see the same numbers, except the last bits of physics."""
     seen, _ = env.reset(options={"late_ticks": (0, 0), "place": 0})
     assert seen["left"] == pytest.approx(seen["right"], abs=1e-6)
     for agent in env.possible_agents:
@@ -189,7 +192,7 @@ def test_both_seats_see_the_same_when_the_field_is_turned(env: LacocParallelEnv)
 
 
 def test_several_beats_in_a_step_are_the_same_match() -> None:
-    """Ten beats in a step give the match of ten steps in which the key is held."""
+    """A step of ten beats equals ten steps of one beat with the same key."""
     one, ten = LacocParallelEnv(settings=SHORT), LacocParallelEnv(settings=SHORT, beats=10)
     for env in (one, ten):
         env.reset(seed=2, options={"late_ticks": (0, 0)})
@@ -205,7 +208,7 @@ def test_several_beats_in_a_step_are_the_same_match() -> None:
 
 
 def test_angles_move_the_joints() -> None:
-    """With angles an action is a share of each joint's range; a save goes on, but has no record."""
+    """With `angles`, an action is a share of each joint's range; saves work, records do not."""
     env = LacocParallelEnv(settings=SHORT, actions="angles")
     env.reset(seed=0)
     raised = np.zeros(18, np.float32)
@@ -237,15 +240,15 @@ def test_angles_move_the_joints() -> None:
     ],
 )
 def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> None:
-    """Each wrong argument has an error that says what can be there."""
+    """A wrong argument raises an error that names it, or says what is allowed."""
     with pytest.raises(UserError, match=said):
         LacocParallelEnv(**arguments)
 
 
 def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
-    """Bytes of another environment change nothing; an option that does not fit is named.
+    """A save of another environment is refused and changes nothing; a wrong option is named.
 
-    Other are those of other settings, robots or actions, or of an environment with a bot.
+    The others differ in settings, robots or actions, or have a bot.
     """
     arena = env.court.arena.name
     others: list[LacocEnv | LacocParallelEnv] = [
@@ -266,7 +269,7 @@ def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
 
 
 def test_a_picture(env: LacocParallelEnv) -> None:
-    """A picture has the size that it says, and changes when the robots walk."""
+    """A picture has 640 x 480 pixels, changes when the robots walk, and needs a render mode."""
     shown = LacocParallelEnv(env.court.arena.name, render_mode="rgb_array", settings=SHORT)
     shown.reset(seed=1)
     first = shown.render()

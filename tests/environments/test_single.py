@@ -1,4 +1,4 @@
-"""Environments of one agent: against a bot, in rows, and a robot that learns to walk."""
+"""Environments of one agent: against a bot, many in rows, and a robot that learns to walk."""
 
 import warnings
 from pathlib import Path
@@ -54,7 +54,7 @@ def test_the_checks_of_gymnasium(name: str, arguments: dict[str, Any]) -> None:
 
 
 def test_the_entry_point_registers_them() -> None:
-    """The entry point is the function that registers the environments; twice does no harm."""
+    """The entry point registers the environments; to register them twice does no harm."""
     from importlib.metadata import entry_points
 
     (entry,) = entry_points(group="gymnasium.envs", name="lacoc")
@@ -77,7 +77,10 @@ def play(env: gymnasium.Env[Any, Any], actions: np.random.Generator) -> list[Any
 
 @pytest.mark.parametrize("opponent", ["straight", "planner"])
 def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
-    """An episode that another environment loads goes on bit for bit; its record is proven."""
+    """An episode goes on bit for bit when another environment loads its save, and so does the bot.
+
+    Its record is proven.
+    """
     one, other = (LacocEnv("othello", opponent, settings=SHORT) for _ in range(2))
     _, info = one.reset(seed=3)
     assert info["seat"] == one.court.seats[one.seat]
@@ -102,7 +105,7 @@ def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
 
 
 def test_a_seed_chooses_the_seat() -> None:
-    """Seeds choose both seats, and rewards are the learner's own in both."""
+    """The seed chooses the learner's seat; in either seat the rewards are the learner's."""
     env = LacocEnv(settings=SHORT)
     openings = {tuple(sorted(env.reset(seed=seed)[1].items())) for seed in range(12)}
     assert {dict(opening)["seat"] for opening in openings} == {"left", "right"}
@@ -117,14 +120,14 @@ def test_a_seed_chooses_the_seat() -> None:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_each_row_is_a_single_environment(arena: str, threads: int) -> None:
-    """Each row gives the bits of a single environment, over several episodes."""
+    """Each row of a vector environment equals a single one bit for bit, over several episodes."""
     rows(arena, threads, steps=90, count=3)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_each_row_is_a_single_environment_for_10_000_steps(arena: str) -> None:
-    """The same over 10,000 steps, with episodes of different lengths."""
+    """Each row of a vector environment equals a single one, also over 10,000 steps."""
     rows(arena, 2, steps=10_000, count=3, seconds=30.0)
 
 
@@ -180,7 +183,7 @@ def test_a_mask_resets_some_rows() -> None:
 
 @pytest.mark.slow
 def test_rows_of_the_library() -> None:
-    """`gymnasium.make_vec` makes the rows; they have spaces, pictures and a seed for each."""
+    """`gymnasium.make_vec` makes rows, each with a seed and a picture of its own."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         many = gymnasium.make_vec(
@@ -204,7 +207,7 @@ def test_rows_of_the_library() -> None:
 
 
 def test_a_row_whose_physics_stops_is_as_it_was_before() -> None:
-    """A fault in a row is the fault of a single world; other rows go on."""
+    """If physics fails in a row, it fails as in a single world, and the other rows go on."""
     arena = arenas.load("othello")
     entry = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     entries = [entry, entry]
@@ -228,7 +231,7 @@ def test_a_row_whose_physics_stops_is_as_it_was_before() -> None:
 
 
 def test_a_robot_walks_by_angles() -> None:
-    """Rewards of a walk add up to its way; seeds and saves give the same bits."""
+    """The rewards of a walk add up to its distance; seeds and saves repeat it bit for bit."""
     env = WalkEnv(seconds=2.0, beats=5)
     walks = []
     for _ in range(2):
@@ -261,7 +264,7 @@ def test_a_robot_walks_by_angles() -> None:
 
 
 def test_a_table_is_tried_as_in_a_trial() -> None:
-    """The sample table walks forward at the speed that `lacoc trial` measures; a still one not."""
+    """The reward of the sample table is its speed in a trial; a table that stands still gets 0."""
     env = WalkEnv(actions="table")
     gait = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod")).gait
     assert gait.locomotion is not None

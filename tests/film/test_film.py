@@ -55,7 +55,7 @@ def alone(
 def test_two_browsers_make_the_same_film(
     recorded: Path, alone: tuple[Path, list[np.ndarray]], tmp_path: Path
 ) -> None:
-    """Every picture is there, and shows the same moment however many browsers draw."""
+    """Two browsers draw as many pictures as one browser, and each is nearly the same."""
     _, pictures = alone
     again = made(recorded, tmp_path / "b.mp4", browsers=2)
 
@@ -91,7 +91,7 @@ def test_a_film_is_as_long_as_the_replay(
 def test_views_differ_and_a_still_is_a_picture(
     recorded: Path, with_browser: str, tmp_path: Path
 ) -> None:
-    """Each view is another picture, of the size that was asked for."""
+    """Each view gives a picture of its own, of the size that was asked for."""
     seen = set()
     for view, overlay in ((View.ARENA, True), (View.SPLIT, False)):
         look = Look(view, overlay, "en", WIDTH, HEIGHT, Quality.LOW)

@@ -56,7 +56,7 @@ def test_pictures_come_out_as_they_went_in(tmp_path: Path) -> None:
 
 
 def test_most_pictures_are_no_key_pictures(tmp_path: Path) -> None:
-    """A film has one key picture, which needs no other one to be drawn, in two seconds."""
+    """Every two seconds a film has one key picture, which can be decoded without any other."""
     with movie(tmp_path / "a.mp4", WIDTH, HEIGHT, 10) as film:
         for _ in range(50):
             film.add(png(100))
@@ -66,7 +66,7 @@ def test_most_pictures_are_no_key_pictures(tmp_path: Path) -> None:
 
 
 def test_an_older_film_is_kept(tmp_path: Path) -> None:
-    """A film of the same name gets a number when the new one is whole, and not before."""
+    """An older film of this name gets a number, but only when the new film is whole."""
     out = tmp_path / "a.mp4"
     out.write_bytes(b"older")
     with movie(out, WIDTH, HEIGHT, 30) as film:
@@ -77,7 +77,7 @@ def test_an_older_film_is_kept(tmp_path: Path) -> None:
 
 
 def test_a_failure_leaves_nothing(tmp_path: Path) -> None:
-    """A film that fails in the middle leaves no file, and keeps the older one."""
+    """A film that fails in the middle leaves no file, and an older film stays."""
     out = tmp_path / "a.mp4"
     out.write_bytes(b"older")
 

@@ -23,7 +23,7 @@ ENDS = st.tuples(st.integers(0, 2000), st.integers(0, 9000)).map(
 
 @given(ENDS, st.integers(1, 60))
 def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> None:
-    """Pictures are evenly spaced, from the first beat to less than one space before the last."""
+    """Pictures are evenly spaced from the first beat on, as many as fit up to the last beat."""
     first, last = ends
     pictures = plan.pictures(plan.whole(first, last), fps)
 
@@ -39,7 +39,7 @@ def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> 
 def test_shots_are_in_order_and_within_the_match(
     ends: tuple[int, int], beats: list[int], opening: bool
 ) -> None:
-    """Shots do not touch, lie in the match, show each moment in it, and end with its end."""
+    """Shots lie in the match without touching and show each moment; the last one ends with it."""
     first, last = ends
     shots = plan.highlights([Moment(beat) for beat in beats], first, last, opening=opening)
 

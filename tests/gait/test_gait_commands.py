@@ -189,7 +189,7 @@ KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
 @pytest.mark.parametrize("source", KINDS)
 @pytest.mark.parametrize("target", KINDS)
 def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
-    """`convert A B` takes B's format from B's name, and without --keys the sample gait's keys."""
+    """`convert A B` writes the format of B's name; without --keys it takes the sample's keys."""
     (folder / "out").mkdir()
     written = folder / "out" / target
     code, out, err = lacoc("gait", "convert", folder / source, written)

@@ -100,7 +100,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Return silences of the left seat after its key; a busy machine may cause earlier ones."""
+        """Return the left seat's silences after `before`; a busy machine may cause earlier ones."""
         return [
             event
             for event in referee.events

@@ -75,7 +75,7 @@ def test_the_document_has_every_path_and_hold() -> None:
 
 @given(st.binary(max_size=300))
 def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
-    """Any bytes from a page can be read or raise `Unreadable`, and no other exception."""
+    """Reading any bytes from a page returns a request or raises only `Unreadable`."""
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
     wire.read_id(data)
@@ -88,7 +88,7 @@ def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
     )
 )
 def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
-    """Any map with a request's fields can be read or raises `Unreadable`, and nothing else."""
+    """Reading any map with fields of requests returns a request or raises only `Unreadable`."""
     data = msgpack.packb(fields, unicode_errors="surrogatepass")
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
@@ -345,7 +345,7 @@ def test_no_header_breaks_the_guard(host: str, origin: str) -> None:
 
 
 def test_a_sheet_is_sent_only_if_it_has_changed(tmp_path: Path) -> None:
-    """Whoever has the newest sheet gets 304; a new one is sent, packed where it can be read."""
+    """A page that has the newest sheet gets 304; else it gets the sheet, gzipped if it can be."""
     path = tmp_path / "contest.json"
     endpoint = cast(Route, sheet_route(path)).endpoint
 

@@ -39,14 +39,14 @@ def link(log: int, *, connected: bool = True) -> bytes:
 
 
 def test_messages_open_as_they_were_made() -> None:
-    """Kind and payload are read again, however long the message is."""
+    """Kind and payload of a message can be read back from it, however long it is."""
     for size in (0, 1, 124, 125, 65_534, 65_535, 70_000):
         payload = bytes(size)
         assert wire.opened(wire.message(Kind.SCENE, payload)) == (Kind.SCENE, payload)
 
 
 def test_a_page_sees_a_court_as_it_was() -> None:
-    """What a court sends reaches pages late and in order; a newcomer gets what is known there."""
+    """Pages get all messages of a court late and in order; a new page gets the court as it was."""
     threads = Threads(1)
     feed = CourtFeed(Access(court="east", connect="tcp/127.0.0.1:1"), threads)
     late = LateFeed(feed, BEHIND_S)

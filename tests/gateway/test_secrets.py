@@ -108,7 +108,7 @@ def titles(where: Path) -> bytes:
 
 
 def in_record(path: Path) -> bytes:
-    """Return all messages of a record, unpacked."""
+    """Unpack all messages of a record and return them."""
     with path.open("rb") as file:
         return b"".join(message.data for _, _, message in make_reader(file).iter_messages())
 

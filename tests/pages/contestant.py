@@ -81,7 +81,7 @@ class Contestant:
             self.page.keyboard.press(key)
 
     def steer(self, digit: int) -> None:
-        """Press a key until it takes effect: the first press may still go to the last match."""
+        """Press a key until it takes effect: the first press may still be for the match before."""
         standing = self.find(f'.key[data-key="{digit}"][aria-pressed=true]')
         end_s = time.monotonic() + TIMEOUT_MS / 1000
         while not standing.count():

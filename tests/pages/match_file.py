@@ -20,8 +20,8 @@ def match_file(arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "
         robots: names of the seats' robots.
 
     Returns:
-        msgpack of {sheet, scene, frames}; each message in it is msgpack by itself. The frames
-        begin with the last scene, the one that contains the robots.
+        msgpack of {sheet, scene, frames}; each message in it is msgpack by itself. The scene is
+        the last one, which contains the robots, and the frames are those with this scene.
     """
     ground = arenas.load(arena, {"match": {"duration_s": seconds, "countdown_s": 1.0}})
     bots = ("planner", "nearest")

@@ -89,7 +89,7 @@ def tries(student: StudentPage) -> None:
 def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:
-    """A raised hand puts a card first when the pointer leaves the cards; Enter lowers the hand."""
+    """A card with a raised hand comes first once the pointer is off the cards; Enter lowers it."""
     ada, bob = comes(closing, room, "Ada"), comes(closing, room, "Bob")
     desk = Desk(open_page, room.url, viewport={"width": 1280, "height": 720})
     desk.begin(room.key)

@@ -88,7 +88,7 @@ class _Quiet(SimpleHTTPRequestHandler):
 def test_a_published_folder_shows_the_contest_and_its_replays(
     cup: Cup, open_page: OpenPage
 ) -> None:
-    """Below any path the folder opens as the contest; a result leads to its replay."""
+    """A published folder shows the contest at any path of a web server; results lead to replays."""
     page = open_page(viewport=LAPTOP)
     page.goto(cup.url)
     expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)

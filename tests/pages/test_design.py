@@ -232,7 +232,7 @@ def test_the_coach_works_and_can_be_stopped(
 def test_other_gaits_are_watched_and_taken(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """A gait of the map is chosen by keyboard and watched; a variant is bred from, and taken."""
+    """A gait of the map is chosen by keyboard and watched; variants are bred, and one is taken."""
     page = designer(open_page, address)
     page.page.click("#tab-coach")
     page.page.click(".coach >> text=Map of gaits")
@@ -308,7 +308,7 @@ def test_a_table_goes_to_practice(
 def test_predict_compare_and_the_way_back(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """Predictions get a verdict, Compare shows two trials, and a trial gives its table back."""
+    """Predictions get a verdict, Compare shows two trials, and a trial's table can be taken."""
     page = designer(open_page, address)
     page.tries()
     page.go(1, 0)

@@ -89,7 +89,7 @@ def enter(open_page: OpenPage, event: Event, team: str) -> Page:
 def test_an_event_from_its_file_to_its_first_game(
     event: Event, open_page: OpenPage, console: Any
 ) -> None:
-    """Teams enter by page; the organiser approves, closes, moves, decides and prints.
+    """Teams enter; the organiser approves them, moves and decides a match, and prints papers.
 
     The organiser needs two commands and four clicks until the first games are called.
     """
@@ -163,7 +163,7 @@ def move(office: Page) -> None:
 
 
 def decide(office: Page) -> None:
-    """Decide a match; the page shows what that changes before it can be done."""
+    """Decide a match; the page shows what the decision changes before it can be made."""
     line = office.locator(".rulings li").first
     line.get_by_role("button").click(timeout=WAIT_MS)
     dialog = office.get_by_role("dialog")

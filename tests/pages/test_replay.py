@@ -278,7 +278,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """Each recording and each moment in it has an address; Back returns to the list."""
+    """Each recording and each time in it has an address; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)

@@ -71,9 +71,9 @@ settings.match.start = "ready"
 
 @pytest.mark.long
 def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, console: Any) -> None:
-    """With the team's link a page shows what comes next, and plays at whichever court it is.
+    """With the team's link a page shows what comes next, and plays wherever the team is called.
 
-    A wrong token that was typed on the page before opens nothing.
+    A wrong token, typed before the link is opened, is refused and does no harm.
     """
     console.expect("ERR_CONNECTION|WebSocket")  # the contest ends before the page is closed
     with contest(tmp_path) as there:

@@ -63,7 +63,7 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 
 def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: OpenPage) -> None:
-    """The curve lies over the bar, chances follow the beat; a highlight leads to its first beat."""
+    """A curve shows all odds, numbers show those of the beat; a highlight leads to its start."""
     page = open_page(viewport={"width": 1366, "height": 768})
     show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=2&q=low")
     show.sees(".transport .chances", "90 : 10 %")
@@ -82,7 +82,7 @@ def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: O
 
 @pytest.mark.long
 def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: OpenPage) -> None:
-    """A fork is marked in the list and on the page; its match is shown at the same beat."""
+    """A fork is marked in the list and on its page, which can show the match at the same beat."""
     page = open_page(viewport={"width": 1366, "height": 768}, locale="ja-JP")
     show = Show(page, library.url, "/replay?q=low", drawn=False)
     show.sees(".recordings .fork", "もしも")

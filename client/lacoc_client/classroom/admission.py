@@ -17,7 +17,7 @@ them."""
 
 
 def read_name(text: str) -> str:
-    """Return a nickname without spaces at its ends and double spaces in it.
+    """Return a nickname without spaces at its ends; within it, several spaces become one.
 
     Raises:
         UserError: if nothing of it can be seen, it is too long, or it has unprintable signs.
@@ -29,6 +29,9 @@ def read_name(text: str) -> str:
 
 
 def same_name(name: str) -> str:
-    """Return a form of a name without differences in capitals, widths and what can't be seen."""
+    """Return the form by which names are compared.
+
+    It is equal for names that differ only in capitals, widths or what can't be seen.
+    """
     seen = unicodedata.normalize("NFKC", _UNSEEN.sub("", name))
     return " ".join(seen.casefold().split())

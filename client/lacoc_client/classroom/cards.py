@@ -61,7 +61,7 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Seen(msgspec.Struct, frozen=True, kw_only=True):
-    """Things about a student that the evidence does not say."""
+    """What a card needs to know of a student besides the evidence."""
 
     name: str
     online: bool = False

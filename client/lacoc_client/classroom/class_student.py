@@ -36,7 +36,7 @@ class ClassStudent(Student):
         self._last: Card | None = None
 
     def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
-        """Begin with what the class file has of this student, in its order."""
+        """Begin with what the class file has of this student, in the file's order."""
         documents = list(documents)
         self.diary.begin((one.evidence for one in evidence), documents)
         tokens = (one.content.decode() for one in documents if one.name == TOKEN)
@@ -46,12 +46,12 @@ class ClassStudent(Student):
 
     @property
     def is_idle(self) -> bool:
-        """Whether the student is not there, and has never done more than come in."""
+        """Whether the student has no page open, and has never done more than come in."""
         did = any(not isinstance(one, Joined) for one in self.diary.evidence)
         return not (self.viewers or did or self.diary.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
-        """Note that the student did something; `trial` is the trial if it was one."""
+        """Note that the student did something; if it was a trial, `trial` is its reply."""
         self.seen_s = time.time()
         if trial is not None:
             self._trial = trial

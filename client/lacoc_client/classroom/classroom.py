@@ -60,7 +60,7 @@ class Classroom:
 
     Args:
         folder: folder of the class.
-        studios: the ways to the studios; they are started and closed here.
+        studios: the connections to the studios; they are started and closed here.
         addresses: addresses that students can open.
         robot: the robot of the class; None: the workshop's.
 
@@ -207,7 +207,7 @@ class Classroom:
         self._tell_card(student)
 
     async def admit(self, student: ClassStudent) -> None:
-        """Let the next browser that shows the class code in under this student's name."""
+        """Let in, as this student, the next browser with the class code and the student's name."""
         student.token_hash = ""
         await student.diary.write(student.kept_token())
 
@@ -368,7 +368,7 @@ class Classroom:
 
 
 def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
-    """Sort evidence or documents by the name of the student, in their order."""
+    """Group evidence or documents by the name of the student; the order within a group stays."""
     groups: dict[str, list[_T]] = {}
     for one in kept:
         groups.setdefault(one.student, []).append(one)

@@ -207,7 +207,10 @@ class Tournament:
 
 
 class _Team(msgspec.Struct, frozen=True):
-    """A player of the command: nickname, and the name of each file as the player knows it."""
+    """A player of the tournament: the nickname, and what the player calls each file.
+
+    `files` maps the name under which a file was written to the name that the player gave it.
+    """
 
     name: str
     files: dict[str, str]
@@ -224,7 +227,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]
     """Write the files of each player into a folder.
 
     Returns:
-        The players, each by the word that names it on the command line.
+        The players, by the word that stands for each on the command line.
 
     Raises:
         OSError: if a file can't be written.

@@ -204,7 +204,7 @@ def _play(
 
 
 def _look(controller: Controller, player: BotPlayer) -> None:
-    """Show the bot the newest frame; tell refused keys, phases and the result."""
+    """Show the bot the newest frame; print refused keys, phases and the result."""
     frame = controller.wait_frame(0.1)
     if frame is not None:
         player.see(frame)

@@ -28,12 +28,12 @@ from lacoc_shared.words import render, say
 
 
 class _ClassGroup(TyperGroup):
-    """A group in which a first word that is no command belongs to the usual one."""
+    """A group of commands that runs its usual command if the first word names none."""
 
     usual = "open"
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Put `open` before words that begin with no command; see `click.Group.parse_args`."""
+        """Put `open` before the words if the first is no command; see `click.Group.parse_args`."""
         if args and args[0] not in self.commands and args[0] not in ctx.help_option_names:
             args = [self.usual, *args]
         return super().parse_args(ctx, args)

@@ -113,7 +113,7 @@ def spectator(
 def gateway(
     invitation: Path | None, contest: Contest | None, court: str | None, connect: str | None
 ) -> Access:
-    """Find the way to a court for a gateway, which only watches with a person's invitation.
+    """Find the way to a court for a gateway; with a person's invitation it can only watch.
 
     Raises:
         UserError: if the invitation or the contest's keys can't be read.

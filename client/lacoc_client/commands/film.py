@@ -151,7 +151,7 @@ def _look(
     """Return the look of a film.
 
     Raises:
-        UserError: if its size is none that a film can have.
+        UserError: if a film can't have this size.
     """
     found = _SIZE.fullmatch(size)
     width, height = (int(found[1]), int(found[2])) if found else (0, 0)
@@ -161,10 +161,10 @@ def _look(
 
 
 def _check(record: Path, out: Path, highlights: bool, moments: Path | None) -> None:
-    """Find a mistake in the use before anything is drawn.
+    """Check paths and options before anything is drawn.
 
     Raises:
-        UserError: if there is one.
+        UserError: if one of them is wrong, or they do not fit together.
     """
     if out.suffix.lower() != ".mp4":
         raise UserError(say("film.not-mp4", file=str(out)))

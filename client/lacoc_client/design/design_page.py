@@ -255,7 +255,7 @@ def robot_with(asked: requests.SetRobotAsk) -> FileContent:
 
 
 def parsed(asked: requests.ParseAsk) -> Any:
-    """Read a file that was dropped on a page, or a sheet that was pasted; may block.
+    """Read a file that was dropped on a page, or a whole pasted spreadsheet; may block.
 
     Raises:
         FileRefused: with every mistake of a gait file.
@@ -271,7 +271,7 @@ def _must_allow(learner: Learner, size: str | None) -> None:
     """Check that the coach may search for a change of this size.
 
     Raises:
-        UserError: if the teacher has closed it.
+        UserError: if the teacher has closed such searches.
     """
     if not learner.student.rules.allows(size):
         raise UserError(say("class.coach-closed"))

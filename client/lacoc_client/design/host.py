@@ -39,7 +39,7 @@ class Host(Protocol):
         """Remove a page that has gone."""
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page that was let in what it must know."""
+        """Send a page all that it needs when it has been let in."""
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
         """Tell all who must know that a student did something.

@@ -10,7 +10,7 @@ from lacoc_shared.words import say
 
 
 class Playing:
-    """A `lacoc practice` or `lacoc play` with the table of /design; any thread may use it.
+    """Runs `lacoc practice` or `lacoc play` with files from /design; any thread may use it.
 
     Args:
         invitation: an invitation to a seat; None: practice.

@@ -56,7 +56,7 @@ class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
 
 
 class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
-    """Read a file that was dropped on the page, or a sheet that was pasted."""
+    """Read a file that was dropped on the page, or the text of a whole pasted spreadsheet."""
 
     name: Name
     data: Any

@@ -72,8 +72,8 @@ class Director:
             courts: every court that can be shown; who is missing has vanished.
 
         Returns:
-            What is on air, of what was played `ahead_s` ago; None until the look of that time has a
-            court. In the first `ahead_s` seconds the first look stands for it.
+            What is on air: the court is shown as it was `ahead_s` ago, and in the first `ahead_s`
+            seconds as it was at the first look. None until such a look has a court.
         """
         self._see(now_s, courts)
         shown_s = now_s - self._ahead_s

@@ -42,7 +42,7 @@ def may_cut(cuts: Sequence[float], at_s: float) -> bool:
 
 
 class Prices:
-    """What moments and cuts are worth, by all moments of the last minutes.
+    """What moments and cuts are worth, compared with all moments of the last minutes.
 
     Args:
         known: those moments, at all courts.
@@ -61,7 +61,7 @@ class Prices:
         return moment.points * moment.points if moment.points >= self._least else 0.0
 
     def cost(self, left: int) -> float:
-        """Return what a cut costs while so many cuts are left, 1 to `CUTS_MOST`."""
+        """Return what a cut costs while `left` cuts are left, 1 to `CUTS_MOST`."""
         return self._costs[left - 1]
 
     def _rank(self, share: float) -> float:
@@ -82,7 +82,7 @@ def is_worth_it(
 
     Args:
         on_air: the court on air.
-        moment: a moment at another court, now.
+        moment: a moment that begins now, at a court that is not on air.
         coming: all other moments that are known and not over, at any court.
         cuts: the times of earlier cuts.
         prices: what moments and cuts are worth.
@@ -95,7 +95,7 @@ def is_worth_it(
     ahead = sorted(one for one in best if prices.value(one))
 
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
-        """Return the most that the moments from an index on are worth, less their cuts."""
+        """Return the most that moments from an index on can be worth, less the costs of cuts."""
         if index == len(ahead):
             return 0.0
         one = ahead[index]

@@ -32,7 +32,7 @@ class Results:
     """Keeps the newest result of each court.
 
     Args:
-        behind_s: how much later than they are known results are shown [s].
+        behind_s: how long after a result is known it is shown [s].
     """
 
     def __init__(self, behind_s: float) -> None:

@@ -24,7 +24,7 @@ def stake(fixture: Phrase | None) -> float:
     """Return the weight of a match.
 
     Args:
-        fixture: what the match is in its contest, a phrase of `fixture.*`; None: it is in none.
+        fixture: what the match is in its contest, a phrase of `fixture.*`; None: no contest.
 
     Returns:
         `USUAL` or more.

@@ -1,4 +1,4 @@
-"""The page /film in a Chromium of its own: it is told a moment, and gives the picture of it."""
+"""The page /film in a Chromium of its own: it is told a beat, and gives the picture of it."""
 
 import base64
 from collections.abc import Iterator, Sequence
@@ -28,7 +28,7 @@ class CameraPage:
     """An open page; only the thread that opened it may use it.
 
     Args:
-        page: the page of a record, loaded.
+        page: the page of a record, which has loaded.
     """
 
     def __init__(self, page: Page) -> None:
@@ -44,8 +44,8 @@ class CameraPage:
         """Go through some pictures, and return the last one as PNG.
 
         Args:
-            steps: all pictures since the last call, in order: what moves and the automatic camera
-                go on with each of them.
+            steps: all pictures since the last call, in order: the page goes through each, so that
+                moving parts and the automatic camera are where they must be in the last.
         """
         told = [{"beat": step.beat, "cut": step.cut} for step in steps]
         self._page.evaluate(_SHOW, told)

@@ -48,7 +48,7 @@ def find(own: str | None = None) -> str:
     """Return Chromium's path: the one that the environment names, Playwright's, or the system's.
 
     Args:
-        own: where Playwright would have installed its own.
+        own: path at which Playwright would have installed a Chromium.
 
     Raises:
         UserError: if there is none; it says how to install one.

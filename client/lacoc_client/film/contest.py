@@ -32,7 +32,7 @@ class _Sheet(msgspec.Struct):
 
 
 def records(folder: Path) -> list[Path]:
-    """Return the paths of the records of a contest's games in the sheet's order, but no void ones.
+    """Return the records of a contest's games, except void ones, as paths in the sheet's order.
 
     Args:
         folder: a published folder, or the folder of a contest file; it has `contest.json`.

@@ -110,7 +110,7 @@ def make(
 
 
 def still(one: Part, out: Path, look: Look) -> None:
-    """Write the still of a record as PNG; an older file of the name is kept under a number.
+    """Write the still of a record as PNG; an older file with this name gets a number.
 
     Args:
         one: the record.

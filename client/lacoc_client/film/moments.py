@@ -42,8 +42,8 @@ def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
 def by_score(record: Record) -> list[Moment]:
     """Return the moments in which the score changed while the match was played.
 
-    What a referee changes while the match is halted is no moment. A swing is by how many points the
-    lead changed; with one seat, how many points it got.
+    What a referee changes while the match is halted is no moment. The swing of a moment is the
+    number of points by which the lead changed or, with one seat, by which its score changed.
 
     Raises:
         UserError: if a frame of the record can't be read.
@@ -94,7 +94,7 @@ def from_file(path: Path) -> list[Moment]:
     """Read moments from a file: JSON, `{"moments": [{"beat": 1234, "swing": 0.4}]}`.
 
     Raises:
-        UserError: if it can't be read, or is something else.
+        UserError: if the file can't be read, or has no such JSON.
     """
     try:
         if path.stat().st_size > _LARGEST_BYTES:

@@ -27,8 +27,8 @@ class Movie:
 
     Args:
         container: the open file.
-        width: of its pictures [px].
-        height: of its pictures [px].
+        width: width of each picture [px].
+        height: height of each picture [px].
         fps: pictures a second.
     """
 
@@ -70,15 +70,15 @@ class Movie:
 
 @contextmanager
 def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
-    """Open a film for writing; when the block ends, it is at its place.
+    """Open a film for writing; when the block has ended, the film is at `out`.
 
     If the block fails, or the program is killed, no new file gets the film's name, and an older
     file of this name stays. When the film is whole, an older file is kept under a numbered name.
 
     Args:
         out: the film's path.
-        width: of its pictures [px], even.
-        height: of its pictures [px], even.
+        width: width of each picture [px], even.
+        height: height of each picture [px], even.
         fps: pictures a second.
 
     Raises:

@@ -6,7 +6,7 @@ from lacoc_client.gateway.viewer import Frames, Viewer
 
 
 class Listener(Protocol):
-    """What receives all that a court sends, as a page does, but is no page."""
+    """Receives all that a court sends, as a page does, but is no page."""
 
     def send(self, framed: bytes) -> None:
         """Take a message that must arrive."""

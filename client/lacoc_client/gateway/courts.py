@@ -1,4 +1,4 @@
-"""The courts of a gateway, and their limits on pages."""
+"""The courts of a gateway, and how many pages it lets in."""
 
 import asyncio
 
@@ -23,7 +23,7 @@ use other threads, so they never wait for these.
 
 
 class Courts:
-    """The feed and the referees of each court of a gateway, made when it is first asked for.
+    """The feed and the referees of each court of a gateway; they are made when first needed.
 
     Args:
         home: the gateway's settings.
@@ -42,7 +42,7 @@ class Courts:
         """Number of pages that were refused because there were too many."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """Return a court's feed, started, and its referees; without a name, the first court's.
+        """Return a court's started feed and its referees; without a name, those of the first court.
 
         Raises:
             UserError: if this gateway has no such court.
@@ -58,7 +58,7 @@ class Courts:
         return self._feeds[name]
 
     def _all(self) -> list[CourtFeed]:
-        """Return the feeds of all courts of this gateway, started."""
+        """Return the started feeds of all courts of this gateway."""
         return [self.find(name)[0] for name in list(self.home.courts)]
 
     @property
@@ -93,7 +93,7 @@ class Courts:
         return say("gateway.full", most=most)
 
     async def watch_files(self) -> None:
-        """Tell the pages that may act when the files on this machine have changed."""
+        """Watch the files on this machine; when they change, tell all pages that may act."""
         own = self.home.prefill.files if self.home.prefill is not None else None
         while own is not None:
             await asyncio.sleep(_FILES_S)

@@ -261,7 +261,7 @@ class CourtFeed:
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """Stop showing a court of another version, until it sends another sheet."""
+        """If a new sheet has another version of the protocol, hide the court until the next one."""
         if self._other_version not in (None, before):
             self._connected = False
             self.log(render(self._wrong_version or ""), "link", connected=False)
@@ -278,7 +278,7 @@ class CourtFeed:
 
     @property
     def _wrong_version(self) -> Phrase | None:
-        """Why a court of another version is not shown; None if it has this version."""
+        """Why the court is not shown: it has another version of the protocol; None: it has ours."""
         if self._other_version is None:
             return None
         version = self._other_version or None

@@ -13,7 +13,7 @@ _MOST_MACHINES = 1000
 
 
 class Guesses:
-    """Slows a machine down that shows wrong codes, so that it can't try them all."""
+    """Slows down each machine that shows wrong codes, so that it can't try them all."""
 
     def __init__(self) -> None:
         self._machines: OrderedDict[str, Allowance] = OrderedDict()

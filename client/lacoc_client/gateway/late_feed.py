@@ -1,4 +1,4 @@
-"""A court as it was some seconds ago: what its pages get, held back."""
+"""Shows a court as it was some seconds ago: holds back all messages to its pages."""
 
 import time
 from collections import deque
@@ -24,7 +24,7 @@ class _Link(msgspec.Struct):
 
 
 class _Way(Enum):
-    """How a message came."""
+    """The method of `Listener` by which a message came."""
 
     SENT = auto()
     IF_FAST = auto()

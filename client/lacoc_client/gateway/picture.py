@@ -59,7 +59,7 @@ class _Frame(msgspec.Struct, array_like=True):
 
 
 class CourtPicture:
-    """A court as a page that comes now sees it.
+    """A court as it is shown to a page that connects now.
 
     Each `take_...` returns the bytes for pages, or None if there is nothing new for them. It
     raises `BadMessage` if the court's bytes can't be decoded; then the picture does not change.

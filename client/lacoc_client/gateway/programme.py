@@ -29,7 +29,7 @@ class Programme:
     Everything is shown `AHEAD_S` later than it is played, unless there is only one court.
 
     Args:
-        feeds: returns the feeds of all courts, started; at least one.
+        feeds: returns the started feeds of all courts; there is at least one.
     """
 
     def __init__(self, feeds: Callable[[], Sequence[CourtFeed]]) -> None:

@@ -43,7 +43,7 @@ def scores_route(courts: Courts) -> BaseRoute:
 
 
 def _score(feed: CourtFeed) -> CourtScore | None:
-    """Return how a court stands; None if it is not heard, or was not heard yet."""
+    """Return how a court stands; None while the court is silent, or before it was first heard."""
     stands, played = feed.picture.stands(), feed.picture.played()
     if not feed.connected or stands is None or played is None:
         return None

@@ -42,8 +42,8 @@ class SeatThread:
     Args:
         access: address, seat and token.
         team: the team's name.
-        files: returns the team's files as a court reads them and the mistakes found in them, and
-            adds notes about them; called on the thread, because a workbook takes a while.
+        files: returns the team's files, as a court reads them, and their mistakes; adds notes to
+            the list that it is given. It is called on the thread, because workbooks take a while.
         unheard_s: returns how long the page has been silent [s].
         tell: receives the state of the seat (see docs/gateway.md, "seat"), on the thread.
         joined: receives the result of the join, on the thread.

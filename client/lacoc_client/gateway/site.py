@@ -1,4 +1,4 @@
-"""The gateway's paths: one page for all of them, its files, recordings, the WebSocket."""
+"""The gateway's paths: of pages (all are one HTML file), files, recordings and the WebSocket."""
 
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Sequence
@@ -111,7 +111,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
     """Return the route of a contest's newest sheet.
 
     Args:
-        path: its file, which need not be there yet; None: there is no contest.
+        path: the sheet's file, which need not exist yet; None: there is no contest.
     """
     files = None if path is None else PageFiles(path.parent)
 

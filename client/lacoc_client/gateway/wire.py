@@ -205,7 +205,7 @@ def too_long(size: int, most: int) -> Unreadable:
 
 
 def read_id(data: bytes) -> int | None:
-    """Return the id of a message that can't be decoded otherwise; None if it has none."""
+    """Return the id of a message of which nothing else can be read; None: it has no id either."""
     try:
         return _any_id.decode(data).id
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
@@ -213,7 +213,7 @@ def read_id(data: bytes) -> int | None:
 
 
 def message(kind: Kind, payload: bytes) -> bytes:
-    """Make a message to a page, as a finished WebSocket frame: made once for all pages."""
+    """Make a finished WebSocket frame of a message; the same bytes can go to all pages."""
     size = len(payload) + 1
     if size < 126:
         head = bytes((0x82, size, kind))
@@ -240,7 +240,7 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
     Args:
         own: the files.
-        used: version of the files with which the page now asks for a seat; None: it does not.
+        used: version of the files with which the page now asks for a seat; None: it does not ask.
     """
     names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
     refused = own.refused

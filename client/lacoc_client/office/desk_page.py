@@ -67,7 +67,7 @@ class DeskPage:
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
-        desk: the way to the desk.
+        desk: the connection to the desk.
         guesses: slows down whoever shows wrong secrets.
         key: the gateway's page key.
         address: address of the pages, as other machines can open it.

@@ -67,7 +67,7 @@ class Document(NamedTuple):
 
 
 class ClassFile:
-    """The file of a class; no other program can open it meanwhile. For one thread at a time.
+    """The open file of a class; no other program can open it too. For one thread at a time.
 
     When a method that writes returns, its data are on the disk.
 

@@ -73,7 +73,8 @@ def acts(*bounds: Bound, lacks: Phrase) -> Predicate:
 
     Args:
         *bounds: further limits that the same trial must keep.
-        lacks: sentence for all that is missing, except if the robot tips over or physics stops.
+        lacks: sentence for whatever is missing; a robot that tips over, and physics that stops,
+            have sentences of their own.
     """
     level_b = Bound(lambda facts: float(facts.keys[-1].startswith("B")), lambda _: lacks, least=1)
     belly = Bound(lambda facts: facts.belly_share, lambda _: lacks, most=_BELLY)

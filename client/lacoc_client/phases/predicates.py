@@ -70,7 +70,7 @@ def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
 
 @dataclass(frozen=True)
 class Different:
-    """A rule that one group must have a number of different things, such as a leg six postures."""
+    """A rule that a group must have `count` different things, such as six postures of a leg."""
 
     things: Callable[[Evidence], Iterable[tuple[Hashable, Hashable]]]
     """Takes a piece of evidence; returns its pairs of a group and a thing."""
@@ -79,7 +79,7 @@ class Different:
     """Takes how many things are missing in the group that has most."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Count the different things of each group, and return the outcome of the largest."""
+        """Count the different things of each group; return the outcome of the largest group."""
         groups: defaultdict[Hashable, set[Hashable]] = defaultdict(set)
         for one in evidence:
             for group, thing in self.things(one):
@@ -89,7 +89,7 @@ class Different:
 
 @dataclass(frozen=True)
 class LastOf:
-    """A rule that among `last` answers in a row at least `right` must be right, at any time."""
+    """A rule that some `last` answers in a row must have at least `right` right ones."""
 
     answer: Callable[[Evidence], bool | None]
     """Says whether an answer was right; None: this evidence is no answer."""
@@ -141,7 +141,7 @@ class TriedWhere:
     """What is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the trial with the largest share, the last one if several do."""
+        """Return the outcome of the trial with the largest share; of equal ones, of the last."""
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [_all([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
         return max(best, key=_share, default=Outcome(0.0, (self.none,)))
@@ -164,7 +164,7 @@ class All:
 
 @dataclass(frozen=True)
 class After:
-    """A rule that the evidence after one rule was met must meet another rule."""
+    """A rule that a first rule must be met, and then a second one by later evidence alone."""
 
     first: Predicate
     then: Predicate
@@ -183,12 +183,12 @@ class After:
 
 @dataclass(frozen=True)
 class OneVersion:
-    """A rule that the evidence of one and the same version of the table must meet a rule."""
+    """A rule that another rule must be met by evidence of a single version of the table."""
 
     shown: Predicate
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the version with the largest share, the last one if several do."""
+        """Return the outcome of the version with the largest share; of equal ones, of the last."""
         versions: dict[str, list[Evidence]] = {}
         for one in evidence:
             if isinstance(one, Edited | Tried | Checked | Compared | Coached):

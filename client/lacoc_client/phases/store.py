@@ -35,7 +35,7 @@ class ClassStore:
 
     A thread of its own works on the file, so that no event loop waits for the disk. The methods
     return futures, which are done when their data are on the disk (`asyncio.wrap_future` makes an
-    event loop wait for one). If the process is killed, no evidence is lost whose future was done.
+    event loop wait for one). If the process is killed, evidence whose future is done is not lost.
     A document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
 
     A damaged file is renamed, and the class goes on in a fresh file. While the disk is full,
@@ -76,7 +76,7 @@ class ClassStore:
         return self._no_room or self._damage
 
     def add(self, student: str, evidence: Evidence, at_s: float) -> "Future[int]":
-        """Keep evidence, and with it the documents of the student that wait.
+        """Keep evidence; write with it the student's documents that still wait.
 
         Args:
             student: name of the student.
@@ -232,7 +232,7 @@ class ClassStore:
             ]
 
     def _written(self, documents: Iterable[Document]) -> None:
-        """Note that documents are on the disk; one that was kept meanwhile is newer, and waits."""
+        """Note that documents are on the disk; a newer one that came meanwhile still waits."""
         with self._lock:
             for document in documents:
                 key = document.student, document.name

@@ -1,7 +1,7 @@
 """The field from above, drawn with the characters of a terminal: two pixels a character.
 
-Letters also tell whose a marker or a robot is, so nothing depends on colours. A terminal without
-colours shows shades instead.
+Letters also tell which seat a marker or a robot belongs to, so nothing depends on colours. A
+terminal without colours shows shades instead.
 """
 
 import math

@@ -140,7 +140,7 @@ class Learner:
 
         Args:
             asked: the trial.
-            own: what it showed, as from `tried`.
+            own: what the trial showed, as `tried` returns it.
 
         Returns:
             Whether the comparison was kept as evidence.

@@ -89,7 +89,7 @@ class BookParts:
         return [target for _, target in self._relations(part, kind)]
 
     def _relations(self, part: str, kind: str) -> list[tuple[str, str]]:
-        """Return id and target part of a part's relations of one kind; part "": the whole file."""
+        """Return a part's relations of one kind, as id and target part; part "": the whole file."""
         name = _relations_name(part)
         if name not in self._parts:
             return []
@@ -130,6 +130,6 @@ def _calculated(book: str) -> str:
 
 
 def _without(xml: bytes, element: bytes, ending: bytes) -> bytes:
-    """Return XML without the elements of this name that have an attribute with this ending."""
+    """Return XML without each element of this name in which an attribute ends with `ending`."""
     pattern = rb"<(?:\w+:)?" + element + rb"\b[^>]*" + re.escape(ending) + rb"\"[^>]*/>"
     return re.sub(pattern, b"", xml)

@@ -79,7 +79,7 @@ assert _PLACES.keys() == set(get_args(RobotEntry))
 def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
     """Return the text of a robot file with one number changed.
 
-    A number of the links is changed for all legs, also for a leg that has its own.
+    A number in [link] is changed for all legs, also for a leg with a value of its own.
 
     Args:
         text: the robot file (TOML).
@@ -110,7 +110,7 @@ def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
 
 
 def _set(robot: Any, place: _Place, value: float) -> None:
-    """Put the number into a parsed file: into its table, and into the legs that have their own."""
+    """Put the number into a parsed file: into its table, and into legs that have this entry too."""
     if place.table not in robot:
         robot[place.table] = {}
     tables = [robot[place.table]]

@@ -8,10 +8,10 @@ from lacoc_shared.mistakes import FileRefused
 
 
 def edit_text(data: bytes, name: str, table: PostureTable) -> bytes:
-    """Return the bytes of a Loco-data text file with other postures.
+    """Return the bytes of a Loco-data text file in which a table replaces the postures.
 
-    Lines of unchanged postures, and all lines below the postures, stay as they are. A file with
-    another number of legs, or with mistakes, is written anew as a whole.
+    Lines of unchanged postures, and all lines below the postures, stay as they are. If the file
+    has another number of legs than the table, or mistakes, all of it is written anew.
 
     Args:
         data: the file as it is now.

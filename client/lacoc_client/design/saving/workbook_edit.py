@@ -29,7 +29,7 @@ _LONG_FORMULAS = ("array", "dataTable")
 
 
 def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
-    """Return a workbook with other postures.
+    """Return a workbook in which a table replaces the postures.
 
     Args:
         data: the .xlsx file as it is now.

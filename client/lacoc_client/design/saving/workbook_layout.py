@@ -112,11 +112,11 @@ def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -
 
 
 def _disorder(place_of: Mapping[int, int], key: int, row: int) -> int:
-    """Count the postures whose order by key would differ from their order by row.
+    """Count the placed postures on the wrong side of a new one: larger key above, or smaller below.
 
     Args:
         place_of: row of each placed posture, by key.
-        key: key of the posture to place.
-        row: row that it would get.
+        key: key of the new posture.
+        row: row that the new posture would get.
     """
     return sum((other < key) != (place < row) for other, place in place_of.items())

@@ -1,1 +1,1 @@
-"""The way to studios, which let robots walk: `asker` to one, `studios` to several."""
+"""Connections to studios, which let robots walk: `asker` to one, `studios` to several."""

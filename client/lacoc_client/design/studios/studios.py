@@ -7,10 +7,10 @@ from lacoc_shared.words import Phrase
 
 
 class Studios:
-    """The ways to one or more studios; each request goes to the one with the least to do.
+    """Connections to one or more studios; each request goes to the studio with the least to do.
 
     Args:
-        askers: the ways; they are started and closed here.
+        askers: the connections; they are started and closed here.
     """
 
     def __init__(self, askers: Sequence[Asker]) -> None:
@@ -37,5 +37,5 @@ class Studios:
         return None if self.present else self._askers[0].why
 
     def free(self) -> Asker:
-        """Return the way to the studio with the least to do; to an absent one if none is there."""
+        """Return the connection to the studio with the least to do; if there is no studio, any."""
         return min(self._askers, key=lambda asker: (asker.studio is None, asker.open))
