@@ -114,7 +114,7 @@ class Network:
         """Make a brain for one match.
 
         Raises:
-            UserError: if the match gives another number of numbers than the policy learned with.
+            UserError: if a frame of this match gives more or fewer numbers than the policy takes.
         """
         senses = Senses(sheet)
         if senses.size != self.inputs:

@@ -1,4 +1,4 @@
-"""Files of SQLite: opened, recognised and checked in the same way for whoever keeps data in one."""
+"""Open, recognise and check files of SQLite, in one way for all parts that keep data in them."""
 
 import sqlite3
 from collections.abc import Sequence

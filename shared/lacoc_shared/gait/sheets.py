@@ -72,7 +72,7 @@ def _write_edited(
 
 
 def _add_help(book: Workbook, sheet: Worksheet, last_posture: int, last_column: int) -> None:
-    """Let spreadsheet programs reject a wrong number that is typed, and mark a pasted one."""
+    """Let spreadsheet programs reject wrong numbers that are typed, and mark pasted ones."""
     limit = number_text(RANGE_DEG)
     angles = (1, 1, last_posture, last_column)
     sheet.data_validation(

@@ -97,5 +97,8 @@ def milliseconds(when: datetime | None) -> int:
 
 
 def _look(name: str) -> str:
-    """Return a name without what is easily overlooked: capitals, wide letters, more spaces."""
+    """Return a name in a form in which names are equal that look alike.
+
+    Capitals become small letters, wide letters narrow ones, and several spaces one.
+    """
     return " ".join(unicodedata.normalize("NFKC", name).casefold().split())

@@ -1,7 +1,8 @@
 """A contest without a network: bots play all its games as fast as the machine can.
 
-A game is computed once. Its record is named by a hash of all that decides it, so whoever plays the
-same contest again, or one in which a single entry has changed, finds the other games done.
+A game is computed once. Its record is named by a hash of all that decides it, so whoever plays
+the contest again finds its games done. If an entry has changed, only games that depend on it are
+played again.
 """
 
 import hashlib
@@ -132,7 +133,11 @@ def play(
 
 
 def _still_due(known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
-    """Yield the results that no other program has appended meanwhile, and nothing has overtaken."""
+    """Yield the results that are still wanted.
+
+    Meanwhile another program may have appended a result of the same game, or a fact after which
+    the game is not played.
+    """
     contest = compute(facts, FORMATS)
     due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in playable(contest)}
     yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)

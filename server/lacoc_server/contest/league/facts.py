@@ -1,7 +1,8 @@
 """The facts of a contest: what happened and what was decided, each appended once.
 
-A fact has an id, and a number that is its place among the facts. It may arrive in any order, and
-more than once: `ordered` gives the same facts again. docs/contest.md says what each fact means.
+A fact has an id, and a number that is its place among the facts. Facts may arrive in any
+order and more than once: `ordered` returns each once, in the order of their numbers.
+docs/contest.md says what each fact means.
 """
 
 from collections.abc import Iterable
@@ -21,7 +22,7 @@ Outcome = Literal["left", "right", "draw", "void"]
 
 
 class Fact(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, tag_field="fact"):
-    """What all facts have."""
+    """The fields that all facts have."""
 
     id: Name
     """Names the fact; unique in the contest."""
@@ -53,7 +54,7 @@ class Withdrawn(Fact, frozen=True, kw_only=True, tag="withdrawn"):
 
 
 class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
-    """A team is expelled; as withdrawn, and it is ranked last."""
+    """A team is expelled: it leaves as if withdrawn, and is ranked last."""
 
     team: Name
     reason: str = ""

@@ -67,7 +67,7 @@ def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
 
 
 def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Yield the first fact of an earlier publication that is missing now, or another one."""
+    """Yield the first fact of an earlier publication that is missing or different now."""
     for before, now in zip(earlier, (*facts, *(None,) * len(earlier)), strict=False):
         if before != now:
             yield say("verify.rewritten", fact=before.id)
@@ -75,7 +75,7 @@ def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Itera
 
 
 def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
-    """Return what was known when a game was called, or, if nobody called it, had been played."""
+    """Return the facts before the call of a game, or before its result if nobody called it."""
     at = facts.index(played)
     for place in range(at - 1, -1, -1):
         fact = facts[place]

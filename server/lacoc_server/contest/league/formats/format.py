@@ -61,7 +61,7 @@ class Format(Protocol):
 
 
 class DrawnAtOnce:
-    """What formats share whose draw fixes all rounds."""
+    """Methods of those formats whose draw fixes all rounds at once."""
 
     def rounds(self, stage: Stage) -> int:
         """Return 0: no round is drawn later."""
