@@ -89,7 +89,7 @@ class Step:
 
 @dataclass
 class Section:
-    """The beats from a snapshot, or from a building of robots, to the next one or to the end."""
+    """The beats from a snapshot, or from where robots are built, to the next one or to the end."""
 
     build: Build
     start: bytes | None

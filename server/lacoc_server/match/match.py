@@ -96,7 +96,8 @@ class Match(MatchState):
                 the match, and what an office assigned, may differ.
 
         Raises:
-            ValueError: if they are not, or the field has the poses of a record instead of physics.
+            ValueError: if the bytes are not of such a match, or if this match has the poses of a
+                record instead of physics.
         """
         saved.load(self, data)
 
@@ -250,7 +251,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Have robots that stray before play put back.
+        """Mark robots that stray before play, so that they are put back.
 
         A seat whose robot strayed `MOST_STRAYS` times is no longer ready.
         """

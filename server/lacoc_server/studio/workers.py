@@ -1,4 +1,4 @@
-"""Runs jobs in other processes. If a process dies, only its job is lost, and a new one starts."""
+"""Runs jobs in other processes. If a process dies, only its job is lost; a new process starts."""
 
 import contextlib
 import os

@@ -70,7 +70,7 @@ class Begun:
         self._saved: dict[int, bytes] = {}
 
     def setup(self, place: int, match_id: str = "") -> Setup:
-        """Return what a match is made from that begins at a start place."""
+        """Return the setup of a match that begins at a start place."""
         arena = self.arena_at(place)
         return Setup(
             match_id=match_id,

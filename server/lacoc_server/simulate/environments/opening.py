@@ -26,7 +26,7 @@ class Opening(msgspec.Struct, frozen=True):
 
 
 def draw(arena: Arena, chance: np.random.Generator) -> Opening:
-    """Draw an opening: start place, a late beginning of each seat, and the learner's seat."""
+    """Draw an opening: the start place, how late each seat begins, and the learner's seat."""
     seats = len(arena.seats)
     late = chance.integers(0, MOST_LATE_TICKS + 1, seats)
     return Opening(

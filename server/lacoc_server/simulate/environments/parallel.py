@@ -76,7 +76,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each number is that an agent sees."""
+        """The meaning of each number that an agent sees."""
         return self._senses.names
 
     def observation_space(self, agent: str) -> "spaces.Space[Numbers]":

@@ -58,7 +58,7 @@ class Line:
     Args:
         record: the record of the match, whole.
         match: the match, after the last beat before the fork.
-        change: what is other than in the record.
+        change: how the fork differs from the record.
         seconds: how long the fork goes on at most [s]; None: until play ends.
     """
 
