@@ -31,8 +31,8 @@ _SITES = "lacoc.site"
 def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
     """Write a contest as a folder: facts, sheet, tables, entries, records and pages.
 
-    The folder can be written again while the contest goes on. Each file is replaced at once, and
-    the sheet is the last. The files of teams are left out until entries are closed.
+    The folder can be written again while the contest goes on. Each file is replaced in one step,
+    the sheet as the last one. The files of teams are left out until entries are closed.
 
     Args:
         folder: the contest.

@@ -89,7 +89,7 @@ class Match(MatchState):
     def load(self, data: bytes) -> None:
         """Go on from a saved match: the same inputs then give the same beats, bit for bit.
 
-        The match may be a new one. Robots are built only if other ones, or none, are on the field.
+        The match may be a new one. Robots are built only if the field has none, or other ones.
 
         Args:
             data: bytes of `save`, from a match with the same arena, settings and limits. The id of
@@ -148,7 +148,7 @@ class Match(MatchState):
         """Let the second half of a beat pass, after its tick of physics.
 
         Args:
-            fault: why the tick did not pass; None if it passed, or if there is none in this beat.
+            fault: why the tick did not pass; None if it passed, or if the beat has no tick.
 
         Returns:
             The results of the beat, as in `beat`.

@@ -49,7 +49,7 @@ def connect(
 
 
 def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
-    """Return the exception that an error of SQLite stands for.
+    """Return the exception to raise for an error of SQLite.
 
     Args:
         path: the database file.

@@ -182,7 +182,7 @@ def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
 
 
 def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
-    """Return the command line for each person whose invitation file is in the current folder.
+    """Return a command line for each person, to be run in the folder of the invitation file.
 
     Args:
         everybody: the access of each person, by name.

@@ -92,7 +92,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def host(self) -> str:
-        """Host for clients; "" if the court listens on all addresses and `connect` names none."""
+        """Host for clients; "" if the court listens on all addresses and `connect` has no host."""
         found = address_host(self.connect or self.listen[0])
         return "" if found in ANY_HOST else found
 

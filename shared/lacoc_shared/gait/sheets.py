@@ -22,7 +22,7 @@ _MIRROR_COLOUR = "#595959"  # grey: not for editing
 
 
 def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int) -> None:
-    """Add the sheet to edit, and a mirror that shows its cells by formulas, to a workbook.
+    """Add two sheets to a workbook: one to edit, and one that shows its cells by formulas.
 
     Args:
         book: the workbook.

@@ -138,7 +138,7 @@ def _watching() -> Rules:
 
 
 def _actors(protection: Protection) -> dict[str, Rules]:
-    """Make the rules of users who do more than watch: keys and requests of seats, and decisions."""
+    """Make the rules by which users may send keys and requests of a seat, or decisions."""
     keys = Keys(protection.court)
     seats = {
         user: _acting(

@@ -78,7 +78,7 @@ class Book:
         return next((team for team in self.contest.teams if team.name == name), None)
 
     def is_taken(self, name: str) -> bool:
-        """Return whether a team that is in or waits has this name, or almost (see `_look`)."""
+        """Return whether a team that is in or waits has this name, or one that looks like it."""
         names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
         return _look(name) in map(_look, names)
 

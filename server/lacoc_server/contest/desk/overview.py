@@ -48,7 +48,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:
-    """Yield the teams: those that wait or were refused first."""
+    """Yield the teams; those that wait or were refused come first."""
     waiting = book.applications.waiting
     known = {team.name: team for team in book.contest.teams}
     for team, mistakes in book.refused.items():

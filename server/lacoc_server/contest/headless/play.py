@@ -194,7 +194,7 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
 
 
 def _tries(match: Match, facts: Sequence[AnyFact]) -> int:
-    """Count the results of this game that do not count: void ones, and those to be replayed."""
+    """Return how many results of this game are not valid: void ones, and those to be replayed."""
     return sum(
         isinstance(fact, Played)
         and (fact.pairing, fact.game) == (match.pairing.id, match.next_game)

@@ -35,7 +35,7 @@ class Seen(NamedTuple):
 
 
 def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
-    """Yield what courts have brought to an end: the result of each game that was called."""
+    """Yield the results of the called games that courts have brought to an end."""
     for call in contest.running:
         court = seen.get(call.court)
         if court is not None and court.call == call.id and court.ended is not None:

@@ -31,7 +31,7 @@ _MAX_BYTES = 1 << 20  # of a sheet, or of the list of events
 
 
 class NoAnswer(Enum):
-    """No answer that can be read: the court may have done the request. Ask again, same call."""
+    """No readable answer came; the court may have done what was asked. Ask again, same call."""
 
     NO_ANSWER = "no-answer"
 

@@ -253,7 +253,7 @@ def _may_come(contest: Contest, team: str) -> bool:
 
 
 def _rounded_s(time_ms: int) -> int:
-    """Round up, so that an estimate does not change with each look."""
+    """Round up to seconds, in steps so large that an estimate does not change with each look."""
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
 
 

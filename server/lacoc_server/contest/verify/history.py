@@ -31,7 +31,7 @@ _HARMLESS = ("league.result-replaced", "league.result-unneeded", "league.other-t
 
 
 def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
-    """Yield what an honest contest can't have.
+    """Yield what in the facts can't come from an honest contest.
 
     Times are not compared: a clock may have been corrected. The order is that of the numbers.
 
@@ -48,7 +48,7 @@ def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase
 
 
 def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
-    """Yield what people decided: verification can't say whether they did, or were right."""
+    """Yield what people decided; nothing can prove that they did, or that they were right."""
     closed = False
     for fact in facts:
         closed = closed or isinstance(fact, Closed)
@@ -87,8 +87,8 @@ def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
 def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ...]:
     """Return the hashes of the files with which a team may have played a game.
 
-    A game goes on with the files with which it began, so if they were changed since entries were
-    closed, those before the newest change count too.
+    These are the newest files before the result of the game. If entries were closed when these were
+    handed in, the files before them count too: a game goes on with those with which it began.
     """
     hashes: list[str] = []
     closed = False

@@ -171,7 +171,7 @@ class Course:
         """The end of the match; None: it has no result."""
 
     def clock_s(self, beat: int) -> float:
-        """Return the clock's time at a beat of play [s]; for other beats, that at the end of play."""
+        """Return the clock's time at a beat of play [s]; for other beats, at the end of play."""
         return self.clocks.get(beat, self.clocks[self.playing[-1]]) * BEAT_S
 
 
@@ -286,7 +286,7 @@ def _moment(
 
 
 def _closer(course: Course, moments: Sequence[Moment], count: int) -> list[int]:
-    """Return the moments to add next: in the largest swings that are long enough."""
+    """Return the moments to add next: one in each of the largest swings that are long enough."""
     room = min(_AT_ONCE, count - len(moments))
     found = (
         odds.between(course.playing, course.told, swing, _LEAST_BEATS)

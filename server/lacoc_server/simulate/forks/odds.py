@@ -163,7 +163,7 @@ def between(playing: Sequence[int], told: Sequence[int], swing: Swing, least: in
         playing: all beats in which play went on, in order.
         told: beats with an event of the game, in order.
         swing: the stretch.
-        least: beats of play that stay between two moments.
+        least: smallest number of beats of play between two moments.
 
     Returns:
         A beat; None: the stretch is too short.

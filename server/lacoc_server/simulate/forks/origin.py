@@ -83,7 +83,7 @@ class Stem:
 
 
 def stem(source: Source, beat: int, match_id: str) -> Stem:
-    """Return what a fork goes on from.
+    """Return the part of a record that a fork goes on from.
 
     Args:
         source: the record.

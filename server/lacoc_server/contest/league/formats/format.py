@@ -15,7 +15,7 @@ Pair = tuple[str, ...]
 
 
 class Stage(msgspec.Struct, frozen=True, kw_only=True):
-    """What is fixed of a stage when its draw is done."""
+    """What of a stage is fixed once it is drawn."""
 
     name: str
     settings: Settings

@@ -111,7 +111,7 @@ def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
 
 
 def _add(player: Player, side: int, others: Sequence[str], match: Match) -> None:
-    """Add a match to what a team has behind it. A match not played counts for no side."""
+    """Add a past match to what is known of a team. Only a match with a game counts for a side."""
     player.met.update(others)
     if match.games:
         player.sides.append(side)
@@ -134,7 +134,7 @@ def seated(one: Player, other: Player) -> tuple[str, str]:
     """Seat a pair; return who sits left, then who sits right.
 
     Who sat left less often sits left. If both did equally often, who sat right last does; if that
-    decides nothing either, the numbers do.
+    decides nothing either, the team with the smaller number sits left if this number is odd.
     """
     first, second = sorted((one, other), key=lambda player: player.number)
     if first.number % 2 == 0:
