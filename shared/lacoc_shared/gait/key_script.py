@@ -1,9 +1,9 @@
 """A script of keys: a small language, so that a file or a program can play.
 
 A line holds keys, which are pressed in order: `2`, or `tab 1`, or `1 2 3 4` (also `1234`). A line
-may begin with a time [s], which has a decimal point: `1.5 3` waits for 1.5 s after the
-keys before, and then presses 3. Time runs only while the match is played; keys that move the robot
-wait until then. `#` begins a comment.
+may begin with a time [s], which has a decimal point: `1.5 3` presses key 3 when 1.5 s have passed
+after the keys before. Time runs only while the match is played; keys that move the robot wait until
+it is played. `#` begins a comment.
 """
 
 import math

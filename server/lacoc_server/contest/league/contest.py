@@ -1,4 +1,4 @@
-"""A contest as its facts make it."""
+"""A contest as it follows from its facts."""
 
 from collections.abc import Iterable, Mapping, Sequence
 

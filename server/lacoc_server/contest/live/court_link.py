@@ -1,7 +1,7 @@
 """The office's connection to one court: it assigns matches, and hears what becomes of them.
 
 Nothing here waits. What a court says is asked for whenever its health names something newer, so a
-lost message, a restart of the court or of the office costs half a second and no fact.
+lost message, a restart of the court or of the office costs half a second, and no fact is lost.
 """
 
 import time

@@ -2,8 +2,8 @@
 
 At some moments of the match, bots play forks to the end. A moment has few forks, so the share that
 the first seat won would be a rough number. The chance is instead the probability that it would win
-one more fork if margins (its points less those of the other) are normally distributed: Student's
-t. Moments close to each other share their forks.
+one more fork. That is computed by Student's t, as if margins (its points less those of the other
+seat) were normally distributed. Moments close to each other share their forks.
 """
 
 import math

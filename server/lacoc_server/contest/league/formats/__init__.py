@@ -1,4 +1,5 @@
-"""Formats of a contest's stages; an entry point of the group `lacoc.formats` names one.
+"""Formats of a contest's stages.
 
-The entry point is an object that is a `format.Format`.
+Each is an object with the methods of `format.Format`, which an entry point of the group
+`lacoc.formats` names.
 """
