@@ -15,7 +15,7 @@ class _Decision(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Ready(_Decision, frozen=True, tag="ready"):
-    """Say "ready" in place of a contestant who can't."""
+    """Say ready for a contestant who cannot."""
 
     seat: str
 
