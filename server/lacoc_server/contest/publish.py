@@ -23,7 +23,8 @@ FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", 
 ENTRIES, RECORDS = "entries", "records"
 """Names of what a published folder has."""
 _FORMULA = (*"=+-@＝＋－＠", "\t", "\r")
-"""With these a spreadsheet takes a text for a formula, in Japanese also with the wide ones."""
+"""A spreadsheet takes a text that begins with one of these for a formula; the wide ones count in
+Japanese."""
 _SITES = "lacoc.site"
 """Entry points that add the pages: functions that are given the folder."""
 

@@ -138,7 +138,7 @@ class Finding:
 
 
 class Worlds:
-    """Keeps the newest world that was built, because the next section often needs the same."""
+    """Keeps the newest world that was built, because the next section often needs the same one."""
 
     def __init__(self) -> None:
         self._number = -1

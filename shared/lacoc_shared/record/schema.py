@@ -1,4 +1,4 @@
-"""The contents of a record besides inputs, events and frames."""
+"""The contents of a record other than inputs, events and frames."""
 
 from typing import Any
 

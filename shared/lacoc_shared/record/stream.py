@@ -69,7 +69,7 @@ class Stop(NamedTuple):
     court.
     """
     is_all: bool = False
-    """Whether all messages were read all the same."""
+    """Whether all messages were read in spite of the fault."""
 
 
 class _Format(msgspec.Struct):

@@ -25,7 +25,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
     Args:
         book: the contest.
         code: the event code.
-        known: what the office knows besides.
+        known: what the office knows besides the facts.
 
     Raises:
         UserError: if the facts can't be read.

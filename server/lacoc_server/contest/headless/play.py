@@ -35,9 +35,10 @@ from lacoc_shared.words import Phrase, say
 LATE_TICKS = 7
 """Ticks by which bots start later each time that two teams meet in the same seats."""
 _MOST_DEATHS = 3
-"""A game is played again so many times because its process died."""
+"""How many times a game is played again at most because its process died."""
 _MOST_VOIDS = 3
-"""After so many games in which physics stopped, a game counts as a draw without points."""
+"""A game in which physics stops counts as a draw without points, if it had this many results before
+that are not valid (`_tries`)."""
 
 
 class Engine(Protocol):
@@ -155,7 +156,7 @@ def _games(
     steer: str,
     busy: Container[tuple[str, int]],
 ) -> Iterator[_Game]:
-    """Yield the games that can be played now, besides those that are `busy`."""
+    """Yield the games that can be played now, except those that are `busy`."""
     files = {team.name: team.files for team in contest.teams}
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     for match in playable(contest):

@@ -8,7 +8,7 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, 
 from lacoc_server.contest.league.schedule import assign
 
 LOST_MS = 20_000
-"""A court that was not heard for so long loses a game that it has not begun."""
+"""A court that was not heard for this long loses a game that it has not begun."""
 
 
 class Ended(NamedTuple):

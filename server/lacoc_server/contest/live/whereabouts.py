@@ -20,7 +20,7 @@ from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
 _COUNTED = 15
-"""The newest games, whose length counts."""
+"""How many of the newest games count for the usual length of a game."""
 _STEP_S = 5
 _MOMENT_S = 30
 """What comes sooner is said to come in a moment."""

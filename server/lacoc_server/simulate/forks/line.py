@@ -23,11 +23,11 @@ _SEARCH_BEATS = BEATS_PER_S
 """A take-back waits at most this long for a beat without recorded inputs. If there is none, it
 comes in the first beat."""
 _SILENT_BEATS = BEATS_PER_S
-"""So long after the last recorded beat, seats with recorded keys fall silent, as at a court."""
+"""This long after the last recorded beat, seats with recorded keys fall silent, as at a court."""
 _LATE_TICKS = BEATS_PER_S
 """Longest time before a bot sees its first frame, in a variant."""
 _REACTION_TICKS = BEATS_PER_S // 5
-"""Longest time from a bot's choice of a key to the key, in a variant."""
+"""Longest time from a bot's choice of a key to its press, in a variant."""
 _IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 

@@ -18,7 +18,7 @@ PRIOR_SPREAD = 1.0
 PRIOR_WEIGHT = 2
 """Number of forks that weigh as much as this assumption."""
 NEAR_S = 1.0
-"""Moments at most so far apart on the clock share their forks [s]."""
+"""Moments that are at most this far apart on the clock share their forks [s]."""
 _SPARE_S = 0.001  # differences of times are not exact
 
 

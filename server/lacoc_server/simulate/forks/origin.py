@@ -77,7 +77,7 @@ class Stem:
     record: Record
     """Header, sheets and results name the fork; everything else is as it was recorded."""
     messages: tuple[Message, ...]
-    """The same as messages, for the fork's own record; measurements of health are left out."""
+    """`record` as messages for the fork's own record; measurements of health are left out."""
     setup: Setup
     """Setup of the fork."""
 

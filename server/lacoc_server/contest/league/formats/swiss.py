@@ -238,7 +238,7 @@ def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
 
 
 def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
-    """Pair so that fewest meet again, then fewest have two byes, then sides differ least.
+    """Pair so that fewest teams meet again, then fewest have two byes, then sides differ least.
 
     Among such pairings, choose one in which opponents differ least in points; and among teams with
     equal points, let the upper half meet the lower half.
