@@ -97,7 +97,7 @@ class Preparation:
 
 
 def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str]) -> list[JoinSeat]:
-    """Return a join for each team that keeps its seat in an assigned match, with its files for it.
+    """Return a join with the assigned files for each team that keeps its seat in the next match.
 
     Args:
         joins: the joins of the match before.

@@ -57,7 +57,7 @@ def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
 
 
 def free_beside(one: str, taken: Sequence[str]) -> str:
-    """Return an address with the first port, from 7447 on, that no taken address has."""
+    """Return `one` with another port: the first, from 7447 on, that no taken address has."""
     ports = {_split(other)[1] for other in taken}
     free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
     return f"{one.rpartition(':')[0]}:{free}"

@@ -71,7 +71,7 @@ def _told(source: Source, one: Swing) -> dict[str, Any]:
 
 
 def _events(source: Source, one: Swing) -> list[Event]:
-    """Return the events of a stretch that the game decided, and the referee's decisions."""
+    """Return the events of the game, the decisions and the restarts in a stretch."""
     return [
         event
         for event in source.record.events

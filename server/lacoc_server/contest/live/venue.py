@@ -48,7 +48,7 @@ def courts(where: ContestFolder, folder: Path, speed: float) -> Iterator[dict[st
 
 @contextmanager
 def _court(name: str, words: list[str], folder: Path) -> Iterator[dict[str, Any]]:
-    """Run a court; try for some seconds if its address is taken.
+    """Run a court; if its address is taken, try again for some seconds.
 
     If an office was killed, its courts may hold their addresses for some seconds more.
     """

@@ -27,7 +27,7 @@ class Checked(NamedTuple):
     proven: int
     """Games whose records were proven; of the others only the results were compared."""
     least_forged: int
-    """If this many records were forged, one was found with probability `sampling.CONFIDENCE`."""
+    """If this many records are forged, a check finds one with probability `sampling.CONFIDENCE`."""
 
 
 def check(

@@ -28,7 +28,7 @@ def missed(games: int, forged: int, checked: int) -> float:
 
 
 def least_forged(games: int, checked: int) -> int:
-    """Return from how many forged games on a sample has one of them with probability `CONFIDENCE`.
+    """Return the number of forged games of which a sample has one with probability `CONFIDENCE`.
 
     With fewer forged games it is less likely. If nothing is checked, no number is enough; the
     result is then one more than the number of games.

@@ -162,7 +162,7 @@ def lead(frame: Frame, seat: int) -> int:
 
 
 def _with_options(drawn: Opening, options: dict[str, Any], court: Court) -> Opening:
-    """Replace what was drawn by entries of `options`. Entries of other names are for wrappers."""
+    """Put entries of `options` in place of what was drawn. All other entries are for wrappers."""
     late, place = options.get("late_ticks", drawn.late_ticks), options.get("place", drawn.place)
     seat = options.get("seat", drawn.seat)
     try:

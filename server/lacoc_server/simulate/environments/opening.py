@@ -43,7 +43,7 @@ def places(arena: Arena) -> int:
 
 
 def begun_at(arena: Arena, place: int) -> Arena:
-    """Return an arena in which a start place of the list is the first one."""
+    """Return the arena with the start place of this index as its first one."""
     found = _listed(arena.settings)
     if place == 0 or found is None:
         return arena
