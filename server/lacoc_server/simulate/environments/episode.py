@@ -185,7 +185,7 @@ class Episode:
         return {"scores": match.scores(), "winner": winner, "won": winner == match.seats[seat].id}
 
     def steer(self, seat: int, target: Posture) -> None:
-        """Set the angles that a robot moves to from the next beat on [rad], by joint id."""
+        """Set the angles [rad], by joint id, that a robot moves to from the next beat on."""
         drive = self.match.seats[seat].drive
         assert isinstance(drive, Steered)
         drive.target = target
