@@ -40,11 +40,11 @@ def environment(seconds: float) -> LacocEnv:
 
 
 def network(numbers: Sequence[float], names: Sequence[str]) -> Network:
-    """Make a policy of its numbers.
+    """Make a policy from its numbers.
 
     Args:
         numbers: (NUMBERS,) weights and biases.
-        names: what each number is that the policy sees.
+        names: the meaning of each number that the policy sees.
     """
     hidden, out, biases = np.split(np.asarray(numbers), [5 * PAIRS, 8 * PAIRS])
     weights = hidden.reshape(PAIRS, len(SEES) + 1)

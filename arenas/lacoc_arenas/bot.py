@@ -1,6 +1,6 @@
 """Types of a bot: a brain reads frames and returns keys.
 
-A brain is pure: it sees only the sheet and the frames. So it plays the same behind a
+A brain is pure: it sees only the sheet and the frames. So it plays in the same way behind a
 controller (`lacoc bot`), in a headless match (`lacoc simulate`) or in a learning
 environment.
 """

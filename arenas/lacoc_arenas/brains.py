@@ -43,9 +43,9 @@ def find(arena: Arena, name: str) -> BotFactory:
 
 
 def find_installed(arena: Arena, name: str) -> BotFactory:
-    """Find a bot whose name comes from a stranger: no file is opened, and no code in one runs.
+    """Find a bot of the arena or an installed bot; the name may come from a stranger.
 
-    Arguments and the bot are those of `find`.
+    No file is opened, so no code in one runs. Arguments and the bot are as in `find`.
 
     Raises:
         UserError: if there is no such bot.

@@ -24,6 +24,6 @@ def turned(place: Place) -> Place:
 
 
 def opposite(places: Iterable[Place]) -> tuple[tuple[Place, ...], tuple[Place, ...]]:
-    """Return the start places of the left seat, and the same places turned for the right seat."""
+    """Return the start places of the left seat and, turned by 180 degrees, of the right seat."""
     left = tuple(places)
     return left, tuple(map(turned, left))

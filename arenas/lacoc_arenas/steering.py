@@ -130,7 +130,10 @@ class Pilot:
         return wanted if (seat.level, seat.key) != wanted else None
 
     def _sequence_ended(self, seat: SeatFrame) -> bool:
-        """Say whether the current sequence has ended; true for [0], level A and one posture."""
+        """Say whether the current sequence has ended.
+
+        It always has for [0], at level A, and if it is a single posture.
+        """
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
             return True

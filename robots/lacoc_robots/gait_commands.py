@@ -47,7 +47,7 @@ _LIFTED = 0.1  # link lengths above the lowest foot: 7 mm on the workshop's robo
 
 
 class CheckedFile(msgspec.Struct, frozen=True):
-    """One file without mistakes in the output of `lacoc gait check --json`."""
+    """A file without mistakes, as `lacoc gait check --json` prints it."""
 
     file: str
     kind: str
@@ -241,7 +241,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet that each posture lifts; neighbours that lift the same feet count once.
+    """Name the feet that each posture lifts; postures in a row that lift the same feet count once.
 
     Only the first six steps are named; "…" stands for the rest.
     """

@@ -39,10 +39,10 @@ def joint_picture(labels: Sequence[str], lit: Collection[int]) -> Text:
 
 
 def labels_of(mistakes: Sequence[Mistake]) -> tuple[str, ...] | None:
-    """Return the leg labels of the usual robot that has the joints and legs of all mistakes.
+    """Guess the legs of a robot from the joints and leg labels that mistakes name.
 
-    Of several such robots it is the one with six legs. None if there is none, or if no mistake
-    names a joint.
+    Return the leg labels of the first robot with 6, 4 or 8 legs that fits all mistakes; None if
+    there is no such robot, or if no mistake names a joint.
     """
     named = [(one.joint, one.leg) for one in mistakes if one.joint is not None]
     for legs, labels in sorted(LEG_LABELS.items(), key=lambda item: item[0] != 6):

@@ -172,7 +172,7 @@ def _leg(table: Entries, default: _Link, limits: Limits) -> LegSpec:
 
 
 def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
-    """Read the table [link], or (given it as `default`) the entries that one leg replaces."""
+    """Read the table [link], or a leg's own entries: `default` then has what the leg leaves out."""
 
     def own(name: str) -> bool:
         table.ask(name)

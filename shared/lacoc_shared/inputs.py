@@ -74,7 +74,7 @@ class HeardSeat(_Input, frozen=True, tag="heard"):
 
 
 class Decide(_Input, frozen=True, tag="decide"):
-    """A referee decided, or the court itself."""
+    """A referee, or the court itself, decided."""
 
     by: str
     """The referee's name; `THE_COURT` for the court itself."""

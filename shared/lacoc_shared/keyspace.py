@@ -11,19 +11,19 @@ EVERY_COURT = "lacoc/*/live/court"
 DESK = "lacoc/office/desk"
 """Key expression on which an office's desk takes requests of pages, in a session of its own."""
 COMMAND_MAX_BYTES = 1024
-"""Largest command, ready, leave or question where a team plays that is read."""
+"""Largest command that is read; also largest ready, leave or where request."""
 ENTER = "enter"
 """Used in place of a decision's name: the referee only shows the token."""
 DECISION_MAX_BYTES = 4096
 """Largest decision of a referee that is read."""
 EVENTS_LISTED = 2000
-"""Most events of a match that a court lists and a client keeps; the newest ones. A reply has a size
-limit, and a practice may last for days."""
+"""How many events of a match a court lists and a client keeps at most: the newest ones. A reply has
+a size limit, and a practice may last for days."""
 JOIN_MAX_BYTES = 65_536
 """Largest join, with all its files, that is read."""
 
 ASSIGN_MAX_BYTES = 196_608
-"""Largest assignment of the office that is read: the files of two teams, and what a third needs."""
+"""Largest assignment of the office that is read, with the files of two teams and more."""
 
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 

@@ -285,7 +285,7 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Difference(msgspec.Struct, frozen=True, kw_only=True):
-    """A direction in which a gait looks different from the own one."""
+    """A direction in which a gait looks different from the gait in the request."""
 
     way: str
     """height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""

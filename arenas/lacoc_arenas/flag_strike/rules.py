@@ -6,9 +6,9 @@ stands, LEFT or RIGHT when it has fallen for that team, and DOWN when it has fal
 a referee sets this).
 
 A referee may take a claim back (rules 4.1). After a capture that was taken back, the robot counts
-as inside the corner without having taken it, until it leaves and comes back. A touch of a flag that
-was taken back is void until the robot lets go of the flag. Meanwhile the other robot can strike the
-flag.
+as inside the corner without having taken it, until it leaves and comes back. If a strike is taken
+back, the touch that made it is void until the robot lets go of the flag. Meanwhile the other robot
+can strike the flag.
 
 All events of one tick happen at the same time. They are listed in the order of the markers, which
 does not favour a seat.

@@ -65,7 +65,8 @@ class Network:
         layers: from the input on; the first takes what `Senses` gives, the last has an output for
             each key. After each layer but the last comes the activation.
         keys: digits of level B, and `RESTART_KEY` for [x].
-        every_ticks: the policy chooses a key in every n-th tick; as `beats` of an environment.
+        every_ticks: the policy chooses a key in every n-th tick, as it did with `beats` = n in an
+            environment.
         activation: what follows each layer but the last.
 
     Raises:
@@ -102,7 +103,7 @@ class Network:
         return int(self.layers[0].weights.shape[1])
 
     def choose(self, numbers: Numbers) -> int:
-        """Return the index of the key to press, as an action of an environment."""
+        """Return the index in `keys` of the key to press; environments take it as an action."""
         values = numbers.astype(np.float64)
         for index, layer in enumerate(self.layers):
             if index:
@@ -114,7 +115,7 @@ class Network:
         """Make a brain for one match.
 
         Raises:
-            UserError: if the match gives another number of numbers than the policy learned with.
+            UserError: if a frame of this match gives more or fewer numbers than the policy takes.
         """
         senses = Senses(sheet)
         if senses.size != self.inputs:
@@ -133,9 +134,9 @@ class Network:
 
 
 def press(frame: Frame, seat: int, digit: int) -> Key | None:
-    """Return the key that makes a digit the present one; None if it is pressed already.
+    """Return the key to press so that a digit becomes the present one.
 
-    [x] is pressed whenever keys are accepted.
+    None if it is the present one already (never for [x]), or if the seat's keys are locked.
     """
     now = frame.seats[seat]
     if now.locked_ticks or (digit == now.key and now.level == Level.LOCOMOTION):

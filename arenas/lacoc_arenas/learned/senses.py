@@ -36,7 +36,7 @@ _TWO, _FOUR, _SIX = (Struct(f"<{count}f").pack for count in (2, 4, 6))
 
 
 class Robot(NamedTuple):
-    """Where the numbers of one robot are."""
+    """Where the numbers of one robot are in a frame's poses."""
 
     pose: int
     """Index of its first byte in `Frame.poses`."""

@@ -101,7 +101,7 @@ def write_gaits(
 
 
 def written(task: Task, gait: Gait, digit: int, angles: Angles) -> bytes:
-    """Return a gait with another table for one key, as LocoTra-data text."""
+    """Return a gait with other angles for one key, as LocoTra-data text."""
     assert gait.locomotion is not None
     sequences = list(gait.locomotion.sequences)
     sequences[digit] = task.table.sequence(angles)

@@ -174,7 +174,7 @@ def _cannot_play(
 
 
 def _all_of(out: Mapping[str, FileRefused | UserError]) -> FileRefused | UserError:
-    """Return one error for all players: a wrong name first, otherwise all mistakes in files."""
+    """Return one error for all players: the first wrong name, or else all mistakes in files."""
     mistakes: list[Mistake] = []
     for why in out.values():
         if isinstance(why, UserError):

@@ -23,7 +23,8 @@ FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", 
 ENTRIES, RECORDS = "entries", "records"
 """Names of what a published folder has."""
 _FORMULA = (*"=+-@＝＋－＠", "\t", "\r")
-"""With these a spreadsheet takes a text for a formula, in Japanese also with the wide ones."""
+"""A spreadsheet takes a text that begins with one of these for a formula; the wide ones count in
+Japanese."""
 _SITES = "lacoc.site"
 """Entry points that add the pages: functions that are given the folder."""
 
@@ -31,8 +32,8 @@ _SITES = "lacoc.site"
 def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
     """Write a contest as a folder: facts, sheet, tables, entries, records and pages.
 
-    The folder can be written again while the contest goes on. Each file is replaced at once, and
-    the sheet is the last. The files of teams are left out until entries are closed.
+    The folder can be written again while the contest goes on. Each file is replaced in one step,
+    the sheet as the last one. The files of teams are left out until entries are closed.
 
     Args:
         folder: the contest.
@@ -140,7 +141,7 @@ def _games(sheet: ContestSheet) -> list[Sequence[object]]:
 
 
 def _csv(rows: Iterable[Sequence[object]]) -> bytes:
-    """Write rows for spreadsheets; a name that looks like a formula is not one."""
+    """Write rows for spreadsheets, which must not take a name for a formula."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([_cell(value) for value in row] for row in rows)
     return text.getvalue().encode("utf-8-sig")  # Excel needs the mark to see UTF-8

@@ -1,4 +1,4 @@
-"""Matches that the office assigns to a court: prepared beside the beats, opened between two.
+"""Matches that the office assigns to a court: prepared beside the beats, opened between two beats.
 
 A match is *prepared* when its arena is loaded and the files of its teams are weighed in. To open it
 then takes as long as to open any other match.
@@ -97,7 +97,7 @@ class Preparation:
 
 
 def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str]) -> list[JoinSeat]:
-    """Return the joins of teams that keep their seats in an assigned match, with its files.
+    """Return a join with the assigned files for each team that keeps its seat in the next match.
 
     Args:
         joins: the joins of the match before.

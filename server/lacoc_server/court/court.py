@@ -239,7 +239,7 @@ class Court:
 
     @property
     def _may_open(self) -> bool:
-        """Whether the office wants another match, and nothing of this one is lost by it."""
+        """Whether the office wants another match, and this one is over."""
         return self._wanted is not None and self._journal.match.is_over
 
     def _follow(self) -> list[Input]:

@@ -95,7 +95,7 @@ class DecisionDesk:
 
 
 def _is_reason(reason: Phrase | str) -> bool:
-    """Return whether a record may have this reason: a text, or a `reason.*` phrase with texts."""
+    """Return whether a reason may be recorded: a text, or a `reason.*` phrase with text values."""
     if isinstance(reason, str):
         return True
     plain = all(value is None or isinstance(value, str) for value in reason.values.values())

@@ -176,7 +176,7 @@ class Inbox:
         return tuple(seat.name for seat in self._seats)
 
     def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
-        """Take note of what the match has, before the beat's joins are checked.
+        """Take note of who has the seats of the match, before the beat's joins are checked.
 
         Args:
             held: for each seat the newest join in the match; None: nobody has the seat.

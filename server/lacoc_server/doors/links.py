@@ -117,7 +117,7 @@ class Links:
             self._agree()
 
     def sent(self, now_s: float) -> None:
-        """Note that the beat's frame is sent, and the common delay for the keys that answer it."""
+        """Note when the beat's frame is sent, and the common delay of keys that answer it."""
         self._frames.append(self._frame(now_s))
 
     def is_ahead(self, command: Command) -> bool:
@@ -125,7 +125,7 @@ class Links:
         return (command.match, command.seen) > (self._match, self._beat - 1)
 
     def heard(self, seat: int, command: Command) -> bool:
-        """Take a round trip from a command that names a newer frame than all before it.
+        """Measure a round trip, if a command names a newer frame than all commands before it.
 
         Returns:
             Whether the command proves that its sender is there: it names a newer frame than before,
@@ -175,14 +175,17 @@ class Links:
         return released
 
     def drop(self, seat: int) -> None:
-        """Drop the held commands of a seat that was left."""
+        """Drop the held commands of a seat, because its contestant left."""
         self._links[seat].held.clear()
 
     def _frame(self, sent_s: float) -> _Frame:
         return _Frame(sent_s, self._delay_beats * BEAT_S)
 
     def _seen(self, command: Command) -> _Frame | None:
-        """Find the frame that a command names, else the oldest known; None for another match."""
+        """Find the frame that a command names, or the oldest known frame if it names an older one.
+
+        None if the command names a frame of another match, or if no frame is known.
+        """
         if command.match != self._match or not self._frames:
             return None
         return self._frames[-min(self._beat - command.seen, len(self._frames))]

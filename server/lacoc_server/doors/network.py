@@ -125,7 +125,7 @@ class CourtNetwork:
         self._inbox.admit(assigned, staying)
 
     def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
-        """Take note of what the match has, for the joins of the next `poll`.
+        """Take note of who has the seats of the match, for the joins of the next `poll`.
 
         Args:
             held: for each seat the newest join in the match; None: nobody has the seat.

@@ -127,7 +127,10 @@ class OfficeDesk(Generic[T]):
     def _prepared(
         self, call: str, prepared: Callable[[], T | Refusal | None]
     ) -> Done | Refusal | None:
-        """Put a prepared match where the court finds it, until the court has opened it."""
+        """Offer a match to the court (`wanted`) once it is prepared; return Done once it is open.
+
+        None: it is not open yet.
+        """
         if self._call == call:
             return Done()
         if self._plays:  # it began while the next one was prepared

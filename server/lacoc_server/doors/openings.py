@@ -31,7 +31,7 @@ class Openings:
         self._assigned, self._before = assigned, self._assigned
 
     def team(self, seat: str) -> AssignedSeat | None:
-        """Return the team that the office seated; None: whoever has the token of the seat."""
+        """Return the team that the office seated; None: it seated none."""
         return None if self._assigned is None else self._assigned.seat(seat)
 
     def hash_of(self, seat: str, token: str) -> str | None:
@@ -56,7 +56,7 @@ def frozen_join(index: int, assigned: AssignedSeat, token_hash: str) -> JoinSeat
 
     Args:
         index: the seat's index.
-        assigned: the team in the seat; with its robot file.
+        assigned: the team in the seat; its robot file must be there.
         token_hash: hash of the token that opened the seat.
     """
     robot, postures, locomotion = assigned.files

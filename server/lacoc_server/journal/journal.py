@@ -122,7 +122,7 @@ class Journal:
             self.writer.leave()
 
     def _new(self, frame: Frame) -> bool:
-        """Return whether a frame's phase, seats, markers, poses or clock differ from the last's."""
+        """Return whether phase, seats, markers, poses or clock differ from the last frame's."""
         content = (frame.phase, frame.seats, frame.markers, frame.poses, frame.clock_ticks)
         new, self._last = content != self._last, content
         return new

@@ -2,8 +2,8 @@
 
 The rules judged exactly the poses that frames carry. So judging them again is exact on any machine
 and needs no physics. What the match asked of physics is cut into sections, which are simulated
-separately. If a record was cut off, its last beat does not count without a frame: the court
-answered nobody in it (`journal`).
+separately. If a record was cut off and its last beat has no frame, that beat does not count:
+the court answered nobody in it (`journal`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence

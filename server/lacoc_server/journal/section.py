@@ -89,7 +89,7 @@ class Step:
 
 @dataclass
 class Section:
-    """The beats from a snapshot, or from a building of robots, to the next one or to the end."""
+    """The beats from a snapshot, or from where robots are built, to the next one or to the end."""
 
     build: Build
     start: bytes | None
@@ -138,7 +138,7 @@ class Finding:
 
 
 class Worlds:
-    """Keeps the newest world that was built, because the next section often needs the same."""
+    """Keeps the newest world that was built, because the next section often needs the same one."""
 
     def __init__(self) -> None:
         self._number = -1

@@ -114,9 +114,9 @@ def conclude(
 
 
 def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
-    """Return whether a section may have other bits than here.
+    """Return whether the recorded bits of a section may differ from those computed here.
 
-    It may if another arithmetic, or one that is not named, recorded some of its beats.
+    They may if some of its beats were recorded with another arithmetic, or an unnamed one.
     """
     here = arithmetic.here()
     ends = [header.first_beat for header in headers[1:]] + [finding.last_beat + 1]

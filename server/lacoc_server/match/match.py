@@ -89,14 +89,15 @@ class Match(MatchState):
     def load(self, data: bytes) -> None:
         """Go on from a saved match: the same inputs then give the same beats, bit for bit.
 
-        The match may be a new one. Robots are built only if other ones, or none, are on the field.
+        The match may be a new one. Robots are built only if the field has none, or other ones.
 
         Args:
             data: bytes of `save`, from a match with the same arena, settings and limits. The id of
                 the match, and what an office assigned, may differ.
 
         Raises:
-            ValueError: if they are not, or the field has the poses of a record instead of physics.
+            ValueError: if the bytes are not of such a match, or if this match has the poses of a
+                record instead of physics.
         """
         saved.load(self, data)
 
@@ -147,7 +148,7 @@ class Match(MatchState):
         """Let the second half of a beat pass, after its tick of physics.
 
         Args:
-            fault: why the tick did not pass; None if it passed, or if there is none in this beat.
+            fault: why the tick did not pass; None if it passed, or if the beat has no tick.
 
         Returns:
             The results of the beat, as in `beat`.
@@ -250,7 +251,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Have robots that stray before play put back.
+        """Mark robots that stray before play, so that they are put back.
 
         A seat whose robot strayed `MOST_STRAYS` times is no longer ready.
         """

@@ -70,7 +70,7 @@ class Physics(Protocol):
     def touched(self) -> Sequence[tuple[int, ...]]:
         """Return for each seat the markers whose probes its robot touches after the newest tick.
 
-        A marker is its index in the game's board. The indices are in ascending order.
+        A marker is given by its index in the game's board. The indices are in ascending order.
         """
 
 

@@ -53,7 +53,7 @@ class Seat:
 
     @property
     def team(self) -> str:
-        """The team's name, also the one that the office seated; without one, the seat's id."""
+        """Name of the team that joined, else of the one the office seated, else the seat's id."""
         return self.join.team if self.join else self.assigned_team or self.id
 
     def begin(self, repeat: bool, level: Level) -> None:
@@ -78,7 +78,7 @@ class Seat:
             self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Mark the robot to be put back at a start place, where it stands (rules 3)."""
+        """Mark the robot to be put back at a start place and to stand there (rules 3)."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)

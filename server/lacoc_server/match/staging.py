@@ -106,7 +106,7 @@ class Staging:
         self.look()
 
     def put_back(self, seats: Sequence[Seat]) -> None:
-        """Put each robot whose seat is marked as restarting at a start place."""
+        """Put robots at start places, if their seats are marked as restarting."""
         going = [seat for seat in seats if seat.restarting]
         if not going:
             return

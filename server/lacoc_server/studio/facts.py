@@ -13,7 +13,7 @@ Bounds = tuple[float | None, float | None]
 
 
 def facts(robot: RobotSpec) -> dict[str, Any]:
-    """List a robot's numbers by name; if legs can differ in one, give its lowest and highest."""
+    """List a robot's numbers by name; for what each leg has, the lowest and the highest number."""
     low, high = robot.bounds((0.0,) * robot.joints)
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     legs = robot.legs

@@ -1,4 +1,4 @@
-"""Runs jobs in other processes. If a process dies, only its job is lost, and a new one starts."""
+"""Runs jobs in other processes. If a process dies, only its job is lost; a new process starts."""
 
 import contextlib
 import os
@@ -16,8 +16,9 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 _SPAWN = get_context("spawn")
-_NICE = 10
-"""How much lower the priority of background processes is (`os.nice`), on systems that have this."""
+_NICE = 19
+"""How much lower the priority of background processes is (`os.nice`), on systems that have this:
+as low as it can be, because they keep all cores busy."""
 _END_S = 5.0
 
 

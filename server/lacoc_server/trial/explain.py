@@ -190,7 +190,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
 
 
 def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
-    """Find a leg that is lifted alone, while each other of `legs` is lifted with another."""
+    """Find a leg that is lifted alone, if none of the other `legs` is lifted alone."""
     if len(seen.sequence) < 3 or len(legs) < 4:
         return
     phases = steps.phase

@@ -72,7 +72,7 @@ def _seconds(text: str | None) -> float | None:
 
 
 def _level(letter: str, digit: int, gait: Gait) -> Level:
-    """Return the level of a key: its letter, or without a letter B if B has this key, else A.
+    """Return the level that a key's letter names; without a letter, B if it has the key, else A.
 
     Raises:
         UserError: if the gait has no such key.

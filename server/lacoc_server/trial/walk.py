@@ -43,7 +43,7 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True)
 class Sensed:
-    """The measurements of one tick: means over its steps where stated, else of its last step."""
+    """The measurements of one tick: means over its steps where so noted, else of its last step."""
 
     load_n: Floats
     """(legs,) normal force between each shank and the floor, mean over the steps [N]."""

@@ -42,7 +42,7 @@ class WorldBatch:
             self.row(index, world, start)
 
     def row(self, index: int, world: World, saved: bytes) -> "Row":
-        """Return one of the worlds in a saved state; it takes the place of an earlier one.
+        """Return a row for one of the worlds, in a saved state; it replaces that world's last row.
 
         Args:
             index: index of the world.

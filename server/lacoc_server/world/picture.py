@@ -29,7 +29,7 @@ _MOST_GEOMS = 10_000
 
 
 class Camera:
-    """Takes pictures of one model: of the field from above, or on a large field of a robot.
+    """Takes pictures of one model: of the whole field from above, or of the robot on a large field.
 
     Args:
         model: the compiled model; it stays as it is.

@@ -116,7 +116,7 @@ class _Outline:
         self._near = _map(probes, max(_reach_m(model, geom, root) for geom in geoms))
 
     def probes_near(self, gap_m: float) -> Sequence[_Probe]:
-        """Return at least the probes that the robot may touch from where its body is now."""
+        """Return all probes that the robot may touch from where its body is now, perhaps more."""
         if gap_m > 0:  # the map holds for real touches only
             return self._probes
         x_m, y_m = self._root_m.tolist()

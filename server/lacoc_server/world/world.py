@@ -130,7 +130,7 @@ class World:
         return self.poses_of(self._qpos)
 
     def poses_of(self, qpos: npt.NDArray[np.float64]) -> bytes:
-        """Return the poses in other positions of this model, in the form of `Frame.poses`."""
+        """Return the poses at given positions of this model, in the form of `Frame.poses`."""
         return qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
@@ -146,9 +146,9 @@ class World:
         return self._touch(gap_m)
 
     def touched_in(self, state: npt.NDArray[np.float64]) -> Sequence[tuple[int, ...]]:
-        """Return what `touched` returns in another state of this model.
+        """Return which markers are touched in a given state of this model, as `touched` does.
 
-        The world itself is then in another state: load one before it goes on.
+        That changes the state of the world itself: call `load` before it goes on.
         """
         if not self._touch.can_touch:
             return self._touch.none

@@ -54,9 +54,10 @@ _COMPLETION = {"install_completion", "show_completion"}  # options of the outerm
 
 
 class _Unloaded(NamedTuple):
-    """A command that was not read yet.
+    """A command that was not imported yet.
 
-    The entry itself would not show this: another package may replace the class of entry points.
+    An entry point is wrapped in this class to be recognised. Its own class can't serve for that,
+    because another package may replace the class of all entry points.
     """
 
     entry: EntryPoint

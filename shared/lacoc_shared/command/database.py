@@ -1,4 +1,4 @@
-"""Files of SQLite: opened, recognised and checked in the same way for whoever keeps data in one."""
+"""Open, recognise and check files of SQLite, in one way for all parts that keep data in them."""
 
 import sqlite3
 from collections.abc import Sequence
@@ -49,7 +49,7 @@ def connect(
 
 
 def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
-    """Return the exception that an error of SQLite stands for.
+    """Return the exception to raise for an error of SQLite.
 
     Args:
         path: the database file.

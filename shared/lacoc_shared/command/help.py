@@ -82,7 +82,7 @@ def translate_typer() -> None:
 
 
 def _folded(make: Callable[..., Any], **what: Any) -> Any:
-    """Make a text that breaks anywhere: Japanese has no spaces, and a table cuts long words."""
+    """Make a text that may break anywhere, as Japanese must; else a table cuts off long words."""
     text = make(**what)
     text.overflow = "fold"
     return text

@@ -58,7 +58,7 @@ def make_room(path: Path) -> Path | None:
 
 
 def _claimed(path: Path) -> Path:
-    """Make an empty file with the first free number, so that no other program takes it."""
+    """Make an empty file with the first free number, so that no other program takes that number."""
     for number in itertools.count(1):
         numbered = path.with_name(f"{path.stem}.{number}{path.suffix}")
         try:

@@ -15,7 +15,7 @@ def new_code() -> str:
 
 
 def code_of(secret: str) -> str:
-    """Make the code that belongs to a secret: the same at each start."""
+    """Make a code from a secret; the same secret always gives the same code."""
     digest = hashlib.blake2b(secret.encode(), digest_size=_LENGTH, person=b"lacoc event code")
     return "".join(_LETTERS[byte % len(_LETTERS)] for byte in digest.digest())
 

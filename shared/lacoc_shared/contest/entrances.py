@@ -101,7 +101,7 @@ def page_key(contest: Contest) -> str:
 
 
 def organiser_key(contest: Contest) -> str:
-    """Return the key that opens the organiser's page: the same at each start.
+    """Return the key that opens the organiser's page; it is the same at each start of the office.
 
     Raises:
         UserError: if the contest has no office.
@@ -111,7 +111,7 @@ def organiser_key(contest: Contest) -> str:
 
 
 def event_code(contest: Contest) -> str:
-    """Return the code with which a team applies: the same at each start.
+    """Return the code with which a team applies; it is the same at each start of the office.
 
     Raises:
         UserError: if the contest has no office.
@@ -182,7 +182,7 @@ def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
 
 
 def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
-    """Return the command line for each person whose invitation file is in the current folder.
+    """Return a command line for each person, to be run in the folder of the invitation file.
 
     Args:
         everybody: the access of each person, by name.

@@ -87,12 +87,12 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def most_delay_ms(self) -> int:
-        """Largest delay that makes links equal; 0: links are not made equal."""
+        """Largest delay that is added to make links equal [ms]; 0: none is added."""
         return self.input_delay_max_ms if self.input_delay == "equal" else 0
 
     @property
     def host(self) -> str:
-        """Host for clients; "" if the court listens on all addresses and `connect` names none."""
+        """Host for clients; "" if the court listens on all addresses and `connect` has no host."""
         found = address_host(self.connect or self.listen[0])
         return "" if found in ANY_HOST else found
 

@@ -24,8 +24,8 @@ _PLACE = re.compile(r" \(at line (\d+), column \d+\)")
 class BadToml(ValueError):
     """The text can't be read as TOML; `row` is the line, counted from 1, if it is known.
 
-    `remedy` says what should be there, if that is not obvious. A reason that is a text comes from
-    Python's own parser.
+    `remedy` says what should be there, if that is not obvious. `reason` is a phrase, or the plain
+    text that Python's own parser gave.
     """
 
     def __init__(

@@ -82,7 +82,9 @@ def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[s
 
 
 def leg_labels(legs: int) -> tuple[str, ...]:
-    """Return the labels of legs where no robot file gives them, clockwise from the right front.
+    """Return the usual labels of a robot's legs, for use without a robot file.
+
+    They go clockwise from the right front.
 
     If the robot does not have 4, 6 or 8 legs, the labels are numbers from 0.
     """

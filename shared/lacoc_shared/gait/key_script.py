@@ -1,8 +1,9 @@
 """A script of keys: a small language, so that a file or a program can play.
 
-A line holds keys: `2`, or `tab 1`, or `1 2 3 4` (also `1234`), one after another. A number with a
-point before them is a time: `1.5 3` presses 3 a second and a half after the keys before. Time runs
-only while the match is played; keys that move the robot wait until then. `#` begins a comment.
+A line holds keys, which are pressed in order: `2`, or `tab 1`, or `1 2 3 4` (also `1234`). A line
+may begin with a time [s], which has a decimal point: `1.5 3` presses key 3 when 1.5 s have passed
+after the keys before. Time runs only while the match is played; keys that move the robot wait until
+it is played. `#` begins a comment.
 """
 
 import math

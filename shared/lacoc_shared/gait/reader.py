@@ -251,7 +251,8 @@ class _Reader:
     def _joints(self, rows: Sequence[Row], first: int) -> int:
         """Return how many angles a row should have.
 
-        It is the robot's number if some row has it, else the most common one in the file.
+        It is the given robot's number of joints if a row has so many angles. Else it is the most
+        common number in the file that fits 4, 6 or 8 legs; for a given robot, note a mistake then.
         """
         counts = Counter(len(row.cells) - first for row in rows)
         known = {legs * JOINTS_PER_LEG for legs in LEG_LABELS}

@@ -22,7 +22,7 @@ _MIRROR_COLOUR = "#595959"  # grey: not for editing
 
 
 def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int) -> None:
-    """Add the sheet to edit, and a mirror that shows its cells by formulas, to a workbook.
+    """Add two sheets to a workbook: one to edit, and one that shows its cells by formulas.
 
     Args:
         book: the workbook.
@@ -72,7 +72,7 @@ def _write_edited(
 
 
 def _add_help(book: Workbook, sheet: Worksheet, last_posture: int, last_column: int) -> None:
-    """Let spreadsheet programs reject a wrong number that is typed, and mark a pasted one."""
+    """Let spreadsheet programs reject wrong numbers that are typed, and mark pasted ones."""
     limit = number_text(RANGE_DEG)
     angles = (1, 1, last_posture, last_column)
     sheet.data_validation(

@@ -96,7 +96,7 @@ def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> by
 
 
 class Decoded(NamedTuple):
-    """A text, and how its file has it."""
+    """A text, and how it is encoded in its file."""
 
     text: str
     encoding: str

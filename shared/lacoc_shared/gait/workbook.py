@@ -183,7 +183,7 @@ def _require_harmless(data: bytes, name: str) -> None:
 
 
 class _TooMuchXmlError(Exception):
-    """The XML is larger than any that a spreadsheet program writes; `found` says why."""
+    """The XML is not harmless; `found` says what is too large or forbidden in it."""
 
     def __init__(self, found: Phrase) -> None:
         super().__init__()

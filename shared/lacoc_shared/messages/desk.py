@@ -24,7 +24,7 @@ _Text = Annotated[str, msgspec.Meta(max_length=500)]
 class Files(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """The files that a team hands in; None: it hands none in."""
+    """The files that a team hands in; None for each file that it does not."""
 
     robot: SentFile | None = None
     """Robot file; None: the contest's robot."""
@@ -40,7 +40,7 @@ class DeskRequest(
     omit_defaults=True,
     tag_field="do",
 ):
-    """What all requests have."""
+    """What all requests to a desk have."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)] = ""
     """The organiser's key, the event code, or the team's token."""
@@ -87,7 +87,7 @@ class Overview(DeskRequest, frozen=True, kw_only=True, tag="overview"):
 
 
 class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
-    """Let teams take part that have applied, or let them use their late files."""
+    """Let teams that have applied take part, or let teams use files that they handed in late."""
 
     teams: tuple[_Name, ...]
     reason: _Text = ""
@@ -225,7 +225,7 @@ class Moved(msgspec.Struct, frozen=True):
 
 
 class Slot(msgspec.Struct, frozen=True, kw_only=True):
-    """A match that is played, or can be played, and where and when."""
+    """A match that is being played or can be played, with its court and its time."""
 
     pairing: str
     fixture: Phrase
@@ -243,7 +243,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that the organiser's page shows, besides the sheet of the contest."""
+    """What the organiser's page shows in addition to the sheet of the contest."""
 
     version: str
     """Hash of the rest."""
@@ -273,7 +273,7 @@ class Effect(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Said(msgspec.Struct, frozen=True, kw_only=True):
-    """What was done."""
+    """The answer to a request that was carried out: what was done."""
 
     said: tuple[Phrase, ...]
 

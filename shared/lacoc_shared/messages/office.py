@@ -73,7 +73,7 @@ class Assigned(msgspec.Struct, frozen=True, kw_only=True):
 
 
 WAITING = Assigned(call="", fixture=say("fixture.waiting"), seats=())
-"""What a court has of the office while no match is assigned."""
+"""What a court has from the office while no match is assigned."""
 
 
 class Assign(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

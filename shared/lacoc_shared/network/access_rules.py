@@ -1,4 +1,4 @@
-"""Zenoh's access rules for a court, made from the court's users, and for a studio.
+"""Zenoh's access rules: for a court, made from its users; for a studio; for an office's desk.
 
 Zenoh gives a court no trustworthy information about a sender, so the rules do the check:
 a message that a user may not send reaches neither the court nor anybody else.
@@ -138,7 +138,7 @@ def _watching() -> Rules:
 
 
 def _actors(protection: Protection) -> dict[str, Rules]:
-    """Make the rules of users who do more than watch: keys and requests of seats, and decisions."""
+    """Make the rules by which users may send keys and requests of a seat, or decisions."""
     keys = Keys(protection.court)
     seats = {
         user: _acting(

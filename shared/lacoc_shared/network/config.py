@@ -98,7 +98,7 @@ def studio_config(listen: Sequence[str]) -> Config:
 
 
 def desk_config(listen: Sequence[str]) -> Config:
-    """Make the configuration of the session of an office's desk: as a studio's, but for one key.
+    """Make the configuration of an office's desk: a studio's, but with the access rules of a desk.
 
     Args:
         listen: complete addresses.

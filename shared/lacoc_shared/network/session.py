@@ -397,7 +397,7 @@ def _user_file(protection: Protection | None) -> Iterator[Path | None]:
 
 
 def _allow_files(count: int) -> None:
-    """Let this process open this many files, or as many as allowed: often the limit is 1024."""
+    """Raise this process's limit of open files, often 1024, to `count` or as far as allowed."""
     try:
         import resource
     except ImportError:  # Windows has no such limit

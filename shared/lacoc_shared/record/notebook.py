@@ -39,7 +39,7 @@ Texts = NDArray[np.str_]
 
 @dataclass(frozen=True)
 class Robot:
-    """The robot of a seat in each frame; NaN where the field has none."""
+    """The robot of a seat in each frame; NaN in frames in which no robots are on the field."""
 
     seat: str
     team: str

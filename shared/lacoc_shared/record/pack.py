@@ -114,8 +114,8 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[Message]:
     """Read all messages of a match.
 
     Raises:
-        UserError: if the segments can't be read to their end, because removing them would lose
-            what can't be read now.
+        UserError: if the segments can't be read to their end. They must stay then: removing them
+            would lose what can't be read now.
     """
     messages: list[Message] = []
     record = Record.read(segments, lambda *message: messages.append(message))
@@ -140,8 +140,8 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
 def _compare(wanted: Sequence[Message], wrong: Stop | None, packed: Path) -> None:
     """Check that removing the segments loses nothing.
 
-    The segments may be only the last of a match: packing was interrupted after the others
-    were removed.
+    If an earlier packing was interrupted while it removed segments, only the last segments of
+    the match are left here.
 
     Args:
         wanted: the messages of the segments.

@@ -123,7 +123,7 @@ class Record:
         Args:
             paths: a packed file; or one segment, which stands for all segments of its match; or
                 several segments, in order.
-            also: called with the bytes of every message too.
+            also: is also called, with the bytes of every message.
 
         Raises:
             NoMatch: if no file has a whole header.

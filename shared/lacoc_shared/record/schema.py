@@ -1,4 +1,4 @@
-"""The contents of a record besides inputs, events and frames."""
+"""The contents of a record other than inputs, events and frames."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from lacoc_shared.words import Phrase
 
 
 class Origin(msgspec.Struct, frozen=True, kw_only=True):
-    """The match that a fork goes on from: what another match was up to a beat."""
+    """What a fork goes on from: another match, up to a beat."""
 
     match_id: str
     """Id of that match; it may be a fork too."""
@@ -64,9 +64,9 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Touch(msgspec.Struct, frozen=True, array_like=True):
-    """The touches of a tick, and the robots put back in it, which its frame does not show.
+    """What a tick's frame does not show: which markers were touched, and which robots put back.
 
-    It is not recorded if there were none.
+    It is not recorded for a tick without touches and without robots that were put back.
     """
 
     touched: tuple[tuple[int, ...], ...]

@@ -69,7 +69,7 @@ class Stop(NamedTuple):
     court.
     """
     is_all: bool = False
-    """Whether all messages were read all the same."""
+    """Whether all messages were read in spite of the fault."""
 
 
 class _Format(msgspec.Struct):
@@ -208,7 +208,7 @@ def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
 
 
 def _unpacked_bytes(chunk: Chunk) -> int:
-    """Return a chunk's unpacked size: that of its header or of zstd, whichever is larger."""
+    """Return a chunk's unpacked size: the larger one of what its header and that of zstd say."""
     size = len(chunk.data)
     if chunk.compression == "zstd":
         size = max(chunk.uncompressed_size, zstandard.frame_content_size(chunk.data))

@@ -129,7 +129,7 @@ def _word(code: str, language: Language) -> str:
 
 
 def _text(text: str) -> str:
-    """Shorten a text from outside, and replace characters that would move the text around it."""
+    """Shorten a text from outside, and replace characters that would shift the words beside it."""
     short = text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
     return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", short)
 

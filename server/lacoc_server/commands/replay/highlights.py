@@ -71,7 +71,7 @@ def _told(source: Source, one: Swing) -> dict[str, Any]:
 
 
 def _events(source: Source, one: Swing) -> list[Event]:
-    """Return what the game and its referee made happen in a stretch."""
+    """Return the events of the game, the decisions and the restarts in a stretch."""
     return [
         event
         for event in source.record.events

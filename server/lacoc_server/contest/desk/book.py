@@ -78,7 +78,7 @@ class Book:
         return next((team for team in self.contest.teams if team.name == name), None)
 
     def is_taken(self, name: str) -> bool:
-        """Return whether a team that is in or waits has this name, or almost (see `_look`)."""
+        """Return whether a team that is in or waits has this name, or one that looks like it."""
         names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
         return _look(name) in map(_look, names)
 
@@ -97,5 +97,8 @@ def milliseconds(when: datetime | None) -> int:
 
 
 def _look(name: str) -> str:
-    """Return a name without what is easily overlooked: capitals, wide letters, more spaces."""
+    """Return a form of a name that is equal for names that look alike.
+
+    Capitals become small letters, wide letters narrow ones, and several spaces one.
+    """
     return " ".join(unicodedata.normalize("NFKC", name).casefold().split())

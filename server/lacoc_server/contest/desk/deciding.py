@@ -44,7 +44,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
 
     Args:
         facts: the facts of a contest, in their order.
-        more: facts that were not appended.
+        more: further facts, which are not appended here.
     """
     last = facts[-1].number if facts else 0
     placed = [

@@ -64,8 +64,8 @@ def apply(book: Book, team: str, entry: Entry) -> OwnEntry:
 def change(book: Book, team: str, entry: Entry) -> OwnEntry:
     """Take other files of a team, which were weighed in.
 
-    A team that is in uses them at once, as long as entries are open. After that, and as long as the
-    team itself waits, they wait for the organiser.
+    While entries are open, a team that is in uses its new files at once. When entries are closed,
+    or if the team itself still waits, its files wait for the organiser.
 
     Raises:
         UserError: if the team has left, if entries closed before it was in, or if the files can't

@@ -25,7 +25,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
     Args:
         book: the contest.
         code: the event code.
-        known: what the office knows besides.
+        known: what the office knows besides the facts.
 
     Raises:
         UserError: if the facts can't be read.
@@ -48,7 +48,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:
-    """Yield the teams: those that wait or were refused first."""
+    """Yield the teams; those that wait or were refused come first."""
     waiting = book.applications.waiting
     known = {team.name: team for team in book.contest.teams}
     for team, mistakes in book.refused.items():

@@ -1,7 +1,8 @@
 """A contest without a network: bots play all its games as fast as the machine can.
 
-A game is computed once. Its record is named by a hash of all that decides it, so whoever plays the
-same contest again, or one in which a single entry has changed, finds the other games done.
+A game is computed once. Its record is named by a hash of all that decides it, so whoever plays
+the contest again finds its games done. If an entry has changed, only games that depend on it are
+played again.
 """
 
 import hashlib
@@ -34,9 +35,10 @@ from lacoc_shared.words import Phrase, say
 LATE_TICKS = 7
 """Ticks by which bots start later each time that two teams meet in the same seats."""
 _MOST_DEATHS = 3
-"""A game is played again so many times because its process died."""
+"""How many times a game is played again at most because its process died."""
 _MOST_VOIDS = 3
-"""After so many games in which physics stopped, a game counts as a draw without points."""
+"""A game in which physics stops counts as a draw without points, if it had this many results before
+that are not valid (`_tries`)."""
 
 
 class Engine(Protocol):
@@ -132,7 +134,11 @@ def play(
 
 
 def _still_due(known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
-    """Yield the results that no other program has appended meanwhile, and nothing has overtaken."""
+    """Yield the results that are still wanted.
+
+    Meanwhile another program may have appended a result of the same game, or a fact after which
+    the game is not played.
+    """
     contest = compute(facts, FORMATS)
     due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in playable(contest)}
     yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)
@@ -150,7 +156,7 @@ def _games(
     steer: str,
     busy: Container[tuple[str, int]],
 ) -> Iterator[_Game]:
-    """Yield the games that can be played now, besides those that are `busy`."""
+    """Yield the games that can be played now, except those that are `busy`."""
     files = {team.name: team.files for team in contest.teams}
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     for match in playable(contest):
@@ -189,7 +195,7 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
 
 
 def _tries(match: Match, facts: Sequence[AnyFact]) -> int:
-    """Count the results of this game that do not count: void ones, and those to be replayed."""
+    """Return how many results of this game are not valid: void ones, and those to be replayed."""
     return sum(
         isinstance(fact, Played)
         and (fact.pairing, fact.game) == (match.pairing.id, match.next_game)

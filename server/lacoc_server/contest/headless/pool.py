@@ -109,7 +109,7 @@ class Pool:
 
 
 def ended(job: Job, future: "Future[Ended | Phrase]") -> Ended:
-    """Return what a match that is over came to.
+    """Return the result of a job that is done.
 
     Raises:
         UserError: if its files or its record have a mistake, or its process died.

@@ -84,7 +84,7 @@ def gather(folder: Path | None, bot: str, robot: str) -> Entry:
 
 
 def weigh(entry: Entry, games: Iterable[Arena], limits: Mapping[str, Any]) -> None:
-    """Check an entry as a court weighs in a join; also that the robot stands, and its bot.
+    """Check an entry: its files, as in a join at a court; that the robot stands; and its bot.
 
     Args:
         entry: the entry.

@@ -22,7 +22,7 @@ Progress = Callable[[int, int], None]
 
 
 class SheetWriter:
-    """Writes the sheet of a contest for pages: soon after each change, but not all the time.
+    """Writes the sheet of a contest for pages, soon after each change but not too often.
 
     Args:
         where: the contest.

@@ -42,7 +42,7 @@ class TeamTokens:
         self._refresh(again=True)
 
     def of(self, team: str) -> str:
-        """Return a team's token; it is made when it is asked for the first time.
+        """Return a team's token; the first call for a team makes it.
 
         Raises:
             UserError: if the file can't be read, or a new token can't be written.

@@ -1,4 +1,4 @@
-"""A contest as its facts make it."""
+"""A contest as it follows from its facts."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -42,7 +42,7 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def may_draw(self) -> bool:
-        """Whether the next round can be drawn: some are left, and no drawn match is open."""
+        """Whether the next round can be drawn: one is left, and all drawn matches are decided."""
         return self.rounds_to_draw > 0 and all(match.decided for match in self.matches)
 
     @property
@@ -54,7 +54,7 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
     def ranking(self) -> tuple[str, ...]:
         """The teams over all groups, the best first: the seeding of a stage that follows.
 
-        First all winners of groups, then all seconds, and so on; those of equal rank by points,
+        First the winners of all groups, then all second places, and so on; at equal rank by points,
         difference, points scored and seeding. Disqualified teams are left out.
         """
         rows = [row for table in self.tables for row in table.rows if not row.out]

@@ -1,7 +1,8 @@
 """The facts of a contest: what happened and what was decided, each appended once.
 
-A fact has an id, and a number that is its place among the facts. It may arrive in any order, and
-more than once: `ordered` gives the same facts again. docs/contest.md says what each fact means.
+A fact has an id, and a number that is its place among the facts. Facts may arrive in any
+order and more than once: `ordered` returns each once, in the order of their numbers.
+docs/contest.md says what each fact means.
 """
 
 from collections.abc import Iterable
@@ -21,7 +22,7 @@ Outcome = Literal["left", "right", "draw", "void"]
 
 
 class Fact(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, tag_field="fact"):
-    """What all facts have."""
+    """The fields that all facts have."""
 
     id: Name
     """Names the fact; unique in the contest."""
@@ -53,7 +54,7 @@ class Withdrawn(Fact, frozen=True, kw_only=True, tag="withdrawn"):
 
 
 class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
-    """A team is expelled; as withdrawn, and it is ranked last."""
+    """A team is expelled: it leaves as if withdrawn, and is ranked last."""
 
     team: Name
     reason: str = ""
@@ -75,7 +76,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     games: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """Best of so many games; the sides are swapped after each game."""
     extra_games: Annotated[int, msgspec.Meta(ge=0, le=9)] = 1
-    """Most games more while a match of a knockout is level."""
+    """How many extra games are played at most while a match of a knockout is level."""
     rounds: Annotated[int, msgspec.Meta(ge=0, le=999)] = 0
     """Number of rounds; 0: the format's own number."""
     groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
@@ -87,7 +88,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     tie_breaks: tuple[str, ...] = ()
     """Codes that order teams with equal points; empty: the format's own list."""
     options: dict[str, Any] = {}
-    """Entries for formats of others."""
+    """Entries for formats of other packages."""
 
 
 class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
@@ -99,7 +100,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     after: str = ""
     """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
-    """The best so many take part; 0: all."""
+    """This many of the best teams take part; 0: all."""
     arena: str = ""
     """The game."""
     arena_settings: dict[str, Any] = {}

@@ -6,7 +6,7 @@ from lacoc_shared.words import Phrase, say
 
 
 def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phrase:
-    """Say what a game is.
+    """Say what a game is in its contest: "Semi-final 1, game 2 of 3".
 
     Args:
         contest: the contest.
@@ -20,7 +20,7 @@ def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phras
 
 
 def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
-    """Say what a match is; arguments are those of `fixture`."""
+    """Say what a match is in its contest: "Semi-final 1"; arguments are those of `fixture`."""
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
     knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]

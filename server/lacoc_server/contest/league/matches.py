@@ -71,7 +71,7 @@ class Match(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def scores(self) -> tuple[int, int]:
-        """Points of all games, by place."""
+        """Points over all games, of the first and of the second place."""
         first, second = (
             sum(
                 score

@@ -48,6 +48,6 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     loser_place: int | None = None
     """Best place of those who leave the stage in this round."""
     loser_goes_on: bool = False
-    """True: only if nobody wins does anybody leave here; otherwise the loser has another match."""
+    """True: the loser has another match; teams leave here only if nobody wins."""
     only_if_second_won: str = ""
     """A pairing; this one is played only if the second place won there."""

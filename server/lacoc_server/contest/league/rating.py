@@ -81,7 +81,11 @@ def ratings(games: Iterable[Rated]) -> Ratings:
 
 
 def _draws(games: Sequence[Rated]) -> dict[str, float]:
-    """Say what is assumed of draws where the games can't tell: none without one, else half."""
+    """Return what is assumed about draws where the games can't tell how often they happen.
+
+    If no game was drawn, draws never happen. If all were, half of all games are draws. Otherwise
+    nothing is assumed: the games tell.
+    """
     if all(game.winner for game in games):
         return {"pinned_draw": 0.0}
     return {} if any(game.winner for game in games) else {"draw_rate": 0.5}

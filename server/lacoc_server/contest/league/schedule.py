@@ -21,10 +21,10 @@ class Assignment(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def playable(contest: Contest) -> list[Match]:
-    """Return the matches whose next game can be played, the one to play first at the beginning.
+    """Return the matches whose next game can be played, in the order in which to play them.
 
-    A match that has begun goes on before others begin. Then come earlier stages and rounds. A match
-    that was moved before another one comes there.
+    A match that has begun goes on before others begin. Earlier stages and rounds come before later
+    ones. A match that was moved before another match comes directly before it.
     """
     running = {call.pairing for call in contest.running}
     matches = [
@@ -96,7 +96,7 @@ def _assigned(
 
 
 def rested_ms(contest: Contest, match: Match, least_rest_ms: int) -> int:
-    """Return from when on both teams of a match have rested."""
+    """Return when both teams of a match will have rested, in milliseconds since 1970, UTC."""
     ends = (contest.ended_ms.get(team, (match.pairing.id, 0)) for team in match.teams if team)
     return max(
         (end + least_rest_ms for pairing, end in ends if pairing != match.pairing.id), default=0

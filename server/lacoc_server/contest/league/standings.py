@@ -58,7 +58,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class _Tally:
-    """What the matches come to, by team."""
+    """What follows for each team from the matches: points and other numbers."""
 
     def __init__(self, teams: Sequence[str], matches: Iterable[Counted]) -> None:
         self.seed = {team: place for place, team in enumerate(teams)}
@@ -89,7 +89,7 @@ class _Tally:
             )
 
     def opponents(self, team: str) -> list[int]:
-        """Return the points of the team's opponents; one not played has the team's own points."""
+        """Return the points of each opponent; a match not played counts the team's own points."""
         return [
             self.points[other] if played and other else self.points[team]
             for other, _, played in self.matches[team]
@@ -133,7 +133,7 @@ def standings(
     """Count who won, drew and lost, and rank the teams.
 
     Args:
-        teams: the teams by seeding; the seeding breaks what is tied to the end.
+        teams: the teams by seeding; the seeding orders teams that all codes leave equal.
         matches: matches that count, in any order.
         order: codes of `TIE_BREAKS` in the order in which they are asked; a later code orders only
             those whom all earlier codes left equal.

@@ -8,7 +8,7 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, 
 from lacoc_server.contest.league.schedule import assign
 
 LOST_MS = 20_000
-"""A court that was not heard for so long loses a game that it has not begun."""
+"""A court that was not heard for this long loses a game that it has not begun."""
 
 
 class Ended(NamedTuple):
@@ -35,7 +35,7 @@ class Seen(NamedTuple):
 
 
 def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
-    """Yield what courts have brought to an end: the result of each game that was called."""
+    """Yield the results of the called games that courts have brought to an end."""
     for call in contest.running:
         court = seen.get(call.court)
         if court is not None and court.call == call.id and court.ended is not None:

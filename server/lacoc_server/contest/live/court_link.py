@@ -1,7 +1,7 @@
 """The office's connection to one court: it assigns matches, and hears what becomes of them.
 
 Nothing here waits. What a court says is asked for whenever its health names something newer, so a
-lost message, a restart of the court or of the office costs half a second and no fact.
+lost message, a restart of the court or of the office costs half a second, and no fact is lost.
 """
 
 import time
@@ -31,7 +31,7 @@ _MAX_BYTES = 1 << 20  # of a sheet, or of the list of events
 
 
 class NoAnswer(Enum):
-    """No answer that can be read: the court may have done the request. Ask again, same call."""
+    """No readable answer came; the court may have done what was asked. Ask again, same call."""
 
     NO_ANSWER = "no-answer"
 

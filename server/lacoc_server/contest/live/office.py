@@ -122,7 +122,7 @@ class Office:
         return Seen(self._heard_ms[name], link.call or "", link.phase in _BEGUN, ended)
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
-        """Append the facts that follow from the contest, also if another program appends some."""
+        """Append the facts that follow from the contest and from facts of other programs."""
         if [*follows(self.contest)]:
             self._store.decide(lambda facts: follows(compute(facts, FORMATS)))
             self.contest = self._compute()
@@ -132,7 +132,7 @@ class Office:
         return compute(self._facts, FORMATS)
 
     def _answers(self) -> list[AnyFact]:
-        """Take the courts' answers; a game that is refused for good goes back."""
+        """Take the courts' answers; return a fact for each game that a court refused for good."""
         running = {call.id: call for call in self.contest.running}
         back: list[AnyFact] = []
         for call_id, asked in [*self._asked.items()]:

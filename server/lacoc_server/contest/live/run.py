@@ -32,7 +32,7 @@ _FAREWELL_S = 5.0
 
 
 class Opened(NamedTuple):
-    """Where everything is."""
+    """Where the parts of an opened contest can be reached."""
 
     url: str
     """Address of the pages."""

@@ -48,7 +48,10 @@ def courts(where: ContestFolder, folder: Path, speed: float) -> Iterator[dict[st
 
 @contextmanager
 def _court(name: str, words: list[str], folder: Path) -> Iterator[dict[str, Any]]:
-    """Run a court; one of an office that was killed may hold its address for some seconds more."""
+    """Run a court; if its address is taken, try again for some seconds.
+
+    If an office was killed, its courts may hold their addresses for some seconds more.
+    """
     end_s = time.monotonic() + _ADDRESS_S
     with ExitStack() as stack:
         while True:
@@ -140,7 +143,7 @@ class Bots:
     def follow(self, contest: Contest) -> None:
         """Start the bots of teams that are called for the first time.
 
-        A bot that ended too early is started again. One whose team has other files now ends.
+        A bot that ended too early is started again. A bot is ended if its team has other files now.
         """
         bots = {team.name: team for team in contest.teams if team.bot}
         files = {(team.name, team.files) for team in bots.values()}

@@ -1,7 +1,7 @@
 """Where each team plays, or what it waits for; pure.
 
 The estimate of when a team plays gives the open matches to the courts in the order of the schedule.
-It takes every game to be as long as games have been, so it is right on average only.
+It assumes that every game takes as long as games took so far, so it is right only on average.
 """
 
 from bisect import bisect_left, insort
@@ -20,7 +20,7 @@ from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
 _COUNTED = 15
-"""The newest games, whose length counts."""
+"""How many of the newest games count for the usual length of a game."""
 _STEP_S = 5
 _MOMENT_S = 30
 """What comes sooner is said to come in a moment."""
@@ -107,7 +107,7 @@ def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Where
 
 
 def _called(contest: Contest, team: str, call: Called, courts: Courts) -> Whereabouts:
-    """Say where a team plays whose game is given to a court; the court may not have it yet."""
+    """Say where a team plays, if its game was given to a court; the court may not have it yet."""
     view, match = _match(contest, call.pairing)
     opponent = call.teams[call.teams[0] == team]
     about = fixture(contest, view, match, call.game)
@@ -146,7 +146,7 @@ def _waits(
     start: Start | None,
     pace: Pace,
 ) -> Whereabouts:
-    """Say what a team waits for whose next match is known."""
+    """Say what a team waits for, if its next match is known."""
     about = fixture(contest, view, match, max(1, match.next_game))
     opponent = match.teams[match.teams[0] == team] or ""
     if start is None:
@@ -166,7 +166,7 @@ def _waits(
 
 
 def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
-    """Say how a team came out that plays no more; places are final in stages that are over."""
+    """Say that a team plays no more, with its place in the newest of its stages that are over."""
     place: Phrase | None = None
     rank = 0
     for view in contest.stages:
@@ -191,7 +191,7 @@ def _match(contest: Contest, pairing: str) -> tuple[StageView, Match]:
 
 
 def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
-    """Find the next match of each team that has one: an open one, else one without opponent."""
+    """Find the next match of each team: an open one, else one that still lacks an opponent."""
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     waiting = (match for view in contest.stages for match in view.matches if match.state == "waits")
     coming: dict[str, tuple[StageView, Match]] = {}
@@ -203,7 +203,7 @@ def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
 
 
 def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[tuple[str, Start]]:
-    """Estimate for each open match, by its pairing, when and where it begins."""
+    """Estimate when and where each open match begins; yield the id of its pairing and its start."""
     now_ms, game, rest_ms = pace
     matches = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     court_ms = dict.fromkeys(seen, now_ms)
@@ -253,7 +253,7 @@ def _may_come(contest: Contest, team: str) -> bool:
 
 
 def _rounded_s(time_ms: int) -> int:
-    """Round up, so that an estimate does not change with each look."""
+    """Round up to seconds, in steps so large that an estimate does not change with each look."""
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
 
 

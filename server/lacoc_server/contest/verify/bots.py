@@ -1,4 +1,4 @@
-"""Whether the bot of an entry pressed the keys of a record: it sees the recorded frames again.
+"""Check whether an entry's bot pressed the keys of a record: show it the recorded frames again.
 
 This needs no physics, so it is exact on any machine.
 """

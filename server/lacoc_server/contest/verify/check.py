@@ -27,7 +27,7 @@ class Checked(NamedTuple):
     proven: int
     """Games whose records were proven; of the others only the results were compared."""
     least_forged: int
-    """So many forged records would have been found with `sampling.CONFIDENCE`."""
+    """If this many records are forged, a check finds one with probability `sampling.CONFIDENCE`."""
 
 
 def check(

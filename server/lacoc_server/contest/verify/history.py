@@ -31,7 +31,7 @@ _HARMLESS = ("league.result-replaced", "league.result-unneeded", "league.other-t
 
 
 def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
-    """Yield what an honest contest can't have.
+    """Yield what in the facts can't come from an honest contest.
 
     Times are not compared: a clock may have been corrected. The order is that of the numbers.
 
@@ -48,7 +48,7 @@ def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase
 
 
 def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
-    """Yield what people decided: verification can't say whether they did, or were right."""
+    """Yield what people decided; nothing can prove that they did, or that they were right."""
     closed = False
     for fact in facts:
         closed = closed or isinstance(fact, Closed)
@@ -67,7 +67,7 @@ def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
 
 
 def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Yield the first fact of an earlier publication that is missing now, or another one."""
+    """Yield the first fact of an earlier publication that is missing or different now."""
     for before, now in zip(earlier, (*facts, *(None,) * len(earlier)), strict=False):
         if before != now:
             yield say("verify.rewritten", fact=before.id)
@@ -75,7 +75,7 @@ def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Itera
 
 
 def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
-    """Return what was known when a game was called, or, if nobody called it, had been played."""
+    """Return the facts before the call of a game, or before its result if nobody called it."""
     at = facts.index(played)
     for place in range(at - 1, -1, -1):
         fact = facts[place]
@@ -87,8 +87,8 @@ def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
 def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ...]:
     """Return the hashes of the files with which a team may have played a game.
 
-    A game goes on with the files with which it began, so if they were changed since entries were
-    closed, those before the newest change count too.
+    These are the newest files before the result of the game. If entries were closed when these were
+    handed in, the files before them count too: a game goes on with those with which it began.
     """
     hashes: list[str] = []
     closed = False

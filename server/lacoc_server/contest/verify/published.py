@@ -1,4 +1,4 @@
-"""A published folder: its facts are read, and everything in it that follows from them checked."""
+"""A published folder: its facts are read, and all in it that follows from them is checked."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -28,10 +28,10 @@ def missed(games: int, forged: int, checked: int) -> float:
 
 
 def least_forged(games: int, checked: int) -> int:
-    """Return how many games must be forged so that a sample has one of them with `CONFIDENCE`.
+    """Return the number of forged games of which a sample has one with probability `CONFIDENCE`.
 
-    With fewer forged games it is less certain. If nothing is checked, no number is enough: the
-    result is then one more than there are games.
+    With fewer forged games it is less likely. If nothing is checked, no number is enough; the
+    result is then one more than the number of games.
     """
     enough = (n for n in range(1, games + 1) if missed(games, n, checked) <= 1 - CONFIDENCE)
     return next(enough, games + 1)

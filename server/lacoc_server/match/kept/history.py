@@ -270,7 +270,7 @@ class History:
 def _note(
     observation: Observation, events: tuple[GameEvent, ...] = (), numbers: tuple[int, ...] = ()
 ) -> Note:
-    """Return the note of an observation; `_PLAIN` if its numbers are all of it."""
+    """Return the note of an observation; `_PLAIN` if nothing but its numbers has to be kept."""
     placed = touched = False
     for view in observation:
         placed = placed or view.placed is not None
@@ -296,7 +296,7 @@ def _observation(packed: memoryview, views: int, note: Note) -> Observation:
 
 
 def _strike(note: Note, number: int) -> Note:
-    """Return a step's note after the event of this number, or its change, was taken back."""
+    """Return a step's note after a take-back: of its change, or of its event with this number."""
     if note.changed is not None:
         return replace(note, changed=replace(note.changed, struck=True))
     event = note.events[note.numbers.index(number)]

@@ -97,7 +97,7 @@ class Court:
             raise UserError(say("environment.no-end", arena=arena.name))
 
     def episode(self, make_physics: MakePhysics = World) -> Episode:
-        """Return a new episode, begun at the first start place and with nobody late."""
+        """Return a new episode that has begun at the first start place, with no seat late."""
         episode = Episode(self.begun, make_physics)
         episode.begin(Opening())
         return episode
@@ -162,7 +162,7 @@ def lead(frame: Frame, seat: int) -> int:
 
 
 def _with_options(drawn: Opening, options: dict[str, Any], court: Court) -> Opening:
-    """Replace what was drawn by entries of `options`; others are ignored: they are for wrappers."""
+    """Put entries of `options` in place of what was drawn. All other entries are for wrappers."""
     late, place = options.get("late_ticks", drawn.late_ticks), options.get("place", drawn.place)
     seat = options.get("seat", drawn.seat)
     try:

@@ -70,7 +70,7 @@ class Begun:
         self._saved: dict[int, bytes] = {}
 
     def setup(self, place: int, match_id: str = "") -> Setup:
-        """Return what a match is made from that begins at a start place."""
+        """Return the setup of a match that begins at a start place."""
         arena = self.arena_at(place)
         return Setup(
             match_id=match_id,
@@ -185,7 +185,7 @@ class Episode:
         return {"scores": match.scores(), "winner": winner, "won": winner == match.seats[seat].id}
 
     def steer(self, seat: int, target: Posture) -> None:
-        """Set the angles that a robot moves to from the next beat on [rad], by joint id."""
+        """Set the angles [rad], by joint id, that a robot moves to from the next beat on."""
         drive = self.match.seats[seat].drive
         assert isinstance(drive, Steered)
         drive.target = target

@@ -26,7 +26,7 @@ class Opening(msgspec.Struct, frozen=True):
 
 
 def draw(arena: Arena, chance: np.random.Generator) -> Opening:
-    """Draw an opening: start place, a late beginning of each seat, and the learner's seat."""
+    """Draw an opening: the start place, how late each seat begins, and the learner's seat."""
     seats = len(arena.seats)
     late = chance.integers(0, MOST_LATE_TICKS + 1, seats)
     return Opening(
@@ -43,7 +43,7 @@ def places(arena: Arena) -> int:
 
 
 def begun_at(arena: Arena, place: int) -> Arena:
-    """Return the same arena with another first start place."""
+    """Return the arena with the start place of this index as its first one."""
     found = _listed(arena.settings)
     if place == 0 or found is None:
         return arena

@@ -76,15 +76,15 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each number is that an agent sees."""
+        """The meaning of each number that an agent sees."""
         return self._senses.names
 
     def observation_space(self, agent: str) -> "spaces.Space[Numbers]":
-        """Return what an agent sees; the same object each time."""
+        """Return the space of what an agent sees; it is the same object each time."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> "spaces.Space[Any]":
-        """Return what an agent can do; the same object each time."""
+        """Return the space of what an agent can do; it is the same object each time."""
         return self.action_spaces[agent]
 
     def reset(

@@ -85,7 +85,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each number is that the learner sees."""
+        """The meaning of each number that the learner sees."""
         return self._senses.names
 
     @property

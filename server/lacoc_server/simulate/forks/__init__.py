@@ -1,1 +1,1 @@
-"""Forks of a record: a match that goes on from any of its beats, as it was or with a change."""
+"""Forks of a record: its match goes on from one of its beats, as it was or with a change."""

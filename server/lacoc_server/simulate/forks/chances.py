@@ -94,7 +94,7 @@ def compute(
     """Compute the odds of a record.
 
     Args:
-        wish: which.
+        wish: which record, and which odds of it.
         engine: plays the forks.
         known: odds from before; what still holds in them is not computed again.
         progress: told how many moments are done, and how many there will be at most.
@@ -171,7 +171,7 @@ class Course:
         """The end of the match; None: it has no result."""
 
     def clock_s(self, beat: int) -> float:
-        """Return the time on the clock at a beat of play [s]; for other beats, at the last one."""
+        """Return the clock's time at a beat of play [s]; for other beats, at the end of play."""
         return self.clocks.get(beat, self.clocks[self.playing[-1]]) * BEAT_S
 
 
@@ -192,7 +192,7 @@ def key(source: Source, beat: int, bots: tuple[str, str], arena: str | None = No
     Args:
         source: the record.
         beat: first beat of the forks' own.
-        bots: who plays them; of a bot file or a ghost's record, the content counts.
+        bots: who plays them; a bot file and the record of a ghost count by their content.
         arena: folder of the arena, if it is not installed; its files count.
     """
     digest = hashlib.blake2b(digest_size=16)
@@ -239,7 +239,7 @@ def _margins(job: ChanceJob) -> Iterator[float]:
 
 @lru_cache(maxsize=1)
 def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
-    """Return a match with the arena of a record, and the recorded match before a beat, saved.
+    """Return a recorded match as it was before a beat, and its save.
 
     Forks change the match, so each of them begins with a load.
     """
@@ -286,7 +286,7 @@ def _moment(
 
 
 def _closer(course: Course, moments: Sequence[Moment], count: int) -> list[int]:
-    """Return the moments to add next: in the largest swings that are long enough."""
+    """Return the moments to add next: one in each of the largest swings that are long enough."""
     room = min(_AT_ONCE, count - len(moments))
     found = (
         odds.between(course.playing, course.told, swing, _LEAST_BEATS)

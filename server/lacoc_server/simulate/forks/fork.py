@@ -53,8 +53,8 @@ def fork(
 
     Args:
         source: the record.
-        beat: first beat of the fork's own; the one after the last is allowed.
-        change: what is other than in the record; None: nothing.
+        beat: first beat of the fork's own, at most the one after the record's last beat.
+        change: how the fork differs from the record; None: it does not.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
         seconds: how long the fork goes on at most [s]; None: until play ends.
@@ -89,7 +89,7 @@ def _check_phase(match: Match, change: Change) -> None:
     """Check that players can take over in the match's phase.
 
     Raises:
-        UserError: if it has not begun, or play is over.
+        UserError: if the match has not begun, or play is over.
     """
     if change.players and not (match.has_begun and match.phase is not Phase.FINISHED):
         raise UserError(say("fork.not-in-play", beat=match.beats + 1, phase=match.phase.word))

@@ -23,11 +23,11 @@ _SEARCH_BEATS = BEATS_PER_S
 """A take-back waits at most this long for a beat without recorded inputs. If there is none, it
 comes in the first beat."""
 _SILENT_BEATS = BEATS_PER_S
-"""So long after the last recorded beat, seats with recorded keys fall silent, as at a court."""
+"""This long after the last recorded beat, seats with recorded keys fall silent, as at a court."""
 _LATE_TICKS = BEATS_PER_S
 """Longest time before a bot sees its first frame, in a variant."""
 _REACTION_TICKS = BEATS_PER_S // 5
-"""Longest time from a bot's choice of a key to the key, in a variant."""
+"""Longest time from a bot's choice of a key to its press, in a variant."""
 _IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
@@ -58,7 +58,7 @@ class Line:
     Args:
         record: the record of the match, whole.
         match: the match, after the last beat before the fork.
-        change: what is other than in the record.
+        change: how the fork differs from the record.
         seconds: how long the fork goes on at most [s]; None: until play ends.
     """
 
@@ -158,8 +158,8 @@ class Line:
     def _free_beat(self) -> int:
         """Return the first beat of the fork without recorded inputs.
 
-        A halt refuses the keys of its beat. In a beat without any, the robots go the same ways as
-        in the record.
+        A halt refuses the keys of its beat. In a beat without recorded keys it refuses none, so the
+        robots go the same ways as in the record.
         """
         beats = range(self._first, self._first + _SEARCH_BEATS)
         return next((beat for beat in beats if beat not in self._recorded), self._first)

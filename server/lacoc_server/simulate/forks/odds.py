@@ -2,8 +2,8 @@
 
 At some moments of the match, bots play forks to the end. A moment has few forks, so the share that
 the first seat won would be a rough number. The chance is instead the probability that it would win
-one more fork if margins (its points less those of the other) are normally distributed: Student's
-t. Moments close to each other share their forks.
+one more fork. That is computed by Student's t, as if margins (its points less those of the other
+seat) were normally distributed. Moments close to each other share their forks.
 """
 
 import math
@@ -18,7 +18,7 @@ PRIOR_SPREAD = 1.0
 PRIOR_WEIGHT = 2
 """Number of forks that weigh as much as this assumption."""
 NEAR_S = 1.0
-"""Moments at most so far apart on the clock share their forks [s]."""
+"""Moments that are at most this far apart on the clock share their forks [s]."""
 _SPARE_S = 0.001  # differences of times are not exact
 
 
@@ -163,7 +163,7 @@ def between(playing: Sequence[int], told: Sequence[int], swing: Swing, least: in
         playing: all beats in which play went on, in order.
         told: beats with an event of the game, in order.
         swing: the stretch.
-        least: beats of play that stay between two moments.
+        least: smallest number of beats of play between two moments.
 
     Returns:
         A beat; None: the stretch is too short.

@@ -77,13 +77,13 @@ class Stem:
     record: Record
     """Header, sheets and results name the fork; everything else is as it was recorded."""
     messages: tuple[Message, ...]
-    """The same as messages, for the fork's own record; measurements of health are left out."""
+    """`record` as messages for the fork's own record; measurements of health are left out."""
     setup: Setup
     """Setup of the fork."""
 
 
 def stem(source: Source, beat: int, match_id: str) -> Stem:
-    """Return what a fork goes on from.
+    """Return the part of a record that a fork goes on from.
 
     Args:
         source: the record.

@@ -13,7 +13,7 @@ from lacoc_shared.seat import BEAT_S, RESTART_KEY
 
 
 def of_script(lines: Sequence[str], seat: int) -> Callable[[], Press]:
-    """Return a player that presses the keys of a script; its times count from the fork.
+    """Return a player that presses the keys of a script; its times count from the fork's start.
 
     Args:
         lines: the script.

@@ -51,7 +51,8 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
     Args:
         gait: the robot's gait.
         goal: what the key is for.
-        key: digit of the key; None: for a turn the sample's key for it, for forward `forward_key`.
+        key: digit of the key; None: for the goal to turn, the sample's key for this turn; for the
+            goal to go forward, that of `forward_key`.
 
     Raises:
         UserError: if the gait has no such key at level B.

@@ -20,7 +20,7 @@ _SIGMA_DEG = 8.0
 """Standard deviation of the first random changes, when all numbers may change."""
 _POPULATION = 16
 _FEW = 24
-"""How many numbers, those that matter most, the sizes "cell" and "three" try to change."""
+"""The sizes "cell" and "three" try to change only this many numbers: those that matter most."""
 _CONFIRMED = 8
 """How many of the tables with one more change, the best by rough score, are tried exactly."""
 _HOPEFUL = 0.9

@@ -36,8 +36,8 @@ class Place(NamedTuple):
 class Grid(NamedTuple):
     """The axes of a map; both begin at 0, and their last cells have no upper end.
 
-    The calmest cell is twice as wide as the others, because a robot that lifts its feet at all
-    hardly comes below its middle.
+    The calmest cell is twice as wide as the others, because its lower half would stay almost empty:
+    a robot that lifts its feet at all is hardly ever so calm.
     """
 
     speed_mm_s: float
@@ -91,7 +91,7 @@ def grid_of(robot: RobotSpec, own: Figures) -> Grid:
 
     Args:
         robot: the robot.
-        own: figures of the own gait.
+        own: figures of the student's own gait.
     """
     long_m = max(sum(leg.lengths_m[1:]) for leg in robot.legs)
     foot_mm_s = 1000 * robot.ang_min_rad_s * long_m

@@ -66,8 +66,8 @@ def events_csv(record: Record) -> bytes:
 def result_json(record: Record) -> bytes:
     """Return the result as JSON.
 
-    It has two more entries: `played_s` is `clock_s` plus the time that the referee gave; `health`
-    says how well the match ran, and is null if no court measured it.
+    It has the entries of `Result` and two more: `played_s` is `clock_s` plus the time that the
+    referee gave; `health` says how well the match ran, and is null if no court measured it.
 
     Raises:
         UserError: if the match has no result.

@@ -1,4 +1,4 @@
-"""Formats of a contest's stages; an entry point of the group `lacoc.formats` names one.
+"""Formats of a contest's stages.
 
-The entry point is an object that is a `format.Format`.
+Each is a `format.Format`, and is named by an entry point of the group `lacoc.formats`.
 """

@@ -15,7 +15,7 @@ Pair = tuple[str, ...]
 
 
 class Stage(msgspec.Struct, frozen=True, kw_only=True):
-    """What is fixed of a stage when its draw is done."""
+    """What of a stage is fixed once it is drawn."""
 
     name: str
     settings: Settings
@@ -61,7 +61,7 @@ class Format(Protocol):
 
 
 class DrawnAtOnce:
-    """What formats share whose draw fixes all rounds."""
+    """Methods of those formats whose draw fixes all rounds at once."""
 
     def rounds(self, stage: Stage) -> int:
         """Return 0: no round is drawn later."""

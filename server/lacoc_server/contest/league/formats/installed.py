@@ -1,4 +1,4 @@
-"""The formats that are installed here, ours and those of others."""
+"""The formats that are installed here: LACOC's own and those of other packages."""
 
 from collections.abc import Iterator, Mapping
 

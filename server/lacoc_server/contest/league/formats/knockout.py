@@ -135,8 +135,9 @@ def _winners(
 def double_bracket(stage: Stage) -> Iterator[Pairing]:
     """Yield the pairings of a double knockout: winners' bracket, losers' bracket, finals.
 
-    In odd rounds of the losers' bracket its winners meet each other; in even rounds they meet those
-    who fall from the winners' bracket, turned so that nobody meets again in the first half of it.
+    In odd rounds of the losers' bracket, the teams that are still in it meet each other. In even
+    rounds they meet the teams that just fell from the winners' bracket. These are reordered
+    (`_turned`), so that in the first half of the losers' bracket no two teams meet again.
     """
     places = seeded(stage.entries)
     last = len(places).bit_length() - 1
@@ -163,7 +164,12 @@ def double_bracket(stage: Stage) -> Iterator[Pairing]:
 
 
 def _fall(number: int, last: int) -> int:
-    """Return the place of those who lose where the losers of a winners' round arrive."""
+    """Return the final place of a team that loses its first match in the losers' bracket.
+
+    Args:
+        number: round of the winners' bracket from which the team fell.
+        last: number of rounds of the winners' bracket.
+    """
     if number > 1:
         return (1 << (last - number + 1)) + 1
     return 2 if last == 1 else 3 * (1 << (last - 2)) + 1

@@ -45,7 +45,7 @@ class Player(msgspec.Struct, kw_only=True):
 
     @property
     def balance(self) -> int:
-        """How often it sat left more than right."""
+        """How many times more it sat left than right."""
         return sum(self.sides)
 
 
@@ -111,7 +111,7 @@ def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
 
 
 def _add(player: Player, side: int, others: Sequence[str], match: Match) -> None:
-    """Add a match to what a team has behind it. A match not played counts for no side."""
+    """Add a past match to what is known of a team. Only a match with a game counts for a side."""
     player.met.update(others)
     if match.games:
         player.sides.append(side)
@@ -131,7 +131,11 @@ def _float(before: Mapping[str, int], team: str, others: Sequence[str]) -> str:
 
 
 def seated(one: Player, other: Player) -> tuple[str, str]:
-    """Seat a pair: left sits who sat left less often, then who sat right last, then by number."""
+    """Seat a pair; return who sits left, then who sits right.
+
+    Who sat left less often sits left. If both did equally often, who sat right last does; if that
+    decides nothing either, the team with the smaller number sits left if this number is odd.
+    """
     first, second = sorted((one, other), key=lambda player: player.number)
     if first.number % 2 == 0:
         first, second = second, first
@@ -142,7 +146,8 @@ def seated(one: Player, other: Player) -> tuple[str, str]:
 def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
     """Pair the players of a round; with an odd number one has a bye.
 
-    Where the rules can't all be kept, the matching decides which are broken.
+    With too many players for the engine (`dutch`), or where the rules can't all be kept, the pairs
+    are those of a matching that breaks as few rules as possible.
 
     Returns:
         The pairs in the order of their tables, a bye last.
@@ -150,7 +155,7 @@ def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, .
     if not players:
         return []
     found = fewest_faults(players)
-    # Where there is no way without a fault, the engine would try all ways, which may take for ever.
+    # Where the rules can't all be kept, the engine would try all pairings, which may take days.
     if len(players) <= LARGEST and _legal(found, players):
         by_system = dutch(players, round_number)
         found = by_system if _legal(by_system, players) else found
@@ -199,10 +204,11 @@ def dutch(players: Sequence[Player], round_number: int) -> list[tuple[Player, ..
 
 
 def _colours(player: Player) -> list[str]:
-    """Say which side a team is due, as a history that the engine understands.
+    """Say which side a team should get next, as a history of colours for the engine.
 
-    Two of one colour at the end are an absolute preference of the other one. That makes the
-    engine's limit, which is a difference of two, ours, which is one.
+    The engine must change a team's colour only after the same colour twice. Here a team must change
+    sides as soon as it sat on one side once more than on the other. So the engine is told that it
+    had this side's colour twice.
     """
     if not player.sides:
         return []
@@ -225,7 +231,7 @@ def _legal(pairs: Iterable[tuple[Player, ...]], players: Sequence[Player]) -> bo
 
 
 def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
-    """Count what is wrong with a pair: met before, a second bye, a third side too many."""
+    """Count what is wrong with a pair: met before, a second bye, both due the same side."""
     if len(pair) == 1:
         return 0, int(pair[0].had_bye), 0
     one, other = pair
@@ -234,10 +240,10 @@ def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
 
 
 def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
-    """Pair so that fewest meet again, then fewest have two byes, then sides differ least.
+    """Pair so that fewest teams meet again, then fewest have two byes, then sides differ least.
 
-    Then teams with as equal points as possible meet, and of those with equal points the upper half
-    meets the lower half.
+    Among such pairings, choose one in which opponents differ least in points; and among teams with
+    equal points, let the upper half meet the lower half.
     """
     ordered = sorted(players, key=lambda player: (-player.points, player.number))
     equals = Counter(player.points for player in players)
@@ -258,12 +264,13 @@ def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
 
 
 def _cost(pair: Sequence[Player], apart: int, fold: int, many: int) -> int:
-    """Weigh a pair so that no number of lesser faults is worth a greater one.
+    """Weigh a pair so that one greater fault weighs more than any number of lesser ones.
 
     Args:
         pair: the pair.
-        apart: how many points its teams are apart.
-        fold: how far they are from half of those with equal points.
+        apart: difference of the points of its two teams.
+        fold: for two teams with equal points, by how many places their distance differs from half
+            the number of all teams with these points; else 0.
         many: more than the number of teams.
     """
     again, bye, side = faults(pair)
