@@ -31,5 +31,5 @@ def test_nothing_happens() -> None:
     assert GAME.score(state) == (0,)
     assert GAME.over(state) is None
     assert GAME.winner(state, (3,)) is None
-    with pytest.raises(NoSuchState, match=r"^practice has no markers$"):
+    with pytest.raises(NoSuchState, match=r"^practice has no board$"):
         GAME.set(state, 0, 1)

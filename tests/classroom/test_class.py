@@ -316,6 +316,7 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     assert desk.card("Jo")["hand_up_s"] > 1e9
 
 
+@pytest.mark.long
 def test_the_commands_export_and_forget(tmp_path: Path) -> None:
     """An open class can't be exported or forgotten. Once it is closed, forget leaves no file."""
     room = ClassRoom(tmp_path)

@@ -119,7 +119,15 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
     assert len(rows) > 50
 
 
-@pytest.mark.parametrize("way", ["q", "\x03", signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+    "way",
+    [
+        "q",
+        pytest.param("\x03", marks=pytest.mark.long),
+        signal.SIGTERM,
+        pytest.param(signal.SIGHUP, marks=pytest.mark.long),
+    ],
+)
 def test_the_terminal_is_as_before_however_one_leaves(
     open_court: OpenCourt, tmp_path: Path, way: str | signal.Signals
 ) -> None:
@@ -181,6 +189,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
     assert "refused" not in said
 
 
+@pytest.mark.long
 def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
     """The sample robot walks by keys 1 to 4 at level A and by key 2 at level B (workshop 4-4)."""
     steps = "".join(f"0.5 {key}\n" for key in "12341234")
@@ -214,6 +223,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     until(lambda: [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"])
 
 
+@pytest.mark.long
 def test_practice_begins_anew(tmp_path: Path) -> None:
     """Practice begins a new match even if a killed court left an unfinished match in the folder."""
     kept = ("--recordings", str(tmp_path / "kept"))

@@ -32,6 +32,7 @@ def games(played: Path) -> int:
     return len([*(played / "records").iterdir()])
 
 
+@pytest.mark.long
 def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: Path) -> None:
     """Two worker processes give the same tables, byte for byte, as this process alone."""
     again = contest_played.enter(tmp_path / "again")

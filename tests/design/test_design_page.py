@@ -272,6 +272,7 @@ def test_a_table_is_taken_to_practice(page: DesignClient) -> None:
         practice.close()
 
 
+@pytest.mark.long
 def test_a_studio_that_dies_comes_back(page: DesignClient, gateway: Gateway) -> None:
     """A killed studio is started again; pages are told both, and the next trial works."""
     page.until(lambda: page.studio.get("present"))

@@ -119,7 +119,7 @@ def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
     assert (code, f"{kind}: no mistakes" in out) == (0, True)
     assert " ".join(err.split()) == (
         f"Note: {kind}, row 12, column 2: the legend says L,F, but joint 0 is a joint of leg R,F. "
-        "The order of the columns counts, not the legend."
+        "Each angle goes to the joint of its column, whatever the legend says."
     )
 
 

@@ -119,6 +119,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     assert not back.own().flags & SeatFlag.SILENT
 
 
+@pytest.mark.long
 def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
     """If a page hangs without closing its connection, its seat still falls silent."""
     venue.court()
@@ -131,6 +132,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
     referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 6)
 
 
+@pytest.mark.long
 def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
     """A robot walks on while its page is reloaded, if the page is back within a second."""
     venue.court()
@@ -220,6 +222,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
     left.wait_own(lambda own: own.applied_seq >= seq)
 
 
+@pytest.mark.long
 def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
     """When a court begins a new match instead of the old one, pages keep no old event."""
     court = venue.court()
@@ -271,6 +274,7 @@ def test_a_gateway_may_come_before_its_court(venue: Venue) -> None:
     early.ask("join", seat="left", token=TOKENS["left"], name="Ants")
 
 
+@pytest.mark.long
 def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
     """A contest's gateway has the same page key after a restart, so open pages can act again."""
     venue.court()

@@ -107,6 +107,8 @@ def test_a_join_that_is_too_long_is_dropped(court: Session, stranger: zenoh.Sess
     desk = court.desk(JOIN, 4)
     is_not_answered(stranger, bytes(JOIN_MAX_BYTES))
     assert desk.take() is not None
+    while desk.take() is not None:  # it was asked more than once
+        pass
     assert ask(stranger, bytes(JOIN_MAX_BYTES + 1)) == []
     assert set(ask(stranger, bytes(JOIN_MAX_BYTES + 5000), 0.3)) == {b"Timeout"}
     assert desk.take() is None

@@ -97,6 +97,7 @@ def test_joins_by_keyboard_and_the_table_stays(open_page: OpenPage, room: ClassR
     expect(page.find(".keys input").nth(2)).to_have_value("1 2")
 
 
+@pytest.mark.long
 def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoom) -> None:
     """The teacher's rules, tables and deletions reach a student; only the newest page works."""
     with ExitStack() as closing:

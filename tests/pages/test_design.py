@@ -457,6 +457,7 @@ def test_a_phone_in_japanese_tries_and_compares(
     assert violations(page.page) == []
 
 
+@pytest.mark.long
 def test_axe_finds_nothing(open_page: OpenPage, address: tuple[str, str], sample: Path) -> None:
     """The tool axe finds no serious accessibility mistake on the page, in its tabs and a dialog."""
     page = designer(open_page, address)

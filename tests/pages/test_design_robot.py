@@ -31,6 +31,7 @@ def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
         yield address
 
 
+@pytest.mark.long
 def test_a_number_of_the_robot_is_changed_and_saved(
     open_page: OpenPage, address: tuple[str, str], folder: Path
 ) -> None:

@@ -72,6 +72,7 @@ class Student(Designer):
         expect(dot).to_have_attribute("data-state", "met", timeout=TIMEOUT_MS)
 
 
+@pytest.mark.long
 def test_six_phases_are_done_by_keyboard(
     open_page: OpenPage, tmp_path: Path, built_pages: Path
 ) -> None:

@@ -143,5 +143,5 @@ def test_a_worker_that_dies_is_told(many: "subprocess.Popen[str]", tmp_path: Pat
             break
     _, said = many.communicate(timeout=30)
     assert many.returncode == 2
-    assert "The process that played straight and nearest ended" in said
+    assert "The process that played straight and nearest was killed" in said
     assert list((tmp_path / "records").iterdir()) == []

@@ -204,6 +204,7 @@ def test_a_small_map(workers: Workers) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_variants_of_two_rounds(workers: Workers) -> None:
     """Six variants walk upright and differ; the next round has none of the tables before it."""
     task = task_for("quadruped")

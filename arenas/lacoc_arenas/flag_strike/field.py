@@ -89,7 +89,7 @@ def _standing(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float)
 
 
 def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_m: float) -> None:
-    """Add a fallen flag: its cloth in the state's colour, and its pole unless it is DOWN."""
+    """Add a flag that lies on the floor: its cloth, and its pole unless the state is DOWN."""
     along = _along(flag)
     ux, uy = math.cos(along), math.sin(along)
     length_m, depth_m = _cloth_m(flag, height_m)

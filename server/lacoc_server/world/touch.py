@@ -180,7 +180,7 @@ def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
 
 
 def _map(probes: Sequence[_Probe], reach_m: float) -> dict[tuple[float, float], list[_Probe]]:
-    """Map each square of the floor to the probes that a robot can touch with its body there.
+    """Map each square of the floor to what a robot can touch while its body is in it.
 
     Args:
         probes: all probes.

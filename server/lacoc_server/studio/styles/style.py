@@ -77,7 +77,11 @@ class Styles:
         self._sway = np.cos(turns - math.pi / len(table.order))
 
     def look(self, angles_deg: Angles) -> Floats:
-        """Measure how a table looks: (ways,), in steps of each way, in the order of `WAYS`."""
+        """Measure how a table looks.
+
+        Returns:
+            (ways,): a number for each way of `WAYS`, in the steps of that way.
+        """
         tips_m = self._tips_m(self._rows_of(angles_deg))
         x, y, z = np.moveaxis(tips_m, 2, 0)
         low, flat = z.min(axis=0), _FLAT * self._long_m
