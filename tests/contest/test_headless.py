@@ -199,3 +199,33 @@ def test_void_games_are_played_again_and_at_last_drawn(
     assert isinstance(decision, Replaced)
     assert decision.outcome == "draw"
     assert organiser.sheet(file).stages[0].matches[0].how == "seed"
+
+
+def test_replays_that_people_ordered_are_no_void_games(
+    copied: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A game that was replayed three times by order may then be void three times, as any other."""
+    where = ContestFolder(copied)
+    with FactStore(where.facts) as store:
+        last = next(fact for fact in reversed(store.facts()) if isinstance(fact, Played))
+        what = {name: getattr(last, name) for name in ("pairing", "game", "teams")}
+        for number in range(3):
+            result = {"scores": last.scores, "outcome": last.outcome, "record": f"{number}.mcap"}
+            store.append(new(Replay, reason="the net was down", **what))
+            store.append(new(Played, **what, **result))
+        store.append(new(Replay, reason="the net was down", **what))
+
+    def void(path: Path) -> Summary | None:
+        found = summary(path)
+        return found and msgspec.structs.replace(found, winner="void")
+
+    monkeypatch.setattr("lacoc_server.contest.headless.play.summary", void)
+    contest_played.play(copied)
+    with FactStore(where.facts) as store:
+        ends = [
+            fact.outcome
+            for fact in store.facts()
+            if isinstance(fact, Played | Replaced)
+            and (fact.pairing, fact.game) == (last.pairing, last.game)
+        ]
+    assert ends[-4:] == ["void", "void", "void", "draw"]

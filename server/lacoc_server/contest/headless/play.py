@@ -37,8 +37,7 @@ LATE_TICKS = 7
 _MOST_DEATHS = 3
 """How many times a game is played again at most because its process died."""
 _MOST_VOIDS = 3
-"""A game in which physics stops counts as a draw without points, if it had this many results before
-that are not valid (`_tries`)."""
+"""A game in which physics stops counts as a draw without points if it was void so often before."""
 
 
 class Engine(Protocol):
@@ -188,20 +187,21 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
         for other in view.matches:
             if other.pairing.id == match.pairing.id:
                 again = before + (match.next_game - 1) // 2
-                return LATE_TICKS * again + _tries(match, facts)
+                return LATE_TICKS * again + len(_tries(match, facts))
             if {*other.teams} == {*match.teams}:
                 before += most
     raise ValueError(f"no match {match.pairing.id}")
 
 
-def _tries(match: Match, facts: Sequence[AnyFact]) -> int:
-    """Return how many results of this game are not valid: void ones, and those to be replayed."""
-    return sum(
-        isinstance(fact, Played)
+def _tries(match: Match, facts: Sequence[AnyFact]) -> list[Played]:
+    """Return the results of a match's next game that do not count: void, or to be replayed."""
+    return [
+        fact
+        for fact in facts
+        if isinstance(fact, Played)
         and (fact.pairing, fact.game) == (match.pairing.id, match.next_game)
         and {*fact.teams} == {*match.teams}
-        for fact in facts
-    )
+    ]
 
 
 def _job(view: StageView, seated: tuple[Seated, ...], late: int) -> Job:
@@ -251,7 +251,8 @@ def _result(
     if found is None or not found.scores:
         return None
     pairing, number = game.name
-    if found.winner == "void" and _tries(game.match, facts) >= _MOST_VOIDS:
+    voids = sum(fact.outcome == "void" for fact in _tries(game.match, facts))
+    if found.winner == "void" and voids >= _MOST_VOIDS:
         return new(
             Replaced,
             pairing=pairing,
