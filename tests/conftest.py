@@ -51,7 +51,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
-    """Put each test that takes minutes first among those of one process.
+    """Spread the tests that take minutes over the processes: each begins the part of one process.
 
     Args:
         items: the tests, in the order of their files.

@@ -29,7 +29,7 @@ BLUE, ORANGE = "#0072b2", "#e69f00"
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the folder of the built stand and two matches, which the processes of a run share."""
+    """Give the folder with the built test page and two match files; all test processes share it."""
     own = tmp_path_factory.getbasetemp()
     folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "stand"
     with locked("stand"):

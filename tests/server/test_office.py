@@ -45,7 +45,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def office(folder: Path) -> Iterator[Office]:
-    """Give a court at twenty times real time, which all tests of this module share."""
+    """Run a court at twenty times real time; give the office's side of it to all tests here."""
     contest = write_office_contest(folder / "contest.toml")
     with office_of(contest, folder / "recordings", "--speed", "20") as office:
         yield office

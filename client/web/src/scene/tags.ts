@@ -47,7 +47,10 @@ export class Tags {
       const at = robot ? place(robot.x, robot.y, robot.z + ABOVE_M) : null;
       if (tag.hidden !== !at) tag.hidden = !at;
       if (!at) continue;
-      tag.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px) translate(-50%, -100%)`;
+      // On whole pixels: letters stay crisp, and the same moment is always drawn the same.
+      const x = Math.round(at.x - tag.offsetWidth / 2);
+      const y = Math.round(at.y - tag.offsetHeight);
+      tag.style.transform = `translate(${x}px, ${y}px)`;
     }
   }
 
