@@ -105,10 +105,11 @@ def _play(file: Path, kills: int, chance: random.Random, killed: Counter[str]) -
 
 def _kill(office: int, chance: random.Random, killed: Counter[str]) -> bool:
     """Kill the office, a court or the gateway; return whether it was the office."""
-    children = {child.pid: _what(child.cmdline()) for child in psutil.Process(office).children()}
-    able = [pid for pid, what in children.items() if what in ("serve", "web")]
-    pid = chance.choice([*able, office])
     try:
+        # One that has just ended has no words any more.
+        children = {one.pid: _what(one.cmdline()) for one in psutil.Process(office).children()}
+        able = [pid for pid, what in children.items() if what in ("serve", "web")]
+        pid = chance.choice([*able, office])
         psutil.Process(pid).send_signal(signal.SIGKILL)
     except psutil.NoSuchProcess:
         return False

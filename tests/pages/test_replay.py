@@ -118,9 +118,16 @@ class Player(Show):
         self.page.evaluate(painted)
 
     def seek(self, beat: int) -> None:
-        """Go to a beat, and wait until it is drawn."""
+        """Go to a beat, and wait until it is drawn; a recording that begins to play is paused."""
+        go = "(beat) => { window.__replay.pause(); window.__replay.seek(beat); }"
         self.page.evaluate("(beat) => window.__replay.seek(beat)", beat)
-        self.until(lambda: self.view("drawnBeat") == beat, f"beat {beat} was not drawn")
+
+        def is_drawn() -> bool:
+            if self.beat != beat:
+                self.page.evaluate(go, beat)
+            return bool(self.view("drawnBeat") == beat)
+
+        self.until(is_drawn, f"beat {beat} was not drawn")
 
     def press(self, *keys: str) -> None:
         for key in keys:

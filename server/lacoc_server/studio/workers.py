@@ -16,9 +16,8 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 _SPAWN = get_context("spawn")
-_NICE = 19
-"""How much lower the priority of background processes is (`os.nice`), on systems that have this:
-as low as it can be, because they keep all cores busy."""
+_NICE = 10
+"""How much lower the priority of background processes is (`os.nice`), on systems that have this."""
 _END_S = 5.0
 
 
