@@ -132,7 +132,7 @@ class Pilot:
     def _sequence_ended(self, seat: SeatFrame) -> bool:
         """Say whether the current sequence has ended.
 
-        It always has for [0], at level A, and if it is a single posture.
+        It always has at level A, for key 0, and for a key with a single posture.
         """
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:

@@ -161,7 +161,7 @@ class FlagStrike:
     def _strikes(
         self, state: State, observation: Observation, struck: AbstractSet[Claim]
     ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
-        """Return the touches that are void after this tick, and (flag, seat) of each strike."""
+        """Return the touches that are void after this tick, and each strike's flag and seat."""
         void: list[tuple[int, int]] = []
         touching: dict[int, list[int]] = {}
         for seat, robot in enumerate(observation):

@@ -83,7 +83,7 @@ class Book:
         return _look(name) in map(_look, names)
 
     def note_refused(self, team: str, mistakes: tuple[Mistake, ...]) -> None:
-        """Note what is wrong with the files that a team handed in last; (): nothing is."""
+        """Note what is wrong with the files that a team handed in last; () if nothing is."""
         self.refused.pop(team, None)
         if mistakes:
             self.refused[team] = mistakes

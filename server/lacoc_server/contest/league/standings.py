@@ -89,14 +89,14 @@ class _Tally:
             )
 
     def opponents(self, team: str) -> list[int]:
-        """Return the points of each opponent; a match not played counts the team's own points."""
+        """Return the points of each opponent; for a match that was not played, the team's own."""
         return [
             self.points[other] if played and other else self.points[team]
             for other, _, played in self.matches[team]
         ]
 
     def sonneborn(self, team: str) -> int:
-        """Add up the points of beaten opponents twice, and those of drawn ones once."""
+        """Add up the points of opponents: twice if the team beat them, once if it drew."""
         pairs = zip(self.opponents(team), self.matches[team], strict=True)
         return sum(strength * points for strength, (_, points, _) in pairs)
 

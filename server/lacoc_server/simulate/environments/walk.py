@@ -244,7 +244,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return True
 
     def _way(self, vector: Any) -> tuple[float, float]:
-        """Split a vector into its parts ahead and to the left, as the robot faced when it began."""
+        """Split a vector into its parts ahead and to the left, by the robot's first heading."""
         _, _, _, qw, qx, qy, qz = self._from[:7].tolist()
         x, y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
         length = math.hypot(x, y)

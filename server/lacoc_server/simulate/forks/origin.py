@@ -87,7 +87,7 @@ def stem(source: Source, beat: int, match_id: str) -> Stem:
 
     Args:
         source: the record.
-        beat: first beat of the fork's own.
+        beat: first beat that the fork plays itself.
         match_id: id of the fork.
 
     Raises:
