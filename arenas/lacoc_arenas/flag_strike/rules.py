@@ -138,7 +138,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield (corner, seat) for each robot that has just come into a corner and takes it."""
+        """Yield corner and seat of each robot that has just come into a corner and takes it."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)

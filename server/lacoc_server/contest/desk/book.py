@@ -97,7 +97,7 @@ def milliseconds(when: datetime | None) -> int:
 
 
 def _look(name: str) -> str:
-    """Return a form of a name that is equal for names that look alike.
+    """Return a form of a name; names that look alike have the same form.
 
     Capitals become small letters, wide letters narrow ones, and several spaces one.
     """

@@ -100,11 +100,11 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
 
         Args:
             seed: a number: row i gets the seed `seed + i`. A list: a seed for each row.
-            options: as in `LacocEnv`, for all rows. With "reset_mask", (num_envs,) truth values,
-                only the rows with True begin an episode.
+            options: as in `LacocEnv`, for all rows. With "reset_mask", an array (num_envs,) of
+                truth values, only the rows with True begin an episode.
 
         Returns:
-            What the learners see, (num_envs, size), and the openings.
+            What the learners see, as an array (num_envs, size); and the openings.
 
         Raises:
             UserError: if an option does not fit.

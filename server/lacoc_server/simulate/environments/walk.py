@@ -227,7 +227,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         self._from, self._seen = np.array(was.begun), np.array(was.seen, np.float32)
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """Return a picture of the robot, (height, width, 3); None without a render mode."""
+        """Return a picture, an array (height, width, 3); None without a render mode."""
         game = self._course.arena.game
         return self._drawn.draw(self._world, game, pack_states((0,) * len(game.markers)))
 

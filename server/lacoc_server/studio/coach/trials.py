@@ -78,7 +78,7 @@ class Trials:
         return self._scores(self._walks(tables, SUBSTEPS, _QUICK_CYCLES))
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with larger physics steps; this is enough to find those that may be better.
+        """Score tables with larger physics steps; this is enough to find which may be better.
 
         Raises:
             Stopped: if the search was stopped.

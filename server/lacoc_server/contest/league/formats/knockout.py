@@ -201,7 +201,7 @@ def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
 
 
 def _turned(falling: Sequence[AnySource], number: int) -> list[AnySource]:
-    """Reorder those who fall: reversed after even rounds, with swapped halves after odd ones."""
+    """Reorder the teams that fall: reverse them after even rounds, swap halves after odd ones."""
     half = len(falling) // 2
     return [*reversed(falling)] if number % 2 == 0 else [*falling[half:], *falling[:half]]
 
