@@ -45,7 +45,7 @@ def find(arena: Arena, name: str) -> BotFactory:
 def find_installed(arena: Arena, name: str) -> BotFactory:
     """Find a bot of the arena or an installed bot; the name may come from a stranger.
 
-    No file is opened, so no code in one runs. Arguments and the bot are as in `find`.
+    No file is opened, so no code of a file runs. Arguments and result are as in `find`.
 
     Raises:
         UserError: if there is no such bot.

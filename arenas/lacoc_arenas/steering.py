@@ -132,7 +132,7 @@ class Pilot:
     def _sequence_ended(self, seat: SeatFrame) -> bool:
         """Say whether the current sequence has ended.
 
-        It always has for [0], at level A, and if it is a single posture.
+        It always has at level A, for key 0, and for a key with a single posture.
         """
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
@@ -202,7 +202,7 @@ def _is_near(pose: Pose, other: Pose) -> bool:
 
 
 def _key_for(bearing_rad: float, stray_rad: float) -> Key:
-    """Return the key that walks if the bearing is small, else the one that turns towards it."""
+    """Return the key to walk if the bearing is small, else the key to turn towards it."""
     bearing_rad = math.remainder(bearing_rad, math.tau)
     if abs(bearing_rad) <= stray_rad:
         return FORWARD

@@ -47,7 +47,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def joints(self) -> int:
-        """Number of joints; ids are leg + legs * level (rules 1)."""
+        """Number of joints; the id of one is leg + legs * level (Root 0, 1st 1, 2nd 2)."""
         return JOINTS_PER_LEG * len(self.legs)
 
     @property

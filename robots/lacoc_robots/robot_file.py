@@ -72,7 +72,7 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:
-    """Read every table; a wrong number is noted and becomes NaN in the robot (`hold_us`: 0)."""
+    """Read every table; a wrong number is noted and becomes NaN in the robot (0 in `hold_us`)."""
     body, start = root.table("body"), root.table("start")
     drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
     surface = root.table("surface", optional=True)
@@ -172,7 +172,7 @@ def _leg(table: Entries, default: _Link, limits: Limits) -> LegSpec:
 
 
 def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
-    """Read the table [link], or a leg's own entries: `default` then has what the leg leaves out."""
+    """Read the table [link], or a leg's own entries; `default` has what the leg leaves out."""
 
     def own(name: str) -> bool:
         table.ask(name)

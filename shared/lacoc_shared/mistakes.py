@@ -91,7 +91,7 @@ class FileRefused(ValueError):
         self.mistakes = mistakes
 
     def notes(self) -> tuple[Phrase, ...]:
-        """Return notes for a join that lacks these files: how many mistakes, and the first ones."""
+        """Return notes for a join that does without the files: how many mistakes, and the first."""
         first = (mistake.phrase for mistake in self.mistakes[:_NOTED])
         return (say("note.files-refused", count=len(self.mistakes)), *first)
 

@@ -121,9 +121,10 @@ def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_
 
 
 def _along(flag: Flag) -> float:
-    """Return the direction of a flag's cloth and fall [rad], counter-clockwise round the field.
+    """Return the direction in which a flag's cloth points and its pole falls [rad].
 
-    So the field is the same when it is turned by 180 degrees.
+    It is counter-clockwise round the field. So the field is the same when it is turned by 180
+    degrees.
     """
     return math.atan2(flag.y_m, flag.x_m) + math.pi / 2
 

@@ -138,7 +138,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield (corner, seat) for each robot that has just come into a corner and takes it."""
+        """Yield corner and seat of each robot that has just come into a corner and takes it."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)
@@ -161,7 +161,7 @@ class FlagStrike:
     def _strikes(
         self, state: State, observation: Observation, struck: AbstractSet[Claim]
     ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
-        """Return the touches that are void after this tick, and (flag, seat) of each strike."""
+        """Return the touches that are void after this tick, and each strike's flag and seat."""
         void: list[tuple[int, int]] = []
         touching: dict[int, list[int]] = {}
         for seat, robot in enumerate(observation):

@@ -86,7 +86,7 @@ class Senses:
         self._boards: list[bytes] = []
 
     def see(self, frame: Frame) -> list[Numbers]:
-        """Return what each seat sees of a frame of READY or later: (size,) numbers, by seat."""
+        """Return by seat the `size` numbers that it sees of a frame in phase READY or later."""
         if frame.markers != self._packed:
             self._packed, self._boards = frame.markers, self._read_board(frame.markers)
         poses = frame.poses
@@ -132,9 +132,10 @@ class Senses:
 
 
 def partners(markers: Sequence[MarkerInfo]) -> tuple[int, ...] | None:
-    """Return for each marker the one in its place after a turn of the field by 180 degrees.
+    """Return each marker's partner: it is in the marker's place if the field turns by 180 degrees.
 
-    None if a marker has no partner of its kind and points: then the field is not symmetric.
+    Partners have the same kind and the same points. None if a marker has no partner: then the field
+    is not symmetric.
     """
     places = {_place(m, 1): index for index, m in enumerate(markers)}
     found = [places.get(_place(m, -1)) for m in markers]

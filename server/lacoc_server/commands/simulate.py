@@ -216,7 +216,7 @@ def _text(path: Path | None) -> str | None:
 def _matches(
     players: Sequence[str], seats: int, both_sides: bool, rounds: int | None, repeat: int
 ) -> Iterator[tuple[tuple[str, ...], int]]:
-    """Yield the players of each match by seat, and by how many ticks its bots start late."""
+    """Yield for each match its players by seat, and how many ticks late its bots start."""
     met: Counter[tuple[int, ...]] = Counter()
     for _, pair in itertools.product(
         range(repeat), _pairs(len(players), seats, both_sides, rounds)

@@ -130,7 +130,7 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
 def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> list[AnyFact]:
     """Return the facts with which a team leaves; none if it has left already.
 
-    Arguments and errors are those of `take_out`.
+    `team`, `reason`, `disqualified` and the error are as in `take_out`.
     """
     teams = {one.name: one for one in contest.teams}
     if team not in teams:
@@ -199,7 +199,7 @@ def sheet(file: Path) -> ContestSheet:
 
 
 def publish_to(file: Path, folder: Path) -> None:
-    """Write a contest as a folder; arguments and errors are those of `publish.publish`."""
+    """Write a contest as a folder, as `publish.publish` does, with the same errors."""
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
         publish.publish(where, store.facts(), folder)

@@ -38,7 +38,7 @@ class Archive:
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: RecordWriter | None) -> None:
-        """Finish a match's record: write its end now; close and pack it on the other thread."""
+        """Finish a match's record: write its end now; close and pack it on another thread."""
         if writer is None:
             return
         writer.end()

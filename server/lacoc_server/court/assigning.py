@@ -113,7 +113,7 @@ def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str])
 
 
 def _weighed(seat: AssignedSeat, admission: Admission) -> AssignedSeat | Refusal:
-    """Weigh the files of a team in; return the seat with its robot file filled in."""
+    """Weigh in the files of a team; return its seat with the robot file filled in."""
     robot, postures, locomotion = seat.files
     join = Join(
         protocol=PROTOCOL,

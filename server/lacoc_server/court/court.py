@@ -228,7 +228,10 @@ class Court:
         self._admit([join.seat for join in joins])
 
     def _admit(self, staying: Sequence[int]) -> None:
-        """Open the seats to the teams of an assigned match; sessions of all others end."""
+        """Open the seats to the teams of an assigned match.
+
+        Sessions of the seats in `staying` go on; all other sessions end.
+        """
         assigned = self._journal.match.assigned
         if assigned is not None:
             self._network.admit(assigned, staying)

@@ -60,7 +60,7 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """Digest in the newest recorded frame; without a frame, that of `world`."""
+        """Digest in the newest recorded frame; without a frame, the digest of `world`."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 
@@ -78,7 +78,7 @@ class RecordedPhysics:
         return self._record.snapshot or b""
 
     def poses(self) -> bytes:
-        """Return the poses in the newest recorded frame; if it has none, those of `world`."""
+        """Return the poses in the newest recorded frame; if it has none, the poses of `world`."""
         frame = self._record.frame
         return frame.poses if frame and frame.poses else self.world.poses()
 
@@ -90,7 +90,7 @@ class RecordedPhysics:
     def take(self) -> Step | None:
         """Return this beat's requests to physics and its frame; None if it has neither.
 
-        The requests are then forgotten, so that those of the next beat can be noted.
+        Then forget the requests, so that the requests of the next beat can be noted.
         """
         record, frame = self._record, self._record.frame
         places, angles, asked = tuple(self._places), self._angles, self._asked

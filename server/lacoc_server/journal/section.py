@@ -257,7 +257,7 @@ def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> 
 
 
 def _joined(known: Difference | None, beat: int, what: str) -> Difference:
-    """Return the first known difference, with `what` added if it is in the same beat."""
+    """Return the first difference: a new one, or `known`, which gets `what` too if of this beat."""
     if known is None:
         return Difference(beat, (what,))
     return known if known.beat != beat else Difference(beat, (*known.what, what))

@@ -90,4 +90,4 @@ class MakePhysics(Protocol):
     """Builds the physics of a match: the empty field, or the robots once all seats are ready."""
 
     def __call__(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Build the physics of the robots; without entries, that of the empty field."""
+        """Build the physics of the robots; without entries, the physics of the empty field."""

@@ -71,15 +71,18 @@ def player(
     team: str | None = None,
     late_ticks: int = 0,
 ) -> Player:
-    """Make a player: `seated` with its bot; arguments and errors are those of `seated`.
+    """Make the player of a seat: a bot, and the files that it steers.
 
     Args:
         arena: the arena.
         seat: index of the seat.
-        bot: name of the bot.
+        bot: name of the bot, as in `seated`.
         robot: an installed robot, or a robot file.
-        team: name of the team.
+        team: name of the team, as in `seated`.
         late_ticks: see `Player`.
+
+    Raises:
+        UserError: as `seated`, or if the bot's file has a mistake.
     """
     one = seated(arena, seat, bot, robot, team)
     return Player(one.join, brains.find(arena, one.bot), late_ticks)

@@ -45,7 +45,7 @@ def folder_hash(root: Path) -> str:
 
 
 def _others() -> list[str]:
-    """Return the names of installed packages of others that have games, robots or bots."""
+    """Return the names of installed packages that bring more games, robots or bots."""
     entries = [entry for group in _GROUPS for entry in plugins.installed(group).values()]
     return sorted({entry.module.partition(".")[0] for entry in entries} - {*_PACKAGES})
 

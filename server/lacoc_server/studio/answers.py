@@ -143,7 +143,7 @@ def read_files(files: GaitFiles) -> Files:
     level B; without these, the sample's sequences do.
 
     Raises:
-        FileRefused: with the mistakes of the robot file, or else with those of both gait files.
+        FileRefused: with the mistakes of the robot file; if it has none, of both gait files.
         UserError: if a file's name is wrong, if a robot file comes without a gait file, or if the
             postures can't be joined into the request's sequences.
     """

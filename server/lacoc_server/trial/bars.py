@@ -11,7 +11,7 @@ _DOWN, _UP, _MARK = "█", "·", "│"
 def foot_bars(
     legs: Sequence[str], down: Bools, starts: Sequence[int], first: int, columns: int
 ) -> list[str]:
-    """Draw a bar for each leg; a column shows if the foot is down in at least half of its ticks.
+    """Draw a bar for each leg; a column is full if the foot is down in half its ticks or more.
 
     Args:
         legs: labels of the legs.

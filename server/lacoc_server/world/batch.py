@@ -145,7 +145,7 @@ class Row:
         return self._batch.step([self.index], [angles])[0]
 
     def repeat(self, angles: Sequence[Posture]) -> Fault | None:
-        """Let the single world do the next tick, to learn what its fault is."""
+        """Let the single world do the row's next tick, to learn which fault it has."""
         self._single.load(self.save())
         return self._single.step(angles)
 

@@ -68,7 +68,7 @@ class Camera:
         self._option = mujoco.MjvOption()
 
     def take(self, saved: bytes, board: bytes) -> npt.NDArray[np.uint8]:
-        """Return a picture, (HEIGHT, WIDTH, 3) of red, green and blue from 0 to 255.
+        """Return a picture: an array (HEIGHT, WIDTH, 3) of red, green and blue from 0 to 255.
 
         Args:
             saved: the saved state of the model's world (`World.save`).

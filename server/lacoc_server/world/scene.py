@@ -91,7 +91,7 @@ def _seat(name: str, seats: Sequence[str]) -> int:
 
 
 def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
-    """Return the seat's index if a geom has the colour of its robot's body; otherwise -1."""
+    """Return the seat of a geom's robot if the geom has the colour of the robot's body; else -1."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     plain = model.geom_rgba[model.body_geomadr[root]]

@@ -116,7 +116,7 @@ class _Outline:
         self._near = _map(probes, max(_reach_m(model, geom, root) for geom in geoms))
 
     def probes_near(self, gap_m: float) -> Sequence[_Probe]:
-        """Return all probes that the robot may touch from where its body is now, perhaps more."""
+        """Return the probes near the robot's body: all that it may touch, and perhaps others."""
         if gap_m > 0:  # the map holds for real touches only
             return self._probes
         x_m, y_m = self._root_m.tolist()
@@ -228,7 +228,7 @@ def _limbs(model: Any, geoms: Sequence[int]) -> list[_Limb]:
 
 
 def _limb_of(model: Any, geom: int) -> int:
-    """Return the id of the first body of a geom's leg; for other geoms, the robot's main body."""
+    """Return the id of the first body of the leg that has a geom; else that of the main body."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     while body != root and model.body_parentid[body] != root:

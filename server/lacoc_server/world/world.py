@@ -192,7 +192,7 @@ class World:
 
     @staticmethod
     def follows(saved: bytes, digest: bytes) -> bool:
-        """Return whether a saved state's digest follows from `digest`, that of the tick before."""
+        """Return whether a save's digest follows from its state and from the `digest` before it."""
         return chained(digest, saved[8:]) == saved[:8]
 
     # Private

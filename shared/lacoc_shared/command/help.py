@@ -108,7 +108,7 @@ def _context(base: Any) -> Any:
 
 
 def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]) -> Any:
-    """Find the command of a group that the first word names, or say that there is none."""
+    """Find the command that the first word names in a group, or say that there is none."""
     name = args[0]
     if not name.startswith("-") and group.get_command(ctx, name) is None:
         near = get_close_matches(name, group.list_commands(ctx))

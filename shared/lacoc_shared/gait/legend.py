@@ -17,8 +17,8 @@ _LABELS = (_IDS_LABEL, "position")
 def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
     """Split the rows of Loco-data into postures, legend, and the rows below the legend.
 
-    The legend begins at the first row that can belong to one, below all rows with a key. Below
-    that row there is no posture: only legend rows, remarks and empty rows of a sheet.
+    The legend begins below all rows with a key, at the first row that can belong to a legend. From
+    there on no row is a posture: there are only legend rows, remarks and empty rows of a sheet.
     """
     keys = [index for index, row in enumerate(rows) if KEY.fullmatch(row.cells[0])]
     table_end = keys[-1] + 1 if keys else 0

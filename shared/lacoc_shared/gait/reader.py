@@ -251,8 +251,9 @@ class _Reader:
     def _joints(self, rows: Sequence[Row], first: int) -> int:
         """Return how many angles a row should have.
 
-        It is the given robot's number of joints if a row has so many angles. Else it is the most
-        common number in the file that fits 4, 6 or 8 legs; for a given robot, note a mistake then.
+        If a robot is given and a row has an angle for each of its joints, return their number. Else
+        return the most common number in the file that fits 4, 6 or 8 legs; a given robot then does
+        not fit the file, which is noted as a mistake.
         """
         counts = Counter(len(row.cells) - first for row in rows)
         known = {legs * JOINTS_PER_LEG for legs in LEG_LABELS}

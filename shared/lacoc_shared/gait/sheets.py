@@ -22,12 +22,12 @@ _MIRROR_COLOUR = "#595959"  # grey: not for editing
 
 
 def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int) -> None:
-    """Add two sheets to a workbook: one to edit, and one that shows its cells by formulas.
+    """Add two sheets to a workbook: one to edit, and one whose formulas show its cells.
 
     Args:
         book: the workbook.
         cells: the cells of workshop Fig. 4-1: a header row, the postures, three legend rows.
-        legs: number of legs; each level has as many columns.
+        legs: number of legs; Root, 1st and 2nd joints have a column for each leg.
     """
     book.formats[0].set_font_name("Arial")  # every system has it, or a font of the same widths
     book.formats[0].set_font_size(10)

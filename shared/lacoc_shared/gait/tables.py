@@ -116,5 +116,5 @@ def to_postures(table: LocomotionTable) -> PostureTable:
 
 
 def leg_and_level(joint: int, legs: int) -> tuple[int, int]:
-    """Split a joint id into its leg and its level (rules 1: id = leg + legs * level)."""
+    """Split a joint id, leg + legs * level, into leg and level (Root 0, 1st 1, 2nd 2)."""
     return joint % legs, joint // legs

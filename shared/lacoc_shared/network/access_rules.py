@@ -86,7 +86,7 @@ def studio_access_control() -> dict[str, Any]:
 
 
 def desk_access_control() -> dict[str, Any]:
-    """Make Zenoh's access control for an office's desk: it can be asked, and nothing else."""
+    """Make Zenoh's access control for an office's desk: anybody may ask it, and do nothing else."""
     rules = {"desk-to-all": _to_all(), "ask": _rule("ingress", [DESK], ["query"])}
     return _for_anyone(rules)
 

@@ -52,12 +52,12 @@ def host(one: str) -> str:
 
 
 def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
-    """Return those of `these` that collide with one of `others`: no machine can listen on both."""
+    """Return each of `these` that collides with one of `others`: no machine can listen on both."""
     return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
 
 
 def free_beside(one: str, taken: Sequence[str]) -> str:
-    """Return `one` with another port: the first, from 7447 on, that no taken address has."""
+    """Return `one` with the first port, from 7447 on, that no address in `taken` has."""
     ports = {_split(other)[1] for other in taken}
     free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
     return f"{one.rpartition(':')[0]}:{free}"

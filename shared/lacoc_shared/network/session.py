@@ -338,7 +338,7 @@ def open_studio(listen: Sequence[str]) -> Session:
 
 
 def open_desk(listen: Sequence[str]) -> Session:
-    """Open the session of an office's desk; argument and errors are those of `open_studio`."""
+    """Open the session of an office's desk; argument and errors as in `open_studio`."""
     return _listening(listen, network_config.desk_config)
 
 

@@ -94,7 +94,7 @@ class Record:
         return _newest(beat, self.scenes)
 
     def until(self, beat: int) -> "Record":
-        """Return the same record with its messages up to a beat, and none after it."""
+        """Return the record with its messages up to a beat, without any later message."""
         kept = Record(
             headers=[header for header in self.headers if header.first_beat <= beat],
             inputs={number: items for number, items in self.inputs.items() if number <= beat},

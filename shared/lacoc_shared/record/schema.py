@@ -16,7 +16,7 @@ class Origin(msgspec.Struct, frozen=True, kw_only=True):
     match_id: str
     """Id of that match; it may be a fork too."""
     beat: int
-    """First beat of the fork's own; all beats before it are those of the other match."""
+    """First beat that the fork plays itself; it has all earlier beats from the other match."""
     record_hash: str
     """Hash of that match's record (`hashing.record_hash`), hexadecimal."""
 

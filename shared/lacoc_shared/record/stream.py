@@ -208,7 +208,7 @@ def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
 
 
 def _unpacked_bytes(chunk: Chunk) -> int:
-    """Return a chunk's unpacked size: the larger one of what its header and that of zstd say."""
+    """Return a chunk's unpacked size: from its own header or from zstd's, whichever is larger."""
     size = len(chunk.data)
     if chunk.compression == "zstd":
         size = max(chunk.uncompressed_size, zstandard.frame_content_size(chunk.data))

@@ -83,7 +83,7 @@ class Book:
         return _look(name) in map(_look, names)
 
     def note_refused(self, team: str, mistakes: tuple[Mistake, ...]) -> None:
-        """Note what is wrong with the files that a team handed in last; (): nothing is."""
+        """Note what is wrong with the files that a team handed in last; () if nothing is."""
         self.refused.pop(team, None)
         if mistakes:
             self.refused[team] = mistakes
@@ -97,7 +97,7 @@ def milliseconds(when: datetime | None) -> int:
 
 
 def _look(name: str) -> str:
-    """Return a form of a name that is equal for names that look alike.
+    """Return a form of a name; names that look alike have the same form.
 
     Capitals become small letters, wide letters narrow ones, and several spaces one.
     """

@@ -130,7 +130,7 @@ class Desk:
             return entering.apply(self._book, team, entry)
 
     def _weighed(self, team: str, files: Files) -> Entry:
-        """Weigh files in; note for the organiser what is wrong with them."""
+        """Weigh in files; note for the organiser what is wrong with them."""
         contest = self._book.where.contest
         entry = entering.entry_of(files, contest.robot)
         try:

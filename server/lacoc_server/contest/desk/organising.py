@@ -125,7 +125,7 @@ def tokens(book: Book) -> TeamTokenList:
 
 
 def _decided(book: Book, facts: Iterable[AnyFact], really: bool) -> Effect:
-    """Say what facts would change; append them if `really`."""
+    """Say what the given facts would change; append the facts if `really`."""
     more = [*facts]
     lines = deciding.effect(book.facts, more)
     if really:

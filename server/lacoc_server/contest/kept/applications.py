@@ -64,7 +64,7 @@ class Applications:
         return dict(sorted(self._known.items(), key=lambda one: one[1].at_ms))
 
     def put(self, team: str, entry: Entry) -> None:
-        """Keep the files of a team in place of those that it handed in before.
+        """Keep the files of a team in place of its earlier ones.
 
         Raises:
             UserError: if they can't be written.

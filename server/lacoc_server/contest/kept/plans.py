@@ -63,7 +63,7 @@ def game(plan: Planned) -> Arena:
     """Load the arena of a stage.
 
     Raises:
-        UserError: if it is not installed, its settings are wrong, or it is not for two.
+        UserError: if it is not installed, its settings are wrong, or it has not two seats.
     """
     arena = arenas.load(plan.arena, plan.arena_settings)
     if len(arena.seats) != 2:

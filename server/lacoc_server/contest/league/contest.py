@@ -109,7 +109,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
         return {view.name: view for view in self.stages}[name]
 
     def encoded(self) -> bytes:
-        """Return all of it as JSON; the same facts give the same bytes."""
+        """Return the contest as JSON; the same facts give the same bytes."""
         return msgspec.json.encode(self, order="deterministic")
 
 

@@ -77,7 +77,7 @@ def drawn_stages(
     formats: Mapping[str, Format],
     unused: dict[str, Phrase],
 ) -> tuple[list[tuple[Planned, Stage]], list[Planned]]:
-    """Return the stages that are drawn, in the order of the draws, and the plans of the others."""
+    """Return the drawn stages, in the order of the draws, and the plans of the other stages."""
     plans: dict[str, Planned] = {}
     stages: dict[str, tuple[Planned, Stage]] = {}
     for fact in facts:

@@ -20,7 +20,7 @@ def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phras
 
 
 def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
-    """Say what a match is in its contest: "Semi-final 1"; arguments are those of `fixture`."""
+    """Say what a match is in its contest: "Semi-final 1"; arguments as in `fixture`."""
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
     knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]

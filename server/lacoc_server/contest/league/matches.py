@@ -105,7 +105,7 @@ def resolve(
     """Work out all matches of a stage.
 
     Args:
-        pairings: every pairing comes after those that its sources name.
+        pairings: each pairing comes after the pairings that its sources name.
         facts: the facts of each pairing in their order.
         gone: teams that have withdrawn or were disqualified.
         rules: what decides the matches.

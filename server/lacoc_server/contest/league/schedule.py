@@ -109,7 +109,7 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | Rou
     Before the first draw, entries are closed.
 
     The next round of a stage is drawn when all matches of its earlier rounds are decided. A stage
-    that follows another one is drawn when that one is over, with those who are left in the contest.
+    that follows another stage is drawn when the other one is over, with the teams that are left.
     Stages that follow none are drawn one after another.
     """
     for view in contest.stages:

@@ -89,19 +89,19 @@ class _Tally:
             )
 
     def opponents(self, team: str) -> list[int]:
-        """Return the points of each opponent; a match not played counts the team's own points."""
+        """Return the points of each opponent; for a match that was not played, the team's own."""
         return [
             self.points[other] if played and other else self.points[team]
             for other, _, played in self.matches[team]
         ]
 
     def sonneborn(self, team: str) -> int:
-        """Add up the points of beaten opponents twice, and those of drawn ones once."""
+        """Add up the points of opponents: twice if the team beat them, once if it drew."""
         pairs = zip(self.opponents(team), self.matches[team], strict=True)
         return sum(strength * points for strength, (_, points, _) in pairs)
 
     def direct(self, team: str, tied: Collection[str]) -> int:
-        """Return the points from matches among tied teams; 0 unless they all have met."""
+        """Return a team's points from matches against tied teams; 0 unless all these have met."""
         for one in tied:
             if not {other for other, _, _ in self.matches[one]} >= {*tied} - {one}:
                 return 0

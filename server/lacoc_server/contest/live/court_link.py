@@ -264,12 +264,12 @@ class _Fetched(Generic[T]):
         self.hash = b""
 
     def ask(self) -> None:
-        """Ask for it, unless an answer is under way."""
+        """Ask the court, unless an answer is under way."""
         if self._question is None:
             self._question = self._session.question(self._key, timeout_s=_FETCH_S)
 
     def forget(self) -> None:
-        """Forget the answer, and the one that is under way."""
+        """Forget the newest answer, and any that is under way."""
         self._question, self.value, self.hash = None, None, b""
 
     def take(self) -> bool:

@@ -104,12 +104,12 @@ def told_address(court: Court, opened: str) -> str:
 
 
 def _at_same_place(words: list[str]) -> Callable[[dict[str, Any]], list[str]]:
-    """Return a function that gives the words of a later start of a court, at the same address."""
+    """Return a function that gives the words of a court's later starts, at its first address."""
     return lambda opened: [*words, "--listen", opened["locators"][0]]
 
 
 def _same(words: list[str]) -> Callable[[object], list[str]]:
-    """Return a function that gives the words of a later start, whatever the first one said."""
+    """Return a function that gives the same words for every later start."""
     return lambda _: words
 
 

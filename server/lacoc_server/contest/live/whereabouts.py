@@ -166,7 +166,7 @@ def _waits(
 
 
 def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
-    """Say that a team plays no more, with its place in the newest of its stages that are over."""
+    """Say that a team plays no more, with its place in the newest stage that is over for it."""
     place: Phrase | None = None
     rank = 0
     for view in contest.stages:

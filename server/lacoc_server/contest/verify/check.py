@@ -44,8 +44,8 @@ def check(
     Args:
         folder: the published folder.
         progress: told how many games are checked, and how many there are.
-        earlier: the same contest as it was published before, or the facts of then: those must still
-            be there, unchanged. None: there is none.
+        earlier: folder of an earlier publication of the contest, or a file with its facts. These
+            facts must still be there, unchanged. None: nothing is compared.
         sampled: number of games whose records are proven, chosen by chance; None: all. The results
             of all games are compared with their records.
         seed: chooses the games.

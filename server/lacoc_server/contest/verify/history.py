@@ -33,7 +33,7 @@ _HARMLESS = ("league.result-replaced", "league.result-unneeded", "league.other-t
 def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
     """Yield what in the facts can't come from an honest contest.
 
-    Times are not compared: a clock may have been corrected. The order is that of the numbers.
+    Times are not compared, because a clock may have been corrected: numbers give the order.
 
     Args:
         facts: all facts in their order.
@@ -88,7 +88,7 @@ def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ..
     """Return the hashes of the files with which a team may have played a game.
 
     These are the newest files before the result of the game. If entries were closed when these were
-    handed in, the files before them count too: a game goes on with those with which it began.
+    handed in, the files before them count too: a game goes on with the files with which it began.
     """
     hashes: list[str] = []
     closed = False

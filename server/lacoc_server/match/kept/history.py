@@ -296,7 +296,7 @@ def _observation(packed: memoryview, views: int, note: Note) -> Observation:
 
 
 def _strike(note: Note, number: int) -> Note:
-    """Return a step's note after a take-back: of its change, or of its event with this number."""
+    """Return a step's note with its change, or its event with this number, marked as taken back."""
     if note.changed is not None:
         return replace(note, changed=replace(note.changed, struck=True))
     event = note.events[note.numbers.index(number)]

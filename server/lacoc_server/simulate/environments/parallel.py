@@ -179,7 +179,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self._episode.write_record(Path(file))
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """Return a picture of the field, (height, width, 3); None without a render mode."""
+        """Return a picture, an array (height, width, 3); None without a render mode."""
         match = self._episode.match
         return self._drawn.draw(match.physics, match.game, self._episode.frame.markers)
 

@@ -197,7 +197,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         self.episode.write_record(Path(file))
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """Return a picture of the field, (height, width, 3); None without a render mode."""
+        """Return a picture, an array (height, width, 3); None without a render mode."""
         match = self.episode.match
         return self._drawn.draw(match.physics, match.game, self.episode.frame.markers)
 

@@ -99,12 +99,12 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         """Begin an episode in each row.
 
         Args:
-            seed: row i gets the seed `seed + i`; or a seed for each row.
-            options: as in `LacocEnv`, for all rows. With "reset_mask", (num_envs,) truth values,
-                only the rows with True begin an episode.
+            seed: a number: row i gets the seed `seed + i`. A list: a seed for each row.
+            options: as in `LacocEnv`, for all rows. With "reset_mask", an array (num_envs,) of
+                truth values, only the rows with True begin an episode.
 
         Returns:
-            What the learners see, (num_envs, size), and the openings.
+            What the learners see, as an array (num_envs, size); and the openings.
 
         Raises:
             UserError: if an option does not fit.
@@ -214,7 +214,7 @@ class _Half:
         ]
 
     def going(self, begun: npt.NDArray[np.bool_]) -> list[int]:
-        """Return the indices of its rows that did not begin an episode in this step."""
+        """Return the indices of this half's rows that did not begin an episode in this step."""
         return [i for i in range(self._first, self._first + len(self.rows)) if not begun[i]]
 
     def is_on(self, index: int) -> bool:

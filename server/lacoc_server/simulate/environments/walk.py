@@ -227,7 +227,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         self._from, self._seen = np.array(was.begun), np.array(was.seen, np.float32)
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """Return a picture of the robot, (height, width, 3); None without a render mode."""
+        """Return a picture, an array (height, width, 3); None without a render mode."""
         game = self._course.arena.game
         return self._drawn.draw(self._world, game, pack_states((0,) * len(game.markers)))
 
@@ -244,7 +244,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return True
 
     def _way(self, vector: Any) -> tuple[float, float]:
-        """Split a vector into its parts ahead and to the left, as the robot faced when it began."""
+        """Split a vector into its parts ahead and to the left, by the robot's first heading."""
         _, _, _, qw, qx, qy, qz = self._from[:7].tolist()
         x, y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
         length = math.hypot(x, y)

@@ -191,7 +191,7 @@ def key(source: Source, beat: int, bots: tuple[str, str], arena: str | None = No
 
     Args:
         source: the record.
-        beat: first beat of the forks' own.
+        beat: first beat that the forks play themselves.
         bots: who plays them; a bot file and the record of a ghost count by their content.
         arena: folder of the arena, if it is not installed; its files count.
     """
@@ -305,7 +305,7 @@ def _end(result: Result | None, source: Source, beat: int) -> Moment | None:
 
 
 def _content(bot: str) -> bytes:
-    """Return the bot file or the record of a ghost; empty: the bot is part of the software."""
+    """Return the content of a bot's file or a ghost's record; empty for a bot of the software."""
     is_ghost = bot.startswith(brains.GHOST)
     path = brains.ghost_file(bot)[0] if is_ghost else Path(bot).expanduser()
     return path.read_bytes() if (is_ghost or bot.endswith(".py")) and path.is_file() else b""

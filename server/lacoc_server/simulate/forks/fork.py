@@ -28,7 +28,7 @@ class Forked:
     phase: Phase
     """The phase in which the fork ended; play is over in FINISHED and later ones."""
     beats: int
-    """Beats of the fork's own."""
+    """Beats that the fork played itself."""
     decided_beat: int | None
     """Beat in which the change's decisions fell; None: it had none."""
     changes: tuple[Phrase, ...]
@@ -53,7 +53,7 @@ def fork(
 
     Args:
         source: the record.
-        beat: first beat of the fork's own, at most the one after the record's last beat.
+        beat: first beat that the fork plays itself, at most the one after the record's last.
         change: how the fork differs from the record; None: it does not.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.

@@ -158,8 +158,8 @@ class Line:
     def _free_beat(self) -> int:
         """Return the first beat of the fork without recorded inputs.
 
-        A halt refuses the keys of its beat. In a beat without recorded keys it refuses none, so the
-        robots go the same ways as in the record.
+        A halt refuses the keys of its beat. In this beat there are none, so the robots go the same
+        ways as in the record.
         """
         beats = range(self._first, self._first + _SEARCH_BEATS)
         return next((beat for beat in beats if beat not in self._recorded), self._first)

@@ -26,7 +26,7 @@ class Moment(msgspec.Struct, frozen=True, kw_only=True):
     """A moment of a match, and how its forks ended."""
 
     beat: int
-    """First beat of the forks' own."""
+    """First beat that the forks play themselves."""
     clock_s: float
     """Seconds played until then."""
     margins: tuple[float, ...]

@@ -87,7 +87,7 @@ def stem(source: Source, beat: int, match_id: str) -> Stem:
 
     Args:
         source: the record.
-        beat: first beat of the fork's own.
+        beat: first beat that the fork plays itself.
         match_id: id of the fork.
 
     Raises:
@@ -119,7 +119,7 @@ def _setup(source: Source, beat: int, match_id: str) -> Setup:
 
 
 def _messages(source: Source, beat: int, setup: Setup) -> list[Message]:
-    """Return all messages before a beat, with those that name the match changed to the fork's."""
+    """Return the messages before a beat, but no health; they name the fork, not the match."""
     found: list[Message] = []
     for topic, number, data in source.messages:
         # A result has the number of beats so far, which is one more than its beat's number.

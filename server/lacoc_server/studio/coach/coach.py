@@ -52,7 +52,7 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
         gait: the robot's gait.
         goal: what the key is for.
         key: digit of the key; None: for the goal to turn, the sample's key for this turn; for the
-            goal to go forward, that of `forward_key`.
+            goal to go forward, the key of `forward_key`.
 
     Raises:
         UserError: if the gait has no such key at level B.

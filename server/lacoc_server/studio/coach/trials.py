@@ -78,7 +78,7 @@ class Trials:
         return self._scores(self._walks(tables, SUBSTEPS, _QUICK_CYCLES))
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with larger physics steps; this is enough to find those that may be better.
+        """Score tables with larger physics steps; this is enough to find which may be better.
 
         Raises:
             Stopped: if the search was stopped.
@@ -87,7 +87,7 @@ class Trials:
         return self._scores(self.walks(tables, rough=True))
 
     def walks(self, tables: Sequence[Angles], *, rough: bool = False) -> list[Figures]:
-        """Return the figures of walks, as exactly as `exact` or as cheaply as `rough` scores them.
+        """Return the figures of walks in trials as in `exact`; with `rough` true, as in `rough`.
 
         Raises:
             Stopped: if the search was stopped.

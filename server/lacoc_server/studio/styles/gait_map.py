@@ -85,7 +85,7 @@ def fill(
 ) -> Iterator[None]:
     """Fill a map, one round after another, for ever; yield after each.
 
-    A rough trial finds the tables that may be better than those of the map. Only those are tried
+    A rough trial finds the tables that may be better than the map's own. Only these are tried
     exactly, and only an exact trial puts a table into the map.
     """
     rng = np.random.default_rng(seed)

@@ -146,7 +146,7 @@ class Styles:
         return np.array(tips, np.float64)
 
     def _reached(self, rows: Floats, wanted_m: Floats) -> Floats:
-        """Find angles (rows, joints) [rad] near those of a table that put the tips where wanted."""
+        """Find angles (rows, joints) [rad] that put the tips where wanted, starting from `rows`."""
         legs, step = len(self._robot.legs), 1e-5
         damping = (_DAMPING * self._long_m) ** 2 * np.eye(3)
         for _ in range(_ROUNDS):

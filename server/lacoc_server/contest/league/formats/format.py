@@ -38,7 +38,7 @@ class Format(Protocol):
     """True: what was played says who sits left. False: the pairings say it."""
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
-        """Return all pairings that are fixed; each comes after those that its sources name."""
+        """Return all pairings that are fixed; each comes after the pairings its sources name."""
 
     def rounds(self, stage: Stage) -> int:
         """Return the number of rounds that are drawn one by one; 0: the draw fixes them all."""

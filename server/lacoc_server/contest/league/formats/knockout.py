@@ -114,7 +114,7 @@ def _winners(
     final_place: int | None,
     loser_goes_on: bool = False,
 ) -> Iterator[Pairing]:
-    """Yield the rounds of the winners' bracket."""
+    """Yield the pairings of the winners' bracket, round by round."""
     sources, number = list(places), 1
     while len(sources) > 1:
         pairs = list(zip(sources[::2], sources[1::2], strict=True))
@@ -176,7 +176,7 @@ def _fall(number: int, last: int) -> int:
 
 
 def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
-    """Yield the losers' bracket of a winners' bracket with `last` rounds."""
+    """Yield the pairings of the losers' bracket; the winners' bracket has `last` rounds."""
     out = 2**last  # places that are still open
     sources: list[AnySource] = [
         LoserOf(stage.id("w", 1, order)) for order in range(1, 2 ** (last - 1) + 1)
@@ -201,7 +201,7 @@ def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
 
 
 def _turned(falling: Sequence[AnySource], number: int) -> list[AnySource]:
-    """Reorder those who fall: reversed after even rounds, with swapped halves after odd ones."""
+    """Reorder the teams that fall: reverse them after even rounds, swap halves after odd ones."""
     half = len(falling) // 2
     return [*reversed(falling)] if number % 2 == 0 else [*falling[half:], *falling[:half]]
 

@@ -146,11 +146,11 @@ def seated(one: Player, other: Player) -> tuple[str, str]:
 def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
     """Pair the players of a round; with an odd number one has a bye.
 
-    With too many players for the engine (`dutch`), or where the rules can't all be kept, the pairs
-    are those of a matching that breaks as few rules as possible.
+    The engine (`dutch`) pairs them, unless there are too many players for it or the rules can't
+    all be kept. Then the pairs break as few rules as possible.
 
     Returns:
-        The pairs in the order of their tables, a bye last.
+        The pairs, the one with the most points first; a bye last.
     """
     if not players:
         return []
