@@ -99,7 +99,7 @@ AHEAD = st.sampled_from([0.0, 2.0, AHEAD_S])
 
 
 def invented(scripts: Sequence[Script]) -> Event:
-    """Make a function of time that gives a court for each script."""
+    """Return a function that gives the courts at a time, one court for each script."""
 
     def event(time_s: float) -> Sequence[CourtNow]:
         there = (one.now(f"court-{index}", time_s) for index, one in enumerate(scripts))
