@@ -206,7 +206,7 @@ class Clock:
         self._used_s: dict[tuple[int, float], float] = {}
 
     def look(self, pid: int) -> None:
-        """Take in the processor time that was used so far."""
+        """Take in the processor time that a process and its descendants have used so far."""
         try:
             parent = psutil.Process(pid)
             for process in (parent, *parent.children(recursive=True)):

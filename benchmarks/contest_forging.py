@@ -322,7 +322,7 @@ def _fact_changed(copy: _Copy) -> None:
 
 
 def _fact_moved(copy: _Copy) -> None:
-    """Move a fact across another one that depends on it, or on which it depends."""
+    """Move a fact across another fact; one of the two depends on the other."""
     at = copy.index(Played, Drawn, RoundDrawn, Closed, Entered)
     fact = copy.facts.pop(at)
     to = copy.chance.randrange(len(copy.facts) + 1)

@@ -149,7 +149,7 @@ def _facts(file: Path) -> tuple[AnyFact, ...]:
 
 
 def _twice(facts: Sequence[AnyFact]) -> int:
-    """Count the games that have more than one result that is not void."""
+    """Count the games with several results that are not void."""
     results = Counter(
         (fact.pairing, fact.game)
         for fact in facts

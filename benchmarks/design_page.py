@@ -101,7 +101,7 @@ def _tries_s(page: Page, count: int) -> list[float]:
 
 
 def _beginner(page: Page) -> tuple[float, int, dict[str, Any]]:
-    """Make a first gait; return its time [s], the number of actions, and its figures."""
+    """Make a first gait; return how long that took [s], the number of actions, and its figures."""
     begin_s, actions, thinks_s = time.perf_counter(), 0, 0.0
     for selector in (".bar .name", "dialog >> text=New table"):
         page.click(selector)

@@ -181,7 +181,7 @@ class _Trial:
         return encode(self._chance.choice(kinds))
 
     def _for_another(self) -> bytes:
-        """Make a request that enters a team that is not ours, or replaces its files."""
+        """Make a request to enter a team that is not ours, or to replace its files."""
         team, token = self._chance.choice([*self._others.items()])
         looks = self._chance.choice((team, team.upper(), f" {team} ", team.lower()))
         kinds: tuple[Any, ...] = (

@@ -133,13 +133,13 @@ class Placed:
 
     @classmethod
     def at(cls, number: int, line: Line, begins_s: float) -> "Placed":
-        """Place a line on the clock."""
+        """Place the line of scores of a match on the clock that all matches share."""
         beats = tuple(one.beat for one in line.points)
         return cls(f"court-{number:02d}", line, begins_s, beats)
 
     @property
     def ends_s(self) -> float:
-        """When its last point is."""
+        """When the last point of the line is [s]."""
         return self.begins_s + self._beats[-1] * BEAT_S
 
     def now(self, now_s: float) -> CourtNow:
@@ -184,7 +184,7 @@ class Cut(NamedTuple):
 
 
 def direct(courts: list[Placed], ahead_s: float) -> list[Cut]:
-    """Let the director watch an event; return when each court came on air, in order of time."""
+    """Let the director watch the courts; return when each came on air, in order of time."""
     director = Director(ahead_s)
     cuts: list[Cut] = []
     end_s = max(one.ends_s for one in courts) + ahead_s + 10.0
@@ -211,7 +211,7 @@ def tenth(moments: list[Moment]) -> list[Moment]:
 
 
 def of_windows(moments: list[Moment], window_s: float) -> list[Moment]:
-    """Return the largest swing of a window, for the 10 % of all windows in which it is largest."""
+    """Find the largest swing of each window; return the largest of them, one for ten windows."""
     best: dict[int, Moment] = {}
     for one in sorted(moments):
         window = int(one.at_s / window_s)
@@ -235,7 +235,7 @@ class _Way(NamedTuple):
 
 
 def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
-    """Return how many moments a director can show who knows them all and keeps the rules.
+    """Return how many moments a director who knows them all can show while keeping the rules.
 
     Each cut is made as early as the rules allow: once the court on air has shown its moment, and
     the fourth cut before this one is a minute old. No other ways are tried, because an earlier cut
@@ -275,7 +275,7 @@ def _undominated(ways: list[_Way]) -> list[_Way]:
 
 
 def measure(courts: list[Placed], ahead_s: float) -> dict[str, Any]:
-    """Direct an event, and count what was on air and how often a rule was broken."""
+    """Direct the courts, and count what was on air and how often a rule was broken."""
     cuts = direct(courts, ahead_s)
     times = [one.at_s for one in cuts[1:]]
     by_name = {one.name: one for one in courts}
@@ -306,7 +306,7 @@ def largest(courts: list[Placed]) -> dict[str, list[Moment]]:
 
 
 def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
-    """Direct some events; return the shares that were on air, and how the rules were kept."""
+    """Direct some arrangements; return the shares that were on air and how rules were kept."""
     found = [measure(one, ahead_s) for one in events]
     wanted = [largest(one) for one in events]
     return {
@@ -323,7 +323,7 @@ def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
 
 
 def best(events: list[list[Placed]]) -> dict[str, float]:
-    """Return the shares that a director could have on air who knows the future."""
+    """Return the shares that a director who knows the future could have on air."""
     wanted = [largest(one) for one in events]
     return {
         kind: round(
@@ -355,7 +355,7 @@ def lines(kept: Path | None) -> list[Line]:
 
 
 def arranged(played: list[Line], number: int) -> list[Placed]:
-    """Put all matches on one clock: number 0 all at once, the others by chance."""
+    """Put all matches on one clock: with number 0 all begin at once, else at random times."""
     rng = random.Random(1000 + number)
     begins = [rng.uniform(0, _SPREAD_S) if number else 0.0 for _ in played]
     return [Placed.at(index, line, begins[index]) for index, line in enumerate(played)]

@@ -108,7 +108,7 @@ def _swings(table: Table, leg: int) -> bool:
 
 
 def _dragged(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """Never lift the foot of a leg: its 1st and 2nd joints stay near their start angles."""
+    """Never lift the foot of a leg: keep the leg's 1st and 2nd joints near their start angles."""
     legs = len(robot.legs)
     for posture in table:
         for joint in (leg + legs, leg + 2 * legs):

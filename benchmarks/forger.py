@@ -221,7 +221,7 @@ def _angle(copy: _Copy) -> None:
 
 
 def _commanded(record: Record) -> tuple[Any, ...]:
-    """Return the angles that a replay commands, up to the first beat in which it differs."""
+    """Return the angles that a replay commands, until it first differs from the record."""
     try:
         judge = Judge(record, None, {})
         steps = [step for section in judge.sections() for step in section.steps]
@@ -352,7 +352,7 @@ def _float32(value: float) -> float:
 
 
 def _speed(copy: _Copy) -> None:
-    """Change one of the velocities in a snapshot by 1 cm/s, with the digest that goes with it."""
+    """Change one of the velocities in a snapshot by 1 cm/s, and the digests to match."""
     at = copy.chance.randrange(len(copy.record.snapshots))
     beat, saved = copy.record.snapshots[at]
     frames = {b: i for i, (b, _) in enumerate(copy.record.frames)}

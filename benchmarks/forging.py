@@ -288,7 +288,7 @@ def forge(key_expression: str, session: int, seq: int, secret: bytes) -> bytes:
 
 
 def _alter(heard: bytes, seq: int, chance: random.Random) -> bytes:
-    """Change number and key of a command that was heard, and perhaps its seal; return it."""
+    """Return a command that was heard, with another number and key, and perhaps another seal."""
     command = decode(heard, Command)
     mac = command.mac if chance.random() < 0.5 else chance.randbytes(MAC_BYTES)
     return encode(msgspec.structs.replace(command, seq=seq, key=chance.randrange(10), mac=mac))

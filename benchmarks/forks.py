@@ -69,7 +69,7 @@ def main() -> int:
 
 
 def _record(folder: Path, number: int, seconds: float, chance: random.Random) -> Source:
-    """Play a match; every second one is then forked with a change."""
+    """Play a match; if its number is odd, fork it with a change."""
     name = ("othello", "flag-strike")[number // 2 % 2]
     arena = arenas.load(name, {"match": {"duration_s": seconds}})
     match_id = f"match-{number:02d}"

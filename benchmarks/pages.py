@@ -172,7 +172,7 @@ def _loading(browser: Browser) -> dict[str, int]:
 
 
 def processor_s() -> float:
-    """Return the processor time of all processes below this one, which are the browser's [s]."""
+    """Return the processor time of this process's descendants: the processes of the browser [s]."""
     return sum(_children_s(os.getpid()))
 
 

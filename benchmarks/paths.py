@@ -76,7 +76,7 @@ class BarePath:
         return time.perf_counter() - begin
 
     def is_where(self, world: World) -> bool:
-        """Return whether positions and velocities are exactly those of the match's world."""
+        """Return whether positions and velocities are exactly as in the match's world."""
         return bool(
             np.array_equal(self._data.qpos, world.data.qpos)
             and np.array_equal(self._data.qvel, world.data.qvel)

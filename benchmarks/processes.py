@@ -19,7 +19,7 @@ _END_S = 30
 
 @contextmanager
 def started(module: str, *words: str, quiet: bool = False) -> Iterator[subprocess.Popen[str]]:
-    """Start a process; ask it to end when it is no longer needed.
+    """Start a process, and ask it to end when the block has ended.
 
     Args:
         module: the module that `python -m` runs.

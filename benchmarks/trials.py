@@ -119,7 +119,7 @@ def _walks(figures: Figures) -> bool:
 
 
 def _agrees(walk: Walk) -> float:
-    """Return how often a foot's load and height agree on whether it is down, as a share."""
+    """Return how often load and height agree on whether a foot is down, as a share."""
     part = slice(walk.span.first, walk.span.end)
     down = walk.down[part]
     return float(((walk.tip_m[part] < _LOW_M) == down).mean()) if len(down) else 1.0

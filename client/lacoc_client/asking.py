@@ -58,7 +58,7 @@ class Patience:
             What `do` returns when it succeeds.
 
         Raises:
-            UserError: that of `do`, if waiting can't help or the time is over.
+            UserError: the error of `do`, if waiting can't help or the time is over.
             KeyboardInterrupt: if the command is asked to end.
         """
         end_s = time.monotonic() + (self.wait_s or 0.0)

@@ -333,7 +333,7 @@ class Controller:
         self._sent_s = time.monotonic()
 
     def _compare(self, seat: SeatFrame) -> None:
-        """Compare the pressed keys with those that the frame shows as applied or refused."""
+        """Compare the pressed keys with the keys that the frame shows as applied or refused."""
         newest = max(seat.applied_seq, seat.refused_seq)
         for seq in [seq for seq in self._pressed if seq <= newest]:
             press = self._pressed.pop(seq)

@@ -40,7 +40,7 @@ def gather(
 
     Args:
         robot: an installed robot, a folder or a robot file; None: the contest's robot.
-        gaits: gait files, at most one for each level; none: those beside the robot file.
+        gaits: gait files, at most one for each level; none: the gait files beside the robot file.
         notes: receives phrases about things in a workbook that are legal, but probably not meant.
             For a text file the court sends them.
 
@@ -84,14 +84,14 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
 def to_send(
     files: SeatFiles, sequences: Sequence[Sequence[int]] | None, notes: list[Phrase]
 ) -> tuple[SeatFiles, FileRefused | None]:
-    """Turn the files of a page into those that a court reads.
+    """Turn the files of a page into files that a court reads.
 
     Workbooks with mistakes are sent without their contents. The court then says whether it needs
     the files now: in a match that is on, a seat may be taken again without them.
 
     Args:
         files: the files of a join.
-        sequences: those of level B (`with_level_b`).
+        sequences: the sequences of level B; see `with_level_b`.
         notes: receives phrases about things in a workbook that are legal, but probably not meant.
 
     Returns:

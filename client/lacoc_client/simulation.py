@@ -105,8 +105,8 @@ class Simulation:
     async def lines(self) -> AsyncIterator[Line]:
         """Yield the lines that the command prints, until the command ends.
 
-        If it is killed, its worker processes keep the output open until their matches have ended.
-        So the end of the output is not awaited then.
+        If the command is killed, its worker processes keep the output open until their matches
+        have ended, so this does not wait for the end of the output.
         """
         reading = asyncio.create_task(self._out.readline())
         try:

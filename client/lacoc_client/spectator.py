@@ -216,7 +216,7 @@ class Spectator:
     def _take_events(self) -> None:
         """Take in new events; while a list of events is requested, leave them for later.
 
-        The list is older than they are, so it must be taken in first.
+        The list is older than the new events, so it must be taken in first.
         """
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
@@ -224,7 +224,7 @@ class Spectator:
                 self._keep(event)
 
     def _keep(self, event: Event) -> None:
-        """Keep a new event until it is taken; drop those of matches before the previous one."""
+        """Keep a new event until it is taken; drop events of matches before the previous match."""
         if self._new_events and self._new_events[-1].match != event.match:
             last = (event.match - 1, event.match)
             self._new_events = [one for one in self._new_events if one.match in last]

@@ -32,7 +32,7 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
 
     Raises:
         NoCourt: if the court does not answer.
-        NotNow: if the court does not know it yet.
+        NotNow: if the court does not know yet where the team plays.
         UserError: if no team has this token.
     """
     keys = Keys(court)
@@ -45,7 +45,7 @@ def office_court(session: Session, court: str, *, any_court: bool) -> str:
     Args:
         session: a connection to the court.
         court: the court's name.
-        any_court: whether nobody named it, so that another one at this address will do.
+        any_court: whether nobody named the court, so that any court at this address will do.
 
     Raises:
         NoCourt: if there is no court.

@@ -230,7 +230,7 @@ def test_all_four_end_the_match() -> None:
 
 
 def test_ends_after_all_events_of_the_tick() -> None:
-    """The end is checked after all events of a tick: a corner lost in that tick prevents it."""
+    """The end is checked after all events of a tick: a corner lost in it keeps the match going."""
     three = GAME.set(all_corners_for_left(), 3, NEUTRAL)
     after, events = tick(three, view(CORNERS[3]), view(CORNERS[0]))
     assert claims(events) == [(1, "corner0"), (0, "corner3")]

@@ -146,7 +146,7 @@ def test_starts() -> None:
 
 
 def test_start_cell_is_the_last_cell() -> None:
-    """The cell on which a robot starts is its last cell, so it can flip from there (rules 5)."""
+    """A robot's start cell is its last cell, so the robot can flip from there (rules 5)."""
     game = with_settings(opening="neutral")
     assert game.start().last == (INDEX["c0r2"], INDEX["c5r3"])
     after, events = tick(game.start(), "c1r2", game=game)

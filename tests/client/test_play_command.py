@@ -209,7 +209,7 @@ def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
 
 
 def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
-    """If no file is named, practice takes those of its folder and says so (workshop 4-1)."""
+    """If no file is named, practice takes the files of its folder and says so (workshop 4-1)."""
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
     (tmp_path / "Loco-data.txt").write_bytes(sample.postures.data)

@@ -59,7 +59,7 @@ def test_a_folder_s_gaits_are_the_ones_saved_last(
 
 
 def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
-    """If files have the same age, those named Loco-data.txt and LocoTra-data.txt are taken."""
+    """Of files with the same age, Loco-data.txt and LocoTra-data.txt are taken."""
     for name in ("Loco-data-6legs.txt", "Loco-data.txt", "LocoTra-data.txt", "LocoTra-data1.txt"):
         write(tmp_path / name, b"")
 

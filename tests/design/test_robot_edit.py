@@ -57,7 +57,7 @@ def test_one_number_changes_and_the_rest_stays(
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("text", [SAMPLES[0], OWN_LINK])
 def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: RobotEntry) -> None:
-    """The robot read from the changed text has the value in all legs, as the fact of that name."""
+    """A changed entry is changed in the robot too: the fact of the same name has the new value."""
     old = facts(read_robot(text, "robot.toml"))[entry]
     value = (old[0] if isinstance(old, tuple) else old) * (1.02 if entry == "root_link_m" else 0.98)
     if entry in ("armature", "hold_s"):  # they stand at their lowest
@@ -77,7 +77,7 @@ def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: R
     ],
 )
 def test_an_entry_that_was_left_out_is_added(text: str) -> None:
-    """A file without the entry gets it, in its table, and keeps all other lines."""
+    """An entry that the file lacks is added to the right table; other entries and remarks stay."""
     edited = edit_robot(text, "kp", 30.5)
     wanted = copy.deepcopy(tomllib.loads(text))
     wanted.setdefault("servo", {})["kp"] = 30.5

@@ -38,7 +38,7 @@ Event = Callable[[float], Sequence[CourtNow]]
 
 
 def direct(event: Event, end_s: float, ahead_s: float) -> list[Shown]:
-    """Let a director watch an event; return what was on air, with times of play."""
+    """Let a director watch the courts; return what was on air, with times of play."""
     director = Director(ahead_s)
     shown: list[Shown] = []
     for look in range(round((end_s + ahead_s) / LOOK_S)):
@@ -55,7 +55,7 @@ def at(event: Event, time_s: float, court: str) -> CourtNow | None:
 
 
 class Script(msgspec.Struct, frozen=True):
-    """A court of an invented event: matches follow each other, with 15 s for each result."""
+    """An invented court: matches follow each other, with 15 s for each result."""
 
     begins_s: float
     swings: tuple[tuple[float, int], ...]
@@ -99,7 +99,7 @@ AHEAD = st.sampled_from([0.0, 2.0, AHEAD_S])
 
 
 def invented(scripts: Sequence[Script]) -> Event:
-    """Make an event in which each script is played at a court of its own."""
+    """Return a function that gives the courts at a time, one court for each script."""
 
     def event(time_s: float) -> Sequence[CourtNow]:
         there = (one.now(f"court-{index}", time_s) for index, one in enumerate(scripts))
@@ -113,7 +113,7 @@ def invented(scripts: Sequence[Script]) -> Event:
 def test_the_rules_hold_for_any_courts(scripts: list[Script], ahead_s: float) -> None:
     """The director cuts at most four times a minute, and never from a close end or a new result.
 
-    The same event gives the same cuts.
+    The same courts give the same cuts.
     """
     event = invented(scripts)
     shown = direct(event, 160.0, ahead_s)
@@ -156,7 +156,7 @@ def test_a_court_that_vanishes_is_left(scripts: list[Script], ahead_s: float) ->
 
 
 def recorded() -> Event:
-    """Make an event of the recorded lines; each match begins 20 s after the one before it."""
+    """Give each recorded match a court of its own; each begins 20 s after the one before it."""
     found = msgspec.json.decode(LINES.read_bytes())
     beats = [[point[0] for point in one["points"]] for one in found]
 

@@ -86,7 +86,7 @@ def test_a_seed_gives_the_same_episode(env: LacocParallelEnv) -> None:
 
 
 def test_rewards_add_up_to_the_lead(env: LacocParallelEnv) -> None:
-    """A seat's rewards add up to the change of its lead; the other seat's are their negatives.
+    """A seat's rewards add up to the change of its lead; the other seat gets their negatives.
 
     After the end there is no agent any more.
     """
@@ -248,7 +248,7 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> No
 def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
     """A save of another environment is refused and changes nothing; a wrong option is named.
 
-    The others differ in settings, robots or actions, or have a bot.
+    The other environments differ in settings, robots or actions, or have a bot.
     """
     arena = env.court.arena.name
     others: list[LacocEnv | LacocParallelEnv] = [

@@ -79,7 +79,7 @@ def play(env: gymnasium.Env[Any, Any], actions: np.random.Generator) -> list[Any
 def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
     """An episode goes on bit for bit when another environment loads its save, and so does the bot.
 
-    Its record is proven.
+    The episode's record is proven.
     """
     one, other = (LacocEnv("othello", opponent, settings=SHORT) for _ in range(2))
     _, info = one.reset(seed=3)

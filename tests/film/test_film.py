@@ -71,7 +71,7 @@ def test_two_browsers_make_the_same_film(
 def test_a_film_is_as_long_as_the_replay(
     recorded: Path, alone: tuple[Path, list[np.ndarray]]
 ) -> None:
-    """The film is as long as the replay, from its first beat to its last, and as fast."""
+    """The film shows the replay from its first beat to its last, at the replay's speed."""
     out, pictures = alone
     part = film.part(recorded)
     last = part.record.last_beat

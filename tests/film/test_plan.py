@@ -39,7 +39,7 @@ def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> 
 def test_shots_are_in_order_and_within_the_match(
     ends: tuple[int, int], beats: list[int], opening: bool
 ) -> None:
-    """Shots lie in the match without touching and show each moment; the last one ends with it."""
+    """Shots lie in the match, do not touch, and show each moment; the last shot ends the match."""
     first, last = ends
     shots = plan.highlights([Moment(beat) for beat in beats], first, last, opening=opening)
 
@@ -72,7 +72,7 @@ def test_near_moments_are_one_shot() -> None:
 def test_a_swing_is_the_change_of_the_lead(
     scores: list[tuple[int, tuple[int, ...]]], found: list[tuple[int, int]]
 ) -> None:
-    """A moment begins at its first change, and has all changes within a second of it."""
+    """A moment begins at its first change, and has all changes of the second after that."""
     assert [(moment.beat, moment.swing) for moment in moments.swings(scores)] == found
 
 
@@ -105,7 +105,7 @@ def test_a_correction_during_a_halt_is_no_moment() -> None:
 
 @pytest.mark.parametrize("text", ["", "[]", '{"moments": [{"beat": "x"}]}', '{"moments": 3}', "\0"])
 def test_a_file_without_moments_is_refused(tmp_path: Path, text: str) -> None:
-    """The error names the file, and shows what it must be like or how large it may be."""
+    """The error names the file, and shows what a right file is like or how large it may be."""
     file = tmp_path / "m.json"
     file.write_text(text)
     with pytest.raises(UserError, match=r'm\.json.*"beat": 1234'):

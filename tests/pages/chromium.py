@@ -70,7 +70,7 @@ def build_pages() -> Path:
 
 
 def build_stand(folder: Path, web: Path = WEB) -> None:
-    """Build the scene's stand (client/web/src/scene/stand) into a folder.
+    """Build the test page of the scene (client/web/src/scene/stand) into a folder.
 
     Raises:
         RuntimeError: if it can't be built.

@@ -21,7 +21,7 @@ def match_file(arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "
 
     Returns:
         msgpack of {sheet, scene, frames}; each message in it is msgpack by itself. The scene is
-        the last one, which contains the robots, and the frames are those with this scene.
+        the last one, which contains the robots; all frames belong to this scene.
     """
     ground = arenas.load(arena, {"match": {"duration_s": seconds, "countdown_s": 1.0}})
     bots = ("planner", "nearest")

@@ -80,7 +80,7 @@ class Stand:
         self.page.wait_for_function(f"__lacoc.view.drawnFrames > {now + count}")
 
     def pixels(self) -> npt.NDArray[np.uint8]:
-        """Return the page's picture: red, green and blue of each pixel, (height, width, 3)."""
+        """Return the page's picture: an array (height, width, 3) of red, green and blue."""
         return pixels_of(self.page, self.page)
 
     def pixel(self, x_m: float, y_m: float, z_m: float = 0.003) -> npt.NDArray[np.uint8]:
@@ -91,7 +91,7 @@ class Stand:
 
 
 def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
-    """Return a page's picture (height, width, 3), decoded by a page that may load `data:`."""
+    """Return a page's picture, an array (height, width, 3); the page `reader` decodes it."""
     png = base64.b64encode(page.screenshot()).decode()
     width, height, text = reader.evaluate(_PIXELS, png)
     flat = np.frombuffer(base64.b64decode(text), np.uint8)

@@ -62,7 +62,7 @@ class Cup(NamedTuple):
 
 @pytest.fixture(scope="module")
 def cup(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cup]:
-    """Give a contest of three bots, served from below a path as by any web server."""
+    """Give a contest of three bots that a web server serves under a path."""
     place = tmp_path_factory.mktemp("contest")
     file = place / "contest.toml"
     file.write_text(TEXT, encoding="utf-8")

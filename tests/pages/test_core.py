@@ -23,7 +23,7 @@ CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))
 
 
 def test_the_pure_parts_of_the_pages() -> None:
-    """All cases in tests/pages/core pass in Node; the output names those that fail."""
+    """All cases in tests/pages/core pass in Node; the output names each case that fails."""
     assert CASES
     done = subprocess.run(
         [*NODE_OF_PAGES, "--test", "--test-isolation=none", *CASES],

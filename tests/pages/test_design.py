@@ -117,7 +117,7 @@ def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.fixture
 def sample(folder: Path) -> Path:
-    """Give the folder after the sample's postures were written into it again."""
+    """Write the sample's postures into the folder again, and give the folder."""
     write_sample(folder)
     return folder
 

@@ -55,9 +55,9 @@ def play_and_abort(url: str, key: str, court: str, stack: ExitStack) -> PageClie
 def test_pages_follow_the_director(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:
-    """Two pages show a court and the result of its match; when it is killed, they show the other.
+    """Two pages show a court and the result of its match, and go to another court by themselves.
 
-    They do so without a reload.
+    They do so when the shown court is killed.
     """
     console.expect("WebSocket")  # the gateway ends before the pages
     file = write_contest(tmp_path)

@@ -36,7 +36,7 @@ class Event(NamedTuple):
 
 @pytest.fixture(scope="module")
 def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
-    """Give an event of two courts with open entries; nobody has entered yet."""
+    """Give a contest at two courts whose entries are open; nobody has entered yet."""
     folder = tmp_path_factory.mktemp("event")
     file = folder / "contest.toml"
     run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
@@ -114,7 +114,7 @@ def test_an_event_from_its_file_to_its_first_game(
 
 
 def first_team(open_page: OpenPage, event: Event) -> Page:
-    """Enter with a wrong code, with mistakes, then rightly; the link is there after a reload."""
+    """Enter with a wrong code, with mistakes, then rightly; a reload keeps the team's link."""
     page = open_page(viewport=LAPTOP)
     fill(page, event, FIRST, "AAAAAA")
     page.locator("button[type=submit]").click()
@@ -149,7 +149,7 @@ def approve_and_draw(office: Page) -> None:
 
 
 def move(office: Page) -> None:
-    """Move a match with its button, without a mouse's drag."""
+    """Move a match with its button, without dragging it."""
     office.locator('.slot[data-state="open"] button').last.click()
     dialog = office.get_by_role("dialog", name="Move a match")
     assert violations(office) == []
@@ -197,7 +197,7 @@ def late_files(office: Page, team: Page, event: Event) -> None:
 
 
 def papers(office: Page) -> None:
-    """Look at each paper: it has its content, and its buttons are not printed."""
+    """Check that each paper has the right content, and that its buttons are not printed."""
     for paper, content in (
         ("schedule", "main-1"),
         ("results", "3:9"),

@@ -224,7 +224,7 @@ def test_tabs_of_one_browser_have_their_own_files(
 
 @pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
-    """A page that kept a seat of another court does not ask for it here; its user can join."""
+    """A page that kept a seat of another court does not ask for this seat; its user can join."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}

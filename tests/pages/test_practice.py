@@ -132,7 +132,7 @@ def test_a_reload_goes_on(practise: Practise) -> None:
 
 @pytest.mark.long
 def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> None:
-    """A workbook can be loaded during practice, and the pad then shows its keys (rules 2)."""
+    """During practice a workbook can be loaded, and the pad shows the workbook's keys (rules 2)."""
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
     table = read_gait(sample.postures.data, "Loco-data.txt")

@@ -63,7 +63,7 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 
 def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: OpenPage) -> None:
-    """A curve shows all odds, numbers show those of the beat; a highlight leads to its start."""
+    """A curve shows all odds, and numbers the odds of the beat; a highlight leads to its start."""
     page = open_page(viewport={"width": 1366, "height": 768})
     show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=2&q=low")
     show.sees(".transport .chances", "90 : 10 %")

@@ -44,7 +44,7 @@ def test_the_sample_walks_five_whole_cycles(try_gait: Tries, sample: dict[int, P
 def test_a_tripod_is_seen_and_six_feet_are_none(
     try_gait: Tries, sample: dict[int, Posture]
 ) -> None:
-    """In the sample's posture 1 the robot stands on three feet, and never in its posture 0."""
+    """In the sample's posture 1 the robot stands on three feet; in posture 0 it never does."""
     tripod, stand = try_gait(sample, "A1", 3.0), try_gait(sample, "A0", 3.0)
 
     assert tripod.tripod_s == pytest.approx(2.96, abs=0.1)

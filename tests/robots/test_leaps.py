@@ -10,7 +10,7 @@ from lacoc_robots.standing import FARTHEST_M
 
 @pytest.mark.slow
 def test_no_robot_that_is_let_in_leaps() -> None:
-    """Of 30 random robots and 5 variants of one, none that is accepted leaves its start place."""
+    """Among 30 random robots and 5 variants of one, no accepted robot leaves its start place."""
     found = [judge(at_random(seed)) for seed in range(30)]
     farthest = max(found, key=lambda one: one.leap_m or 0.0)
     found += [judge(changed(farthest.candidate, seed)) for seed in range(5)]
@@ -23,7 +23,7 @@ def test_no_robot_that_is_let_in_leaps() -> None:
 
 @pytest.mark.long(minutes=8)
 def test_no_search_finds_a_leap() -> None:
-    """Of 2,000 random robots and 2,000 variants, none that is accepted leaves its start place."""
+    """Among 2,000 random robots and 2,000 variants, no accepted robot leaves its start place."""
     found = list(search(2000, 2000, os.cpu_count() or 1, seed=0))
     leaps_m = [one.leap_m for one in found if one.leap_m is not None]
     assert len(leaps_m) > 500

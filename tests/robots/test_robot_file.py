@@ -186,7 +186,7 @@ def test_footprint(axis: str, limit: str, extent_m: float) -> None:
 
 
 def test_a_leg_of_its_own(hexapod: RobotSpec) -> None:
-    """A leg may have its own links and ranges; all other legs have those of [link]."""
+    """A leg may have its own links and ranges; all other legs take theirs from [link]."""
     own = "lengths_m = [0.02, 0.06, 0.07]\nmasses_kg = [0.1, 0.05, 0.05]\nrange_deg = [-90, 90]\n"
     text = HEXAPOD.replace('label = "R,C"\n', f'label = "R,C"\nradius_m = 0.014\n{own}')
     robot = read_robot(text, "mine.toml")

@@ -24,7 +24,7 @@ def test_a_burst_then_the_rate() -> None:
 def test_never_more_than_promised(
     rate_hz: float, burst: int, asked: list[tuple[float, int]]
 ) -> None:
-    """In total, never more messages pass than the burst plus the rate times the passed time."""
+    """In total, at most the burst plus the rate times the elapsed time passes."""
     allowance, now_s, passed = Allowance(rate_hz, burst), 50.0, 0
     for wait_s, wanted in asked:
         now_s += wait_s

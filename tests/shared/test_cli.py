@@ -79,7 +79,7 @@ COMMANDS = {
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Replace the installed commands by those of `COMMANDS`, and hide MuJoCo."""
+    """Replace the installed commands by the commands in `COMMANDS`, and hide MuJoCo."""
     import textwrap
 
     for name, source in COMMANDS.items():
@@ -120,7 +120,7 @@ Lacoc = Callable[..., tuple[int, str, str]]
 
 
 def test_help_lists_every_command_what_a_contestant_needs_first(lacoc: Lacoc) -> None:
-    """Help begins with the contestant's commands and ends with those of other packages."""
+    """Help begins with the contestant's commands and ends with the commands of other packages."""
     code, out, _ = lacoc("--help")
 
     assert code == 0

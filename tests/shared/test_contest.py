@@ -304,7 +304,7 @@ def test_join_lines_name_the_host(file: Path) -> None:
 def test_precedence(
     file: Path, line: list[str], environment: dict[str, str], expected: str
 ) -> None:
-    """An option's value is that of the command line, else environment, contest file or default."""
+    """An option comes from the command line, else environment, else contest file, else default."""
     file.write_text(GOOD.replace('"0.0.0.0"', '"127.0.0.1:9999"'))
     app = typer.Typer()
 

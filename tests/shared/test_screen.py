@@ -49,7 +49,7 @@ def test_json_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_table_of_mistakes_has_the_columns_it_needs() -> None:
-    """The table of mistakes has only those columns that a mistake in it fills."""
+    """The table of mistakes has only the columns that at least one mistake fills."""
     text = Mistake(file="a.txt", row=1, found="x", expected="a number")
     robot = Mistake(file="r.toml", field="body.mass_kg", found="-1", expected="0.005 to 1")
 

@@ -99,7 +99,7 @@ class Tournament:
         Args:
             players: robot and gait of each player, by nickname; whoever has no level B is left out.
             arena: the game.
-            rounds: how many others each player meets.
+            rounds: how many other players each player meets.
             seconds: length of a match [s].
 
         Raises:

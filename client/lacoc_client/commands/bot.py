@@ -168,7 +168,7 @@ def _play_match(
 
 
 def _ground(controller: Controller, arena: str | None) -> Arena:
-    """Return the arena that has the bot; by default the one that the court plays."""
+    """Return the arena that has the bot, by default the arena that the court plays."""
     sheet = controller.view.sheet
     return arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
 

@@ -38,8 +38,8 @@ def team(
 ) -> Access | None:
     """Find the way to a court for a team that has a token but names no seat.
 
-    Such a token is a team's, for a contest with an office, which says where the team plays. None:
-    there is an invitation, a seat is named or is the only one, or there is no token.
+    Teams have such tokens in a contest with an office; the office says where each team plays.
+    None: there is an invitation, a seat is named or is the only one, or there is no token.
 
     Raises:
         UserError: if the contest file is wrong.

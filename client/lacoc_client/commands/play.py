@@ -113,7 +113,7 @@ def play_command(
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
-    """Read the given files; without gait files, read and name those of the current folder.
+    """Read the given files; if no gait file is given, read and name the current folder's ones.
 
     Raises:
         FileRefused: with every mistake of every gait file.

@@ -164,7 +164,7 @@ def _annotation(field: FieldInfo) -> Any:
 
 
 def _is_argument(field: FieldInfo) -> bool:
-    """Return whether a field must be given: `gives_s` must, its default is for old records."""
+    """Return whether a field must be given; so must `gives_s`, whose default is for old records."""
     return field.required or field.name == "gives_s"
 
 

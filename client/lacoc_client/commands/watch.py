@@ -101,7 +101,7 @@ class _End:
 
 
 def _print_json(view: Spectator, hz: float, end: _End) -> None:
-    """Print a line for each event, for frames, and for each second in which the court is silent."""
+    """Print a line for each event, for `hz` frames a second, and for each second of silence."""
     frame_s = silent_s = 0.0
     while True:
         frame = view.wait_frame(0.1)

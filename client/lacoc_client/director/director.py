@@ -69,11 +69,11 @@ class Director:
 
         Args:
             now_s: the time, by a clock that never goes back [s].
-            courts: every court that can be shown; who is missing has vanished.
+            courts: every court that can be shown; a court that is missing has vanished.
 
         Returns:
-            What is on air: the court is shown as it was `ahead_s` ago, and in the first `ahead_s`
-            seconds as it was at the first look. None until such a look has a court.
+            What is on air. Courts are shown as they were `ahead_s` ago, and in the first `ahead_s`
+            seconds as they were at the first look. None: up to that time no court was there.
         """
         self._see(now_s, courts)
         shown_s = now_s - self._ahead_s

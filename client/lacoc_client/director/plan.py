@@ -37,7 +37,7 @@ def cuts_left(cuts: Sequence[float], at_s: float) -> int:
 
 
 def may_cut(cuts: Sequence[float], at_s: float) -> bool:
-    """Return whether another cut may be made now; arguments are those of `cuts_left`."""
+    """Return whether another cut may be made now; for the arguments see `cuts_left`."""
     return cuts_left(cuts, at_s) > 0 and not (cuts and at_s - cuts[-1] < LEAST_S)
 
 
@@ -95,7 +95,7 @@ def is_worth_it(
     ahead = sorted(one for one in best if prices.value(one))
 
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
-        """Return the most that moments from an index on can be worth, less the costs of cuts."""
+        """Return the largest worth, less the costs of cuts, of the moments from an index on."""
         if index == len(ahead):
             return 0.0
         one = ahead[index]

@@ -49,8 +49,8 @@ class Results:
         Args:
             now_s: the time, by a clock that never goes back [s].
             over: the matches that are over; a referee may still correct one.
-            going: court and match of each match that is not over. If it was over before, as after a
-                correction, its result is dropped.
+            going: court and match of each match that is not over. If such a match was over before,
+                as it may be when a referee corrects it, its result is dropped.
         """
         before = tuple(self._known.values())
         for court, match in going:

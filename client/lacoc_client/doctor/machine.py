@@ -123,7 +123,7 @@ def court_port(
     Args:
         host: address of this machine to listen at.
         port: the port.
-        court: the court that should listen there, by the contest file; None: any court, and a taken
+        court: name of the court that the contest file has there; None: any court, and a taken
             port is only a note.
         credentials: credentials to ask a court that has keys.
     """

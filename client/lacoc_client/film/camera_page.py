@@ -62,7 +62,7 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
 
     Args:
         address: the page's address.
-        look: its size is that of the window.
+        look: how the page looks; the window has its size.
 
     Raises:
         UserError: if there is no browser, it does not start, or the page can't show the record.

@@ -43,7 +43,7 @@ def by_score(record: Record) -> list[Moment]:
     """Return the moments in which the score changed while the match was played.
 
     What a referee changes while the match is halted is no moment. The swing of a moment is the
-    number of points by which the lead changed or, with one seat, by which its score changed.
+    number of points by which the lead changed, or the score if there is only one seat.
 
     Raises:
         UserError: if a frame of the record can't be read.

@@ -42,7 +42,7 @@ class Courts:
         """Number of pages that were refused because there were too many."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """Return a court's started feed and its referees; without a name, those of the first court.
+        """Return the started feed and the referees of a court; without a name, of the first court.
 
         Raises:
             UserError: if this gateway has no such court.

@@ -261,7 +261,7 @@ class CourtFeed:
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """If a new sheet has another version of the protocol, hide the court until the next one."""
+        """Hide the court until the next sheet if this one has another version of the protocol."""
         if self._other_version not in (None, before):
             self._connected = False
             self.log(render(self._wrong_version or ""), "link", connected=False)

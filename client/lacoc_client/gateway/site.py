@@ -39,7 +39,7 @@ class More(Protocol):
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """Routes besides those of the pages."""
+        """Routes besides the routes of the pages."""
 
     async def close(self) -> None:
         """Close what the pages need."""
@@ -84,7 +84,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
 
 
 def recording_routes(shelf: Recordings) -> list[BaseRoute]:
-    """Return the routes of recordings: their list, each of them, and its odds."""
+    """Return three routes: of the list of recordings, of a recording, and of its odds."""
 
     async def recordings(_: Request) -> Response:
         found = await asyncio.to_thread(shelf.listed)

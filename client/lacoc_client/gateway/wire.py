@@ -198,7 +198,7 @@ def read(data: bytes) -> Asked:
 
 
 def too_long(size: int, most: int) -> Unreadable:
-    """Make the error for a request of more bytes than are read."""
+    """Make the error for a request of `size` bytes where at most `most` are allowed."""
     return Unreadable(
         say("gateway.bad-message", error=say("gateway.too-long", bytes=size, most=most))
     )

@@ -35,7 +35,7 @@ def leg_postures(one: Evidence) -> Iterator[tuple[int, tuple[float, ...]]]:
 
 
 def leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
-    """Yield each joint that the student changed, as leg and level."""
+    """Yield each joint that the student changed: its leg, and its place in the leg (0, 1 or 2)."""
     if isinstance(one, Edited) and one.by in _OWN:
         for leg in one.legs:
             for level in leg.changed:

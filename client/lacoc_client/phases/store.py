@@ -96,7 +96,7 @@ class ClassStore:
         return self._do(work, writes=True)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> "Future[bool]":
-        """Count a vote; the result is that of `ClassFile.vote`."""
+        """Count a vote; for the result see `ClassFile.vote`."""
         return self._do(lambda file: file.vote(student, poll, choice, at_s), writes=True)
 
     def votes(self, poll: str) -> "Future[dict[str, int]]":
@@ -104,7 +104,7 @@ class ClassStore:
         return self._do(lambda file: file.votes(poll))
 
     def evidence(self, student: str | None = None, after: int = 0) -> "Future[list[Kept]]":
-        """Read evidence; arguments and result are those of `ClassFile.evidence`."""
+        """Read evidence; for arguments and result see `ClassFile.evidence`."""
         return self._do(lambda file: file.evidence(student, after))
 
     def keep(self, document: Document) -> None:
@@ -123,7 +123,7 @@ class ClassStore:
             self._waiting.add((document.student, document.name))
 
     def write(self, document: Document) -> "Future[None]":
-        """Keep a document as `keep` does, but write it at once; errors are those of `keep`."""
+        """Keep a document as `keep` does, with the same errors, but write it at once."""
         self.keep(document)  # so that it is written later if the disk is full now
         return self._do(lambda file: file.write_documents([document]), writes=True)
 

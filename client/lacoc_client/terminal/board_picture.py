@@ -48,7 +48,7 @@ class Field(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, sheet: Sheet) -> "Field":
-        """Return the floor of a scene, or the area around the markers if it has none."""
+        """Return the floor of a scene, or the area around the markers if the scene has no floor."""
         for geom in scene.geoms:
             if geom.type == "plane" and min(geom.size[:2]) > 0:
                 return cls(geom.pos[0], geom.pos[1], geom.size[0], geom.size[1])
@@ -88,7 +88,7 @@ class Grid:
         self._circles: dict[tuple[float, float, float], _Image] = {}
 
     def circle(self, x_m: float, y_m: float, radius_m: float) -> _Image:
-        """Return how much of each pixel a circle covers, 0 to 1: (height, width)."""
+        """Return how much of each pixel a circle covers, 0 to 1, as an array (height, width)."""
         inside = (self._x_m - x_m) ** 2 + (self._y_m[:, None] - y_m) ** 2 <= radius_m**2
         samples = inside.reshape(self.height, _SAMPLES, self.width, _SAMPLES)
         covered: _Image = samples.mean(axis=(1, 3))
@@ -109,7 +109,7 @@ class Grid:
         return int(line / 2), int(column)
 
     def base(self) -> _Image:
-        """Return an empty floor with its walls: (height, width, 3)."""
+        """Return an empty floor with its walls as a picture, an array (height, width, 3)."""
         image = np.empty((self.height, self.width, 3))
         image[:] = WALL
         image[1:-1, 1:-1] = FLOOR

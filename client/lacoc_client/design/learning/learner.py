@@ -165,7 +165,7 @@ class Learner:
         """Check a table against its robot's joints, as `lacoc gait check` does.
 
         Raises:
-            FileRefused: with every mistake of the robot file; those of the table are returned.
+            FileRefused: with every mistake of the robot file; mistakes of the table are returned.
             UserError: if a key of a locomotion table is missing.
         """
         spec = await asyncio.to_thread(_robot, asked.robot)

@@ -231,7 +231,7 @@ class _Edit:
         return cell.value == there
 
     def _dependent(self) -> set[str]:
-        """Return the titles of the sheets that have formulas which may depend on the table."""
+        """Return the titles of the sheets whose formulas may depend on the table."""
         formulas = {
             name: [cell.formula.text for cell in sheet.cells() if cell.formula]
             for name, sheet in self._sheets.items()

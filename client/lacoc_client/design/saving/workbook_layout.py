@@ -103,7 +103,7 @@ def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -
     Args:
         place_of: row of each posture; the new ones are added.
         table: the postures.
-        free: rows that can be used; those that are taken are removed.
+        free: rows that can be used; each row that is taken is removed.
     """
     for key in sorted(table.postures.keys() - place_of.keys()):
         row = min(free, key=lambda row: (_disorder(place_of, key, row), row))

@@ -170,7 +170,7 @@ class StudioDesk:
         await asker.ask("cancel", request, Done, _CANCEL_S)
 
     def _job(self, name: str) -> str:
-        """Make a name for a search of this page that no search of another page has."""
+        """Put the page's own mark before a search's name, so that no two pages use one name."""
         return f"{self._page}-{name}"
 
 

@@ -37,5 +37,5 @@ class Studios:
         return None if self.present else self._askers[0].why
 
     def free(self) -> Asker:
-        """Return the connection to the studio with the least to do; if there is no studio, any."""
+        """Return the connection to the least busy studio; without a studio, any connection."""
         return min(self._askers, key=lambda asker: (asker.studio is None, asker.open))
