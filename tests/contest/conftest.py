@@ -24,7 +24,7 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def copied(played: Path, tmp_path: Path) -> Path:
-    """Give the contest file of a copy of `played`, which the test may change."""
+    """Copy the folder `played`, so that a test may change it; give the copy's contest file."""
     shutil.copytree(played, tmp_path / "copy")
     return tmp_path / "copy" / "contest.toml"
 

@@ -26,7 +26,7 @@ def called(cup: Cup, court: str = "north") -> Called:
 
 
 def test_free_courts_that_are_there_get_games() -> None:
-    """Each court that was heard lately gets a game; no team gets two; no held game is called."""
+    """Courts that were heard lately get a game each; no team gets two; games held back wait."""
     cup = Cup()
     seen = {"north": Seen(NOW_MS), "gone": Seen(NOW_MS - LOST_MS), "south": Seen(NOW_MS)}
     given = calls(cup.contest, seen, NOW_MS, 0)
@@ -103,7 +103,7 @@ def test_a_court_that_is_gone_loses_a_game_that_has_not_begun(
 
 
 def test_a_game_that_is_not_needed_comes_back() -> None:
-    """When a team leaves, its game is taken back, unless it has begun."""
+    """When a team leaves, its game is taken back, unless the game has begun."""
     cup = Cup()
     call = called(cup)
     seen = {"north": Seen(NOW_MS, call.id)}

@@ -64,7 +64,7 @@ referee.token = "{other}"
 
 
 def sample(change: bytes = b"") -> Files:
-    """Give the files of a team; another `change` gives another hash."""
+    """Return the files of a team; another `change` gives them another hash."""
     postures, locomotion = sample_gait_files("hexapod")
     assert locomotion is not None
     locomotion = SentFile(locomotion.name, locomotion.data.rstrip() + b"\n" + change)
@@ -107,7 +107,7 @@ class Room:
         return {row.team: row.state for row in self.view.teams}
 
     def draw(self) -> None:
-        """Do what the office does when entries are closed."""
+        """Draw the stage that is due, as the office does when entries are closed."""
         self.store.decide(lambda facts: filter(None, [due(compute(facts, FORMATS), FORMATS)]))
 
     def enter(self, *teams: str) -> None:
@@ -278,14 +278,14 @@ def test_a_match_is_moved(room: Room) -> None:
 
 
 def test_an_unchanged_view_is_not_sent_again(room: Room) -> None:
-    """If a page already has the newest view, the answer to it has no view."""
+    """If a page already has the newest view, the desk answers it without a view."""
     answer = room.ask(Overview(secret=KEY, known=room.view.version))
     assert isinstance(answer, Overviewed)
     assert answer.view is None
 
 
 def test_tokens_are_for_the_organiser_alone(room: Room) -> None:
-    """The organiser gets the tokens of all teams of people; any other secret gets none."""
+    """The organiser's key gets the tokens of all teams of people; any other secret gets none."""
     room.enter("Ants")
     organiser.enter(room.file, "Bots", None, "planner", "")
     answer = room.ask(Tokens(secret=KEY))

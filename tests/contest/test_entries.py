@@ -88,7 +88,7 @@ def test_frozen_files_that_were_changed_are_found(tmp_path: Path) -> None:
 
 
 def test_every_mistake_of_every_file_is_told(tmp_path: Path) -> None:
-    """If several files of an entry are wrong, the refusal lists the mistakes of more than one."""
+    """If several files of an entry are wrong, the refusal has mistakes of more than one file."""
     own = tmp_path / "own"
     own.mkdir()
     (own / "robot.toml").write_text("legs = 3\n")

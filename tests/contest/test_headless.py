@@ -49,7 +49,7 @@ def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: P
 
 
 def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied: Path) -> None:
-    """Games with a whole record are not played again, not even in a new contest with its copy."""
+    """A game with a whole record is not played again, not even in a new contest that has it."""
     assert contest_played.play(copied) == 0
     again = contest_played.enter(tmp_path / "new")
     shutil.copytree(played / "records", again.parent / "records")
@@ -80,7 +80,7 @@ def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:
 def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: int) -> None:
     """A contest that was stopped or killed plays only the games without a record.
 
-    Its tables are those of an undisturbed contest.
+    Its tables are the same as in an undisturbed contest.
     """
     file = contest_played.enter(tmp_path / "stopped")
     records = file.parent / "records"
@@ -100,7 +100,7 @@ def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: i
 def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> None:
     """If worker processes are killed, their games are played again.
 
-    The tables are those of an undisturbed contest.
+    The tables are the same as in an undisturbed contest.
     """
     file = contest_played.enter(tmp_path / "killed")
     where = ContestFolder(file)
@@ -204,7 +204,7 @@ def test_void_games_are_played_again_and_at_last_drawn(
 def test_replays_that_people_ordered_are_no_void_games(
     copied: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A game that was replayed three times by order may then be void three times, as any other."""
+    """A game replayed three times by order may then be void three times, like any other game."""
     where = ContestFolder(copied)
     with FactStore(where.facts) as store:
         last = next(fact for fact in reversed(store.facts()) if isinstance(fact, Played))

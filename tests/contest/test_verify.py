@@ -112,7 +112,7 @@ def test_an_honest_contest_with_decisions_passes(copied: Path) -> None:
 
 @pytest.mark.slow
 def test_a_clock_that_was_corrected_changes_nothing(copied: Path) -> None:
-    """A contest passes even if the times of its facts go back; their numbers give the order."""
+    """Facts are ordered by their numbers, so a contest passes even if their times go back."""
     folder = copied.parent / "published"
     facts = read(folder)
     back = [replace(fact, at_ms=10**12 - 1000 * fact.number) for fact in facts]
@@ -177,7 +177,7 @@ def test_earlier_facts_must_still_be_there() -> None:
 
 
 def test_files_count_from_when_they_were_entered() -> None:
-    """A team's newest files count; if they changed after entries closed, those before them too."""
+    """A team's newest files count; if they came after entries closed, the previous ones do too."""
     game = new(Played, pairing="a", game=1, teams=("A", "B"), scores=(0, 0), outcome="draw")
     facts = numbered(
         new(Entered, team="A", files="1"),
@@ -230,7 +230,7 @@ def test_the_promised_number_of_forgeries_is_found_as_often_as_promised(
 ) -> None:
     """If `least_forged` games are forged, at least 95 % of all samples have one of them.
 
-    If one game less is forged, fewer samples have one.
+    If one game less is forged, fewer than 95 % have one.
     """
     checked = data.draw(st.integers(1, games))
     least = least_forged(games, checked)

@@ -24,7 +24,7 @@ GAME = 120_000
 
 
 def where(cup: Cup, calls: dict[str, str], rest_ms: int = 0) -> dict[str, Whereabouts]:
-    """Return where each team is; `calls` has the call that each court has."""
+    """Return where each team is; `calls` maps each court to the call that it shows."""
     seen = {court: Seen(cup.now_ms, calls.get(court, "")) for court in ADDRESSES}
     found = whereabouts(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, rest_ms))
     for there in found.values():
@@ -70,7 +70,7 @@ def test_a_team_waits_until_its_court_has_the_match() -> None:
 
 
 def test_how_long_a_team_waits() -> None:
-    """A team whose match waits for a court hears which one is free next, and in how long."""
+    """A team that waits for a court hears which court is free next, and in how long."""
     cup = Cup(teams=6)  # three matches a round, two courts
     calls = playing(cup)
     matches = cup.contest.stages[0].matches
@@ -156,7 +156,7 @@ def test_before_the_first_draw_all_wait() -> None:
 
 
 def test_the_usual_length_of_a_game() -> None:
-    """The usual length is the median of all games that have ended; before, a given value."""
+    """The usual length is the median of all ended games; until one has ended, a given value."""
     cup = Cup()
     assert game_ms(cup.facts, 7) == 7
     for match, length in zip(cup.contest.stages[0].matches, (10, 20, 90), strict=False):

@@ -320,7 +320,7 @@ def decision_seeds() -> list[bytes]:
 
 
 def decision_key(payload: bytes) -> str:
-    """Return the key expression of the decision that a payload names; without one, of `enter`."""
+    """Return the key expression of the decision in a payload; if there is none, that of `enter`."""
     name = next((name for name in DECISIONS if name.encode() in payload), "enter")
     return KEYS.decision(name)
 
@@ -331,9 +331,9 @@ def seat_key(what: str) -> Callable[[bytes], str]:
 
 
 def request_key(payload: bytes) -> str:
-    """Return the key expression of the seed request with the payload's sequence number.
+    """Return a request's key expression; its sequence number tells whether it is ready or leave.
 
-    For another number, it is that of a ready request.
+    A number that no seed request has counts as ready.
     """
     at = payload.find(b"seq") + 3
     asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")

@@ -33,7 +33,7 @@ def hangs_are_seen() -> Iterator[None]:
 @pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.long)])
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None:
-    """Seeds and hostile bytes cause no crash, no hang and no change without the right to it."""
+    """Seeds and hostile bytes cause no crash, no hang and no change that is not allowed."""
     inputs = times * SLOW.get(target.name, INPUTS)
     *_, figures = feed(target, len(target.seeds) + inputs, seed=times)
     assert not figures.findings, "\n".join(figures.findings)

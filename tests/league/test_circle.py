@@ -18,7 +18,7 @@ def pairings(players: int, rounds: int) -> list[tuple[int, int]]:
 
 @given(PLAYERS, ROUNDS)
 def test_everybody_plays_equally_often(players: int, rounds: int) -> None:
-    """No player has two matches in a round, and all have equally many.
+    """No player has two matches in a round, and in total all have equally many.
 
     If the number of players is odd, their numbers of matches differ by at most one.
     """
@@ -34,7 +34,7 @@ def test_everybody_plays_equally_often(players: int, rounds: int) -> None:
 
 @given(PLAYERS, ROUNDS)
 def test_all_players_meet_before_any_meet_again(players: int, rounds: int) -> None:
-    """The numbers of times that pairs of players meet differ by at most one."""
+    """All pairs of players meet equally often, or some of them once more."""
     met = Counter(frozenset(pair) for pair in pairings(players, rounds))
     counts = [met[frozenset(pair)] for pair in combinations(range(players), 2)]
     assert max(counts) - min(counts) <= 1

@@ -215,7 +215,7 @@ def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:
 @pytest.mark.parametrize("teams", [2, 3, 5, 8, 13, 200])
 @pytest.mark.parametrize("bracket", [single_bracket, double_bracket])
 def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> None:
-    """A bracket has the right number of pairings, and each comes from earlier ones."""
+    """A bracket has the right number of pairings; each takes teams from seeds or earlier ones."""
     stage = Stage(
         name="s", settings=Settings(), entries=tuple(f"t{number}" for number in range(teams))
     )
@@ -252,7 +252,7 @@ def test_a_drawn_swiss_round_stays() -> None:
 
 
 def test_a_match_is_moved_to_another_court_or_time() -> None:
-    """The newest move of a match counts; the others keep their order."""
+    """The newest move of a match counts; the other matches keep their order."""
     facts = Facts("round-robin", "abcd")
     one, other = assign(facts.contest, ["x", "y"], now_ms=0)
     facts.add(Moved, pairing=other.pairing, before=one.pairing)

@@ -12,7 +12,7 @@ SIDE_ELO = 60.0
 
 
 def league(random: Random, teams: int, times: int) -> tuple[dict[str, float], list[Rated]]:
-    """Draw true strengths; by them, draw games of all teams against all others on both sides."""
+    """Draw true strengths, and from them games of every team against every other on both sides."""
     true = {f"t{number:02d}": random.gauss(0, 150) for number in range(teams)}
     games = []
     for left in true:

@@ -59,7 +59,7 @@ def total_faults(pairs: Sequence[Sequence[Player]]) -> tuple[int, ...]:
 
 
 def can_do_without_faults(players: Sequence[Player]) -> bool:
-    """Return whether all players can be paired without faults: a matching in a graph of pairs."""
+    """Return whether all players can be paired without faults; a matching in a graph tells this."""
     graph = networkx.Graph()
     graph.add_nodes_from(range(len(players)))
     for (one, first), (two, second) in itertools.combinations(enumerate(players), 2):
@@ -98,7 +98,7 @@ def test_every_round_is_legal(teams: int, number: int, leaving: float, seed: int
 
 
 def test_a_round_that_needs_a_fault_is_paired_at_once() -> None:
-    """After two teams left, 12 teams must sit right and 10 left; one pair breaks a rule.
+    """Since two teams have gone, 12 teams must sit right and 10 left; one pair breaks a rule.
 
     Here the engine alone would try pairings for minutes.
     """
@@ -189,7 +189,7 @@ def test_py4swiss_makes_the_same_pairs(least_rounds: int) -> None:
 def same_bye(
     players: Sequence[Player], found: set[frozenset[int]], theirs: set[frozenset[int]]
 ) -> bool:
-    """Return whether both gave the bye to the same team; if not, check that ours has fewer points.
+    """Return whether both engines give one team the bye; if not, check that ours has fewer points.
 
     The rules have required the fewest points since February 2026; py4swiss has older rules.
     """
@@ -200,5 +200,5 @@ def same_bye(
 
 
 def alone(pairs: set[frozenset[int]]) -> frozenset[int]:
-    """Return a set of the team that has a bye; an empty one if there is no bye."""
+    """Return a set with the team that has a bye, or an empty set if there is no bye."""
     return next((pair for pair in pairs if len(pair) == 1), frozenset())

@@ -54,6 +54,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Count the functions called at import for each of the module's tests."""
+    """Count as called by each test also the functions that its module called at import."""
     for collector in item.listchain()[:-1]:
         state()._stats.update(collector.stash.get(_CALLED, ()))

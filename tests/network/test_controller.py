@@ -212,7 +212,7 @@ def test_a_new_window_takes_over_and_the_old_one_knows(
 
 
 def test_one_health_of_another_session_is_not_believed(court: CourtStub, session: Session) -> None:
-    """A controller counts as replaced after two health messages in a row with another session."""
+    """A controller believes that it was replaced only when two health messages in a row say so."""
     one = held(session)
     until(lambda: one.poll(time.monotonic()) and one.view.health)
     court.silent = True

@@ -64,7 +64,7 @@ def test_a_request_is_refused_with_its_reason(
 
 
 def test_the_refusal_of_a_wrong_decision_lists_all_decisions() -> None:
-    """A decision under another one's name is refused with a list of the decisions there are."""
+    """A decision that is sent under another's name is refused with a list of all decisions."""
     refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
     assert isinstance(refusal, Refusal)
     words = render(refusal.why)

@@ -155,7 +155,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
 
 
 def test_a_join_is_weighed_in_with_what_the_seat_has() -> None:
-    """The check of files gets the seat's present join; its notes precede the match's notes."""
+    """The check of files gets the seat's present join; the check's notes precede the match's."""
     inbox = make()
     mine = SentFile("mine.toml", b"a robot of our own")
     inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None], has_begun=False)
@@ -223,7 +223,7 @@ def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
 
 
 def test_the_counts_of_refusals_are_the_teams_own() -> None:
-    """The health report counts refusals for each team anew; `doors` counts all of the seat."""
+    """Health counts the refusals of a seat's present team; `doors` counts all of the seat."""
     inbox = make()
     take_seat(inbox)
     inbox.join(LEFT, b"nonsense")
@@ -349,7 +349,7 @@ def test_a_sealed_command_that_makes_no_sense_is_refused(
 
 
 def test_a_frame_that_is_not_there_yet_is_refused() -> None:
-    """A command that names a frame that was not sent yet is refused and counted."""
+    """A command that names a future frame is refused and counted."""
     inbox = make()
     joined = take_seat(inbox)
     inbox.links.begin(0.08, 1, 6)
@@ -395,7 +395,7 @@ def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> Non
 
 
 def test_a_command_for_another_seat_is_refused() -> None:
-    """A command for a seat that its session does not hold is refused; the holder plays on."""
+    """A command of one seat's session for the other seat is refused; the seat's holder plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     forged = command(left, 1, seat=RIGHT)
@@ -549,7 +549,7 @@ def test_a_late_beat_makes_nobody_silent() -> None:
 
 
 def test_ready_and_leave_are_proven_by_the_session() -> None:
-    """Ready and leave need the seal of the seat's session for exactly that request."""
+    """Each ready and each leave needs its own seal, made with the secret of the seat's session."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.ready(LEFT, request(joined, "ready")) == ReadySeat(LEFT, True)
@@ -663,7 +663,7 @@ def why_refused(inbox: Inbox, token: str, seat: int = LEFT) -> tuple[str, bool]:
 
 
 def test_an_assigned_seat_opens_for_its_team_alone() -> None:
-    """A team gets its name and frozen files; the court's own tokens open nothing meanwhile."""
+    """An assigned team gets its name and frozen files; the court's own tokens open nothing then."""
     inbox = make()
     ants, bees = team("Ants", LEFT), team("Bees", RIGHT)
     inbox.admit(assigned(ants, bees), [])
@@ -682,7 +682,7 @@ def test_an_assigned_seat_opens_for_its_team_alone() -> None:
 
 
 def test_sessions_of_other_teams_end_with_the_next_assignment() -> None:
-    """A seat that changes hands loses its session; a team that stays keeps it."""
+    """A session ends when another team is assigned the seat; a team that stays keeps its own."""
     inbox = make()
     inbox.admit(assigned(team("Ants", LEFT), team("Bees", RIGHT)), [])
     joined = []

@@ -62,7 +62,7 @@ class Clock:
         self.links.sent(self.now_s + SENT_S)
 
     def run(self, beats: int, left: int, right: int) -> None:
-        """Let beats pass; both seats send a sign of life in each."""
+        """Let beats pass; in each, both seats name a frame that is `left` or `right` beats old."""
         for _ in range(beats):
             self.begin()
             for seat, lag in ((LEFT, left), (RIGHT, right)):
@@ -130,7 +130,7 @@ def test_a_link_that_is_not_heard_is_not_known() -> None:
 
 
 def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
-    """A frame of the current beat, or of a later match, counts as one that was not sent yet."""
+    """A frame of the current beat, or of a later match, counts as not sent yet."""
     links = Links(1)
     links.begin(1.0, 2, 10)
 
@@ -145,7 +145,7 @@ def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
 
 
 def test_both_links_get_the_delay_of_the_slower() -> None:
-    """With equal links, keys that answer the same frame take effect in the same beat."""
+    """If the court makes links equal, keys that answer one frame take effect in one beat."""
     clock = warm(1, 12)
     assert clock.links.delay_ms == 240
     for _ in range(40):

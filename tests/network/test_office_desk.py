@@ -55,7 +55,7 @@ class Desk(OfficeDesk[str]):
         return lambda: self._refusal or assign.call if next(left, None) is None else None
 
     def later(self, what: str, payload: bytes) -> Callable[[], Done | Refusal | None]:
-        """Judge a request that is not answered at once; return what gives its answer later."""
+        """Judge a request that gets no answer at once; return the function that gives one later."""
         answer = self.judge(what, payload)
         assert not isinstance(answer, Done | Refusal)
         return answer

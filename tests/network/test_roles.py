@@ -147,7 +147,7 @@ def test_nobody_speaks_for_the_court(
 def test_nobody_hears_what_is_said_to_the_court(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """No user receives commands of other users, not even with a subscription to all keys."""
+    """No user receives commands of other users, not even with a subscription to everything."""
     boxes = [sessions[who].mailbox(key, 64) for key in (f"{KEYS.root}/seat/**", "lacoc/**", "**")]
     sender = next(one for one in TOKENS if one != who)
     controller = Controller(sessions[sender], "main", sender, TOKENS[sender], "Ants")

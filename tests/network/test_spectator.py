@@ -157,7 +157,7 @@ def test_a_court_that_makes_no_sense_is_a_sentence(court: CourtStub, session: Se
 
 
 def test_a_court_that_comes_back_with_another_version(court: CourtStub, session: Session) -> None:
-    """If frames can't be decoded and the sheet has another version, the error names both."""
+    """If frames can't be decoded and the sheet has another version, an error has both versions."""
     spectator = Spectator(session, "main")
     assert spectator.wait_frame(1.0)
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))

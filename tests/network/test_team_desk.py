@@ -39,7 +39,7 @@ def test_each_team_hears_of_itself(desk: TeamDesk) -> None:
 
 
 def test_a_guess_opens_nothing(desk: TeamDesk) -> None:
-    """10,001 guesses are refused and counted, among them hashes and tokens that miss a letter."""
+    """10,001 guesses are refused and counted, also hashes, and tokens without their last letter."""
     for _ in range(9_990):
         assert isinstance(ask(desk, new_token()), Refusal)
     for token in ("", "Ants", *[seal.hash_token(token, SALT) for token in TOKENS.values()] * 2):

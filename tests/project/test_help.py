@@ -88,7 +88,7 @@ def texts_of_help() -> set[str]:
 
 
 def english_left(shown: str) -> list[str]:
-    """Return the lines of a Japanese help that have an English sentence or a word of typer."""
+    """Return the lines of a Japanese help that have an English sentence or a word from typer."""
     return [line for line in shown.splitlines() if TYPER.search(line) or SENTENCE.search(line)]
 
 

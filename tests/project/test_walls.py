@@ -16,8 +16,8 @@ pytestmark = pytest.mark.slow
 def broken_walls(tree: Path) -> list[str]:
     """Check the import contracts of a source tree; return the names of the broken ones.
 
-    The tree's own folders come first on the path. So the copy is checked, not the installed
-    checkout.
+    The tree's own folders come first on the path, so that the tree is checked and not the
+    installed checkout.
     """
     paths = [str(tree / room) for room in ROOMS]
     code = f"import sys; sys.path[:0] = {paths!r}; from importlinter.cli import lint_imports; "

@@ -181,7 +181,7 @@ def test_the_result_as_json(record: Record, result: Result) -> None:
 
 
 def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
-    """Return the (time [ns], message) pairs for each "topic schema" of a record's Foxglove file.
+    """Map each "topic schema" of a record's Foxglove file to its messages, with their times [ns].
 
     Messages are decoded with the schemas in the file alone.
     """

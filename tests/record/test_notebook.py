@@ -33,7 +33,7 @@ def path(tmp_path: Path, write_match: WriteMatch) -> Path:
 
 @pytest.fixture(scope="module")
 def example() -> ModuleType:
-    """Give examples/plot_match.py, imported."""
+    """Import examples/plot_match.py, and give the module."""
     file = Path(__file__).parents[2] / "examples" / "plot_match.py"
     spec = importlib.util.spec_from_file_location("plot_match", file)
     assert spec is not None
@@ -103,7 +103,7 @@ def test_a_field_without_robots_is_nan(
 def test_another_robot_has_its_own_columns(
     tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame
 ) -> None:
-    """A team that comes back with fewer joints has NaN in the columns that it has no joint for."""
+    """If a team comes back with fewer joints, the columns of the missing joints are NaN."""
     left = sheet.seats[0]
     other = msgspec.structs.replace(
         sheet, seats=(msgspec.structs.replace(left, legs=left.legs[:2]), sheet.seats[1])
@@ -128,7 +128,7 @@ def test_another_robot_has_its_own_columns(
 def test_bad_records_are_refused(
     tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame, scene: Scene
 ) -> None:
-    """No record, a record without a frame, and one that contradicts itself are each refused."""
+    """A file that is no record, a record without a frame, and a contradictory one are refused."""
     other = tmp_path / "other.mcap"
     other.write_bytes(b"no record")
     with pytest.raises(UserError, match=r"other\.mcap"):

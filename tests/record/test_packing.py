@@ -79,7 +79,7 @@ def test_damage_loses_only_some_seconds_before_it(
 def test_packing_that_was_interrupted_is_repeated(
     tmp_path: Path, write_segments: WriteSegments
 ) -> None:
-    """Packing can be repeated after a kill left a half-written file or a segment already packed."""
+    """After a kill, packing can be repeated, whether a half-written file or a segment is left."""
     first, second = write_segments(tmp_path)
     record, data = Record.read(first), second.read_bytes()
     (tmp_path / "m.mcap.part").write_bytes(b"half")

@@ -47,20 +47,20 @@ def words_of(record: Record) -> str:
 
 @pytest.fixture(scope="module")
 def segment(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
-    """Give the path of the match as a closed segment."""
+    """Give the path of a match of `write_match`, as a closed segment."""
     return write_match(tmp_path_factory.mktemp("segment"))
 
 
 @pytest.fixture(scope="module")
 def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
-    """Give the path of the match as a packed file."""
+    """Give the path of a match of `write_match`, as a packed file."""
     folder = tmp_path_factory.mktemp("packed")
     pack.pack([write_match(folder)], folder / "m.mcap")
     return folder / "m.mcap"
 
 
 def test_a_key_of_an_older_record_was_not_held() -> None:
-    """A key input of an older record that lacks the newer fields gets their default values."""
+    """A key input without the newer fields, from an older record, gets their default values."""
     older = codec.encode(["key", 0, 14, 1, 2])
     assert codec.decode(older, Input) == KeySeat(0, 14, 1, 2, seen=0, held=0, late=0)  # type: ignore[arg-type]
 
@@ -467,7 +467,7 @@ def test_a_damaged_time_ends_what_is_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
-    """A damaged packed file is read up to the damaged chunk, and the message has its offset.
+    """A damaged packed file is read up to the damaged chunk; the message has the chunk's offset.
 
     If the first chunk is damaged, the file is refused.
     """

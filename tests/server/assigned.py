@@ -79,14 +79,14 @@ class Office:
     def asks(
         self, left: str | AssignedSeat, right: str | AssignedSeat, call: str = "", **changes: Any
     ) -> Done | Refusal:
-        """Ask the court to play a match, and return its answer."""
+        """Ask the court to play a match, and return the court's answer."""
         sides = zip(SEATS, (left, right), strict=True)
         seats = [entry(seat, one) if isinstance(one, str) else one for seat, one in sides]
         changes, call = {"arena_settings": QUICK} | changes, call or new_call()
         return self.answer(lambda: self.link.assign(call, FIXTURE, seats, **changes))
 
     def withdraw(self, call: str) -> Done | Refusal:
-        """Ask the court to take a match back, and return its answer."""
+        """Ask the court to take a match back, and return the court's answer."""
         return self.answer(lambda: self.link.withdraw(call))
 
     def answer(self, ask: Callable[[], Asked]) -> Done | Refusal:
@@ -164,7 +164,7 @@ referee.token = "{WHISTLE}"
 
 @contextmanager
 def office_of(contest: Path, folder: Path, *words: str) -> Iterator[Office]:
-    """Run the court of a contest, and give the office's side of it."""
+    """Run a contest's court until the block ends; give an `Office` that is linked to the court."""
     address = contest.read_text().partition('listen = ["')[2].partition('"')[0]
     with served(contest, folder, *words) as process, open_client([address]) as session:
         yield Office(session, process)

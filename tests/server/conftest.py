@@ -27,7 +27,7 @@ def loud() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def has_other_arithmetic() -> None:
-    """Skip the test if glibc's functions for older processors give the same bits here."""
+    """Skip the test if this machine has no second arithmetic (glibc for older processors)."""
     there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
     if arithmetic.same(arithmetic.here(), there):
         pytest.skip("the second arithmetic of this machine is the first")

@@ -100,11 +100,11 @@ class Hall:
         self.until(lambda: self.frame.seats[seat].applied_seq > before)
 
     def silences(self) -> list[Event]:
-        """Return the events that say that a seat fell silent."""
+        """Return the events of seats that fell silent."""
         return [event for event in self.view.events if event.kind == "silent"]
 
     def loses(self, lose: Callable[[], object]) -> None:
-        """Call `lose`; check that the left seat falls silent in time, and no other seat (rules 3).
+        """Call `lose`; check that the left seat, and no other, falls silent in time (rules 3).
 
         In time means at most a second and `LATE_BEATS` after the loss. The frame that first shows
         the silence must have key 0, so the robot stands. Within 2 s of the loss, a health message

@@ -13,7 +13,7 @@ def sample() -> bytes:
 
 
 def handed_in(folder: Path, locomotion: bytes | None) -> Path:
-    """Make a folder with a locomotion table, or an empty one, and return it."""
+    """Make a folder, put the locomotion table into it if one is given, and return the folder."""
     folder.mkdir()
     if locomotion is not None:
         (folder / "LocoTra-data.txt").write_bytes(locomotion)

@@ -47,7 +47,7 @@ def served(
         contest: the contest file.
         folder: the folder for the court's records.
         words: more words for the command line of `lacoc serve`.
-        before: words of a command that runs the court's command line, which follows them.
+        before: words of a command that runs another one; the court's command line follows them.
     """
     serve = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder), *words]
     process = started(*serve, before=before, stdout=subprocess.PIPE, text=True)

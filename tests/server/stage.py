@@ -233,8 +233,8 @@ class Stage:
     def to_playing(self, *joins: JoinSeat) -> "Stage":
         """Lead the match to the last beat before PLAYING, so that the next beat has tick 1.
 
-        A match that starts without a referee stays in READY. If it has a countdown, this begins in
-        the next beat.
+        A match that starts without a referee stays in READY. Its countdown, if any, begins in the
+        next beat.
         """
         self.to_ready(*joins)
         if self.match.rules.start == "referee":
@@ -279,7 +279,7 @@ def key(seat: int, digit: int, seq: int = 1, level: int = B) -> KeySeat:
 
 
 def seen(stage: Stage) -> tuple[bytes, ...]:
-    """Return all that clients see of a match, encoded: frame, sheet, result and legality.
+    """Return all that clients see of a match, encoded: frame, sheet, result and legal decisions.
 
     The number of the beat is left out.
     """

@@ -108,9 +108,9 @@ def test_a_match_without_a_referee_waits_after_its_result() -> None:
 
 
 def test_teams_that_play_on_keep_their_seats_with_the_new_files() -> None:
-    """A team whose token is assigned the same seat again stays, with its files of the new match.
+    """A team that is assigned its seat again keeps it, and gets its files of the new match.
 
-    A team of the same name whose seat was opened with another token does not stay.
+    If the seat was opened with another token, even a team of the same name does not keep it.
     """
     sat = [
         msgspec.structs.replace(join(LEFT), token_hash=HASHES["Ants"]),
@@ -125,7 +125,7 @@ def test_teams_that_play_on_keep_their_seats_with_the_new_files() -> None:
 
 
 def test_a_setup_of_an_older_record_is_read() -> None:
-    """A setup without the entry `assigned` is read, and one with it survives the codec."""
+    """A setup can be read without the entry `assigned`; with it, decoding undoes encoding."""
     old = encode({"court": "main", "match": 1, "arena": "a", "settings": {}, "limits": {}})
     assert decode(old, Setup).assigned is None
     new = msgspec.structs.replace(setup("othello"), assigned=assigned())

@@ -44,7 +44,7 @@ def brain(returns: str) -> str:
     ],
 )
 def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> None:
-    """A brain returns a key, whose level may be a plain 0 or 1, or None."""
+    """A brain returns None or a key; the key's level may be a plain 0 or 1."""
     assert play(tmp_path, brain(returns)) == expected
 
 

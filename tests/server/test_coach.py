@@ -58,7 +58,7 @@ def changes(found: Improved) -> int:
 
 
 def test_a_size_limits_the_changes() -> None:
-    """A search may change one number, at most three, or all; the more, the better its table."""
+    """A search may change one number, at most three, or all; more changes give a better table."""
     cell, three, table = (searched(size) for size in Size)
     assert (changes(cell), changes(three)) == (1, 3)
     assert made_up([(0,) * 6])[0] < cell.score < three.score < table.score
@@ -116,7 +116,7 @@ def test_what_matters_is_ranked() -> None:
 
 @given(st.data())
 def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
-    """Postures of one digit share a row; changing one angle leaves the other angles as they are."""
+    """Postures of one digit share a row of the table; changing one angle changes no other angle."""
     posture = st.tuples(*[st.floats(-1, 1)] * 3)
     rows = data.draw(st.lists(posture, min_size=1, max_size=4))
     order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))
@@ -163,7 +163,8 @@ def sample_task(key: int) -> Task:
 def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """`lacoc coach` writes a map or six variants of a gait into a folder.
 
-    It breeds new variants from those named by `--keep`, and refuses options that don't combine.
+    It breeds new variants from the gaits that `--keep` names, and refuses options that don't
+    combine.
     """
 
     def found(*words: str) -> Any:

@@ -53,7 +53,7 @@ def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> N
 
 
 def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
-    """Rules 4: a seat's colour and pattern in the contest file replace those of the arena.
+    """Rules 4: a seat's colour and pattern in the contest file replace the arena's.
 
     The other seat keeps the arena's look. A colour that is no code such as #009e73 is refused.
     """
@@ -120,7 +120,7 @@ def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
 def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The line with a court's address does not call its match new: it may be a resumed one."""
+    """The line with a court's address does not call the match new, as it may be a resumed one."""
     entry = contests.throwaway("othello").courts["main"]
     at = ("tcp/127.0.0.1:7447",)
     serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)

@@ -52,7 +52,7 @@ OTHELLO = arenas.load("othello")
 
 
 def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
-    """Play 120 beats, leave the record without an end as a kill does; return its segment's path."""
+    """Play 120 beats; leave a record without an end, as a kill does; return the segment's path."""
     journal = Journal(Match(made, World, arena), folder)
     for number in range(BEATS):
         journal.beat(INPUTS.get(number, ()))
@@ -81,7 +81,7 @@ def segment(folder: Path, data: bytes, number: int = 0) -> Path:
 
 
 def with_header(data: bytes, folder: Path, **changes: Any) -> bytes:
-    """Return the same record with other fields in its header."""
+    """Return a record's data with changed fields in its header."""
     path = segment(folder, data)
     header = Record.read(path).header
     old, new = encode(header), encode(msgspec.structs.replace(header, **changes))
@@ -166,7 +166,7 @@ def test_an_empty_first_segment_is_no_match(left_behind: bytes, folder: Path) ->
 def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
     """A court refuses to go on with a match that lacks a segment, and names the missing beats.
 
-    `info`, `export` and `verify` read the part before the gap, and name them too.
+    `info`, `export` and `verify` read the part before the gap, and name the missing beats too.
     """
     first = segment(folder, left_behind)
     header = msgspec.structs.replace(Record.read(first).header, segment=2, first_beat=200)

@@ -173,7 +173,7 @@ def test_a_key_starts_at_its_first_posture_at_once(advance: str) -> None:
 
 
 def test_level_a_holds_its_posture() -> None:
-    """Rules 3: at level A, every joint moves to its angle of one posture and stays there."""
+    """Rules 3: at level A, every joint moves to its angle in the key's posture and stays there."""
     it = drive(postures={0: 0.0, 5: 45.0})
     states = ticks(it, it.press(it.begin(A), A, 5), 100)
     assert [s.angles == posture(45.0) for s in states] == [False] * 18 + [True] * 82

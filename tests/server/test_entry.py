@@ -105,7 +105,7 @@ def test_all_mistakes_of_all_files_at_once() -> None:
 
 
 def test_the_contests_limits() -> None:
-    """Rules 1: a contest may lower the limits for robots, here that of the joints' speed."""
+    """Rules 1: a contest may lower the limits for robots, such as the speed of joints."""
     (mistake,) = mistakes_of(None, HEXAPOD.postures, ang_min_deg_s=100.0)
     assert mistake.field == "drive.ang_min_deg_s"
 

@@ -40,7 +40,7 @@ MATCH = "20260501-100000-main-001"
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
-    """Give a record of a whole match."""
+    """Give a whole match's record, to fork from it."""
     folder = tmp_path_factory.mktemp("record")
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "planner"), player(arena, 1, "nearest", late_ticks=7)]
@@ -50,7 +50,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
 
 @pytest.fixture(scope="module")
 def file(source: Source, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the record's file."""
+    """Give the path of the record in `source`."""
     return next(tmp_path_factory.getbasetemp().glob(f"record*/{MATCH}.mcap"))
 
 
@@ -63,7 +63,7 @@ def flips(source: Source) -> list[tuple[int, int]]:
 
 
 def proven(forked: Forked) -> Record:
-    """Return a fork's record, once it is proven."""
+    """Check that a fork's record is proven, and return it."""
     assert forked.record is not None
     record = Record.read(forked.record)
     verdict = next(one for one in verify(record, processes=1) if isinstance(one, Verdict))
@@ -73,7 +73,7 @@ def proven(forked: Forked) -> Record:
 
 @pytest.mark.slow
 def test_a_fork_without_a_change_is_the_record(source: Source, tmp_path: Path) -> None:
-    """In every phase a fork goes on as the record does, bit for bit; only its names differ."""
+    """From any phase, a fork goes on as its record, bit for bit; only match id and court differ."""
     started, ended = beat_of(source, "PLAYING"), beat_of(source, "FINISHED")
     for beat in (30, started - 3, started + 120, ended):
         again = proven(fork(source, beat, match_id=f"f{beat}", folder=tmp_path))
@@ -122,7 +122,7 @@ def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> 
 
 @pytest.mark.slow
 def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path) -> None:
-    """If the recorded bots take over, the end is the recorded one; other reactions change it.
+    """If the recorded bots take over, a fork ends as its record; other reaction times change that.
 
     Keys of a script, also [x], come at their times; the other seat keeps its recorded keys.
     """
@@ -170,7 +170,7 @@ def test_an_unfinished_match_goes_on(source: Source, tmp_path: Path) -> None:
 
 
 def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
-    """A fork of an assigned match has the call "fork" and its own fixture; no match has its id."""
+    """A fork of an assigned match has the call "fork", its own fixture and an id of no match."""
     from lacoc_server.simulate.forks.origin import stem
     from lacoc_shared.messages.office import Assigned
 

@@ -91,7 +91,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event whose reason has these words has arrived, even after its frame."""
+    """Return whether an event with this reason has arrived; it may come later than its frame."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
@@ -169,7 +169,7 @@ runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 
 
 def sync(flag: Path, what: str) -> list[str]:
-    """Return the words to put before a command line of `lacoc`, to run it with the changed `fsync`.
+    """Return words to put before a command line of `lacoc`, so that it runs with a changed `fsync`.
 
     Args:
         flag: while this file exists, `fsync` is changed.
@@ -197,7 +197,7 @@ def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
-    """While no record can be made for the next match, the finished one stays, and health says why.
+    """While the next match can't have a record, the finished match stays, and health says why.
 
     As soon as the record can be made, the next match opens.
     """

@@ -170,7 +170,7 @@ def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
 
 
 def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> None:
-    """No court goes on with a match that another running court has resumed and still holds."""
+    """While a court that resumed a match still runs, no other court goes on with the match."""
     killed(tmp_path)
     left = unfinished(tmp_path, "main", OTHELLO)
     assert left is not None

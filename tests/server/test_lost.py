@@ -189,8 +189,8 @@ def test_loss_and_jitter_make_no_seat_silent(hall: Hall) -> None:
 def test_a_real_cable(tmp_path: Path) -> None:
     """When a virtual cable goes down and up, the robot stands and walks again.
 
-    The match runs in a process with its own network: a new cable in this one would interrupt the
-    page loads of other tests' browsers.
+    The match runs in a process with its own network: a new cable in this process would interrupt
+    the page loads of other tests' browsers.
     """
     with ProcessPoolExecutor(1, get_context("spawn")) as apart:
         if not apart.submit(pull_a_real_cable, tmp_path).result():

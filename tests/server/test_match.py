@@ -184,7 +184,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both seats press [x] in one tick, both get their first place, whichever comes first."""
+    """If both seats press [x] in one tick, both get their first place, in either order."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)
@@ -225,7 +225,7 @@ def test_being_put_back_is_no_walk() -> None:
 
 
 def _postures(stage: Stage, ticks: int) -> list[int]:
-    """Press forward for the left seat; return the index of its posture in each tick."""
+    """Press forward for the left seat; return the index of the seat's posture in each tick."""
     stage.beat(key(LEFT, FORWARD))
     stage.run(ticks)
     return [beat.frame.seats[LEFT].posture for beat in stage.beats[-ticks - 1 :]]
@@ -413,7 +413,7 @@ def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
 
 
 def test_scores_and_board_are_in_every_frame() -> None:
-    """Rules 5: after a flip, a frame has the new board and the new scores, which count discs."""
+    """Rules 5: after a flip, a frame has the new board and the new scores (numbers of discs)."""
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}})
     stage = playing(script=script, ticks=3)
     assert stage.scores == (19, 17)

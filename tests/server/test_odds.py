@@ -39,7 +39,7 @@ def test_the_chances_of_both_seats_add_up(found: list[int]) -> None:
 
 @given(MARGINS, st.integers(1, 20))
 def test_more_points_are_a_better_chance(found: list[int], more: int) -> None:
-    """If every fork ends with more points for a seat, its chance is at least as large."""
+    """If every fork gave a seat more points, the seat's chance would be at least as large."""
     assert odds.chance([margin + more for margin in found]) >= odds.chance(found)
 
 
@@ -57,7 +57,7 @@ def moment(beat: int, chance: float) -> Moment:
 
 
 def test_swings_and_where_to_look() -> None:
-    """Swings are sorted, the largest first; a swing's next moment is just after an event in it."""
+    """The largest swing comes first; the next beat to try is its middle, or just after an event."""
     found = [moment(0, 0.5), moment(100, 0.55), moment(300, 0.95), moment(400, 0.6)]
     first, second, third = odds.swings(found)
     assert [one.before.beat for one in (first, second, third)] == [100, 300, 0]
@@ -70,7 +70,7 @@ def test_swings_and_where_to_look() -> None:
 
 
 def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
-    """There is a moment before and after each of the largest changes; near changes count as one."""
+    """Moments lie before and after the largest changes of the lead; near changes count as one."""
     playing = range(1000, 1400)
     leads = [0.0] * 400
     for index, change in ((50, 1.0), (55, 3.0), (200, 2.0), (300, -1.0), (395, -8.0)):
@@ -117,7 +117,7 @@ class Counting:
 
 @pytest.mark.slow
 def test_the_odds_of_a_record(tmp_path: Path) -> None:
-    """The last odds are those of the result, and forks that are kept are not played again."""
+    """The last odds come from the result, and kept forks are not played again."""
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "planner"), player(arena, 1, "straight")]
     result = simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
@@ -181,9 +181,9 @@ def test_an_error_comes_back_as_words(tmp_path: Path) -> None:
 
 
 def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
-    """The hash of kept forks changes with all that decides them.
+    """The hash of kept forks changes with all that decides how forks end.
 
-    That is the file of a bot, the record of a ghost, the folder of the game, and the software.
+    These are the file of a bot, the record of a ghost, the folder of the game, and the software.
     """
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "straight"), player(arena, 1, "straight")]

@@ -53,7 +53,7 @@ def office(folder: Path) -> Iterator[Office]:
 
 @pytest.fixture
 def waiting(office: Office) -> Office:
-    """Give the court while it waits for the office."""
+    """Make the court wait for the office, and give the office's side of it."""
     office.until(lambda: office.link.call is not None)
     with suppress(UserError):  # it is over, or there is none
         referee(office).decide(Abort(), "the test has ended", "Kubota")
@@ -71,7 +71,7 @@ def referee(office: Office) -> RefereeClient:
 
 
 def why_not(controller: Controller) -> str:
-    """Return the code with which a join is refused."""
+    """Check that a join is refused, and return the code of the reason."""
     with pytest.raises(UserError) as error:
         controller.join()
     return error.value.phrase.code
@@ -130,7 +130,7 @@ def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
 
 
 def test_only_the_tokens_of_the_match_open_its_seats(waiting: Office) -> None:
-    """Strangers and the referee open no seat; a team at the wrong seat is told which one it has."""
+    """Strangers and the referee open no seat; a team at the wrong seat is told the right one."""
     waiting.assign("Ants", "Bees")
     assert why_not(waiting.controller("left", "strangers")) == "refused.wrong-token"
     left = Controller(waiting.session, "main", "left", WHISTLE, "Ants")
@@ -141,7 +141,7 @@ def test_only_the_tokens_of_the_match_open_its_seats(waiting: Office) -> None:
 
 
 def test_frozen_files_win(waiting: Office) -> None:
-    """A team plays with the files that the office froze; other files are not used, with a note."""
+    """A team plays with the files that the office froze; a note says that others are not used."""
     waiting.assign(entry("left", "Ants", "quadruped"), "Bees")
     other = SentFile("my.txt", b"not even a gait")
     left = waiting.controller("left", "Ants", postures=other)
@@ -327,7 +327,7 @@ def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
 def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
     """A court that is ended in an assigned match goes on with it at the next start.
 
-    If it is ended after the match, it shows the result again, so that the office hears it.
+    If the court is ended after the match, it shows the result again, so that the office gets it.
     """
     contest = write_office_contest(tmp_path / "contest.toml")
     with office_of(contest, tmp_path / "recordings", "--speed", "10") as office:

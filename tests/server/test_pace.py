@@ -27,7 +27,7 @@ def test_speed() -> None:
 
 
 def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
-    """Beats come at the offset modulo 20 ms of the clock, whenever the court was started."""
+    """Modulo 20 ms, every beat comes at the offset, whenever the court was started."""
     for now_s in (0.0, 7.0, 7.011):
         phases = [
             (now_s + Pace(now_s, offset_s=offset_s).wait_s(now_s)) % 0.02

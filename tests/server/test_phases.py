@@ -274,7 +274,7 @@ def test_the_shortest_match_is_one_tick() -> None:
 
 
 def test_a_fault_halts_before_the_tick() -> None:
-    """A fault of physics halts the match with the state before that tick (docs/facts.md 3)."""
+    """A fault of physics halts the match in its state before the faulty tick (docs/facts.md 3)."""
     script = Script(faults={4: Fault(RIGHT, say("fault.velocity"))})
     stage, twin = Stage(script=script).to_playing(), Stage().to_playing()
     stage.until(P.PLAYING)

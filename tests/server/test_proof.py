@@ -73,7 +73,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """A record of the same arithmetic must have equal bits; one of another may differ a little."""
+    """A replay must have the record's bits; with another arithmetic, poses may differ a little."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -83,7 +83,7 @@ def test_bits_may_differ_only_where_another_arithmetic_recorded(
 
 
 def test_each_segment_says_what_made_it() -> None:
-    """The bits of ticks may differ only if another arithmetic recorded some of these ticks."""
+    """Ticks may differ in their bits only if another arithmetic recorded some of them."""
     headers = [header(), header(100, THERE)]
     bits = Difference(50, ("poses",))
     for first, last, kind in ((1, 99, Kind.DIFFERS), (90, 110, Kind.OTHER_ARITHMETIC)):
@@ -151,7 +151,7 @@ def test_no_forgery_passes(paths: Sequence[Path]) -> None:
 def test_a_pose_is_told_beyond_the_bound_only(
     made_by: Mapping[str, str], paths: Sequence[Path]
 ) -> None:
-    """Verify finds each changed pose; with another arithmetic, only a change beyond the bound."""
+    """Verify finds each changed pose, but with another arithmetic only changes above a bound."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     at = len(record.frames) // 2
     beat, encoded = record.frames[at]

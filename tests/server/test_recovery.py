@@ -71,7 +71,7 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
 
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: Path) -> None:
-    """A killed match goes on under another arithmetic, and an event says that this has changed.
+    """A killed match goes on with another arithmetic; an event says that the arithmetic changed.
 
     The parts of the record before and after the kill both verify.
     """

@@ -55,7 +55,7 @@ def stage_in(phase: Phase, script: Script | None = None) -> Stage:
 
 
 def refused(stage: Stage, decision: d.Decision, reason: str = "agreed") -> Phrase:
-    """Check that a decision is refused, not logged and does not change the game; return why."""
+    """Check that a decision is refused and changes neither log nor game; return the reason."""
     before = stage.match.history.state
     outcome = stage.decide(decision, reason)
     assert isinstance(outcome, Refusal), outcome
@@ -358,7 +358,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """An old record's `clock` with positive `seconds` shortens the match; its event keeps them."""
+    """In old records `clock` and its event have `seconds`; if positive, they shorten the match."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
@@ -369,7 +369,7 @@ def test_clock_in_old_records() -> None:
 
 
 def test_clock_past_the_end() -> None:
-    """If `clock` leaves no time, play ends at once, or a halted match ends after its resume."""
+    """If `clock` leaves no time, play ends at once, or a halted match ends after it is resumed."""
     stage = stage_in(P.HALTED)
     ticks = stage.match.ticks
     done(stage, d.Clock(-3600.0))

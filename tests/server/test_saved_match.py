@@ -62,7 +62,7 @@ def scripts(draw: st.DrawFn, arena: str) -> Script:
 
 
 def shown(match: Match, items: tuple[Input, ...]) -> tuple[Any, ...]:
-    """Return all that a beat gives, and what can be asked of the match after it."""
+    """Play a beat; return all that it gives, and the match's sheet, result and legal decisions."""
     return match.beat(items), match.sheet(), match.result(), match.legality()
 
 
@@ -71,7 +71,7 @@ def shown(match: Match, items: tuple[Input, ...]) -> tuple[Any, ...]:
 def test_a_saved_match_goes_on_as_if_it_was_not_saved(arena: str, data: st.DataObject) -> None:
     """After any inputs, a loaded match and one that was never saved give the same beats.
 
-    The bytes are loaded into a new match, or into one that has gone on since.
+    The save is loaded into a new match, or into the saved match, which has gone on since.
     """
     script = data.draw(scripts(arena))
     stages = [
@@ -102,7 +102,7 @@ def test_a_saved_match_goes_on_as_if_it_was_not_saved(arena: str, data: st.DataO
 
 @pytest.mark.parametrize("phase", [p for p in P if p is not P.CREATED])
 def test_every_phase_can_be_saved(phase: Phase) -> None:
-    """A match that is saved in any phase, and loaded into a new one, goes on as it would have."""
+    """A match can be saved in any phase; a new match that loads it goes on like the saved one."""
     stage = Stage("othello", QUICK).to(phase)
     match = Match(setup("othello", QUICK), stage._make)
     match.load(stage.match.save())
@@ -112,7 +112,7 @@ def test_every_phase_can_be_saved(phase: Phase) -> None:
 
 
 def test_a_match_goes_back_to_the_lobby_and_to_other_robots() -> None:
-    """Loading an older state takes robots off the field, or puts those of other files on it."""
+    """Loading an older state takes robots off the field, or puts the older robots on it."""
     stage = Stage("othello", QUICK).to(P.LOBBY)
     match, lobby = stage.match, stage.match.save()
     match.beat((ReadySeat(LEFT, True), ReadySeat(RIGHT, True)))
@@ -143,7 +143,7 @@ def test_without_take_backs_only_they_are_lost() -> None:
 
 
 def test_bytes_of_another_game_are_refused() -> None:
-    """Bytes of other settings, or of no match at all, are refused with a reason."""
+    """A save from other settings is refused with a reason, and so are bytes that are no save."""
     saved = Stage("othello", QUICK).to(P.PLAYING).match.save()
     other = Stage("othello").to(P.PLAYING).match
     for data in (saved, saved[:-40], b"", b"\x93abc"):

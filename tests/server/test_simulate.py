@@ -52,7 +52,7 @@ def test_a_match_to_its_end(tmp_path: Path) -> None:
 
 
 def test_the_table_of_results_names_the_winner() -> None:
-    """The winner's column names a team, a draw, or that the match is void."""
+    """The winner's column has a team's name, or says that the match is a draw or void."""
     result = play()
     ends = ("right", "draw", "void")
     results = [msgspec.structs.replace(result, official=end) for end in ends]

@@ -144,7 +144,7 @@ def test_a_trial_is_that_of_the_command(asker: Asker) -> None:
 
 
 def test_a_sentence_names_its_cell_and_leg(asker: Asker) -> None:
-    """A sentence that explains a trial has the cell of the table and the leg that it is about."""
+    """A sentence about a trial comes with the cell of the table, and the leg, that it explains."""
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
     sequences = [list(map(list, one)) for one in entry.gait.locomotion.sequences]
@@ -223,7 +223,7 @@ def test_mistakes_in_files_are_listed(asker: Asker) -> None:
 
 
 def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
-    """If a process is killed, only its own request is refused, with `again`; it is replaced."""
+    """A killed process is replaced; only its own request is refused, as one to send again."""
     asker.trial(GaitFiles(), seconds=0.1)
     until(lambda: len(asker.workers()) == 2)
     before = {one.pid for one in asker.workers()}
@@ -250,7 +250,7 @@ def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
 
 
 def coach_request(job: str, **more: object) -> CoachRequest:
-    """Make a request to improve a quadruped's gait with small steps; its trials are short."""
+    """Make a request to improve a quadruped's gait, whose steps are small and trials short."""
     entry = entry_of("quadruped")
     assert entry.gait.postures is not None
     one, other = (entry.gait.postures.postures[digit] for digit in (1, 3))
@@ -291,7 +291,7 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
 
 
 def test_a_search_can_be_cancelled(asker: Asker) -> None:
-    """A cancelled search replies with the best so far, or is refused if it has not begun."""
+    """A cancelled search replies with its best gait, or is refused if it has not begun."""
     progress = asker.session.mailbox(KEYS.progress("long"), 1000)
     waiting = asker.session.mailbox(KEYS.progress("next"), 1000)
     question = asker.begin("coach", coach_request("long", seconds=100.0, size="table"))
@@ -363,7 +363,7 @@ def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
 
 
 def test_a_map_can_be_cancelled(asker: Asker) -> None:
-    """Progress counts the cells of a map; a cancelled map replies with the gaits in them."""
+    """Progress counts the filled cells of a map; a cancelled search replies with their gaits."""
     progress = asker.session.mailbox(KEYS.progress("atlas"), 1000)
     asked = MapRequest(protocol=PROTOCOL, job="atlas", files=files_of("quadruped"), seconds=100)
     question = asker.begin("map", asked)

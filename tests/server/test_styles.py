@@ -63,7 +63,7 @@ def walk(speed_mm_s: float, lift_mm: float, **more: Any) -> Figures:
 @pytest.mark.parametrize("robot", ["hexapod", "quadruped", "octopod"])
 @pytest.mark.parametrize("way", WAYS)
 def test_a_step_in_a_way_is_measured_as_one(robot: str, way: Way) -> None:
-    """If `turned` makes one step of a way, `look` measures about one step of that way."""
+    """If `turned` changes a table by one step of a way, `look` measures about one such step."""
     styles, own = styles_of(robot), task_for(robot).table.angles_deg
     index = WAYS.index(way)
     for step in (-1.0, 1.0):
@@ -75,7 +75,7 @@ def test_a_step_in_a_way_is_measured_as_one(robot: str, way: Way) -> None:
 @settings(max_examples=30)
 @given(st.lists(st.floats(-6, 6), min_size=len(WAYS), max_size=len(WAYS)))
 def test_a_turned_table_is_within_the_ranges(steps: list[float]) -> None:
-    """However far a table is turned, its angles are whole degrees that the joints can take."""
+    """However much `turned` changes a table, it gives whole degrees within the joints' ranges."""
     task = task_for("quadruped")
     own = task.table.angles_deg
     turned = styles_of("quadruped").turned(own, steps)
@@ -94,7 +94,7 @@ def test_no_step_changes_nothing() -> None:
 
 @given(st.lists(st.tuples(*[st.floats(-9, 9)] * 3), min_size=1, max_size=12), st.integers(1, 6))
 def test_the_choice_is_far_apart(points: list[tuple[float, ...]], count: int) -> None:
-    """Chosen vectors are at least half as far apart as those of any other choice can be."""
+    """The nearest two chosen vectors are at least half as far apart as in the best choice."""
     looks = [np.array(point) for point in points]
     chosen = far_apart(looks, count)
     assert len(chosen) == len(set(chosen)) == min(count, len(looks))
@@ -108,7 +108,7 @@ def test_the_choice_is_far_apart(points: list[tuple[float, ...]], count: int) ->
 
 
 def test_the_choice_is_far_from_what_is_taken() -> None:
-    """The vector that is nearest to one that is already taken is chosen last."""
+    """The vector nearest to one that was taken before is chosen last."""
     looks = [np.array([x]) for x in (0.0, 5.0, 10.0)]
     assert far_apart(looks, 3, [np.array([9.0])]) == [0, 1, 2]
 
@@ -206,7 +206,7 @@ def test_a_small_map(workers: Workers) -> None:
 @pytest.mark.slow
 @pytest.mark.long
 def test_variants_of_two_rounds(workers: Workers) -> None:
-    """Six variants walk upright and differ; the next round has none of the tables before it."""
+    """Six variants walk upright and differ; the next round repeats none of the earlier tables."""
     task = task_for("quadruped")
     own, styles = task.table.angles_deg, styles_of("quadruped")
     trials = Trials(task, workers, threading.Event())

@@ -85,9 +85,9 @@ their turned path by more than the bound of the test.
     ],
 )
 def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contacts: int) -> None:
-    """In the turned match poses differ by less than 1e-6 (m, rad), also when the robots collide.
+    """If the field is turned and the seats swapped, poses differ by less than 1e-6 (m, rad).
 
-    Claims and scores are those of the other seat.
+    This holds also when the robots collide. Claims and scores are swapped between the seats.
     """
     one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
     mirrored = swapped(COLLIDING)

@@ -27,7 +27,7 @@ def cell(name: str) -> tuple[float, float]:
 
 
 def othello(walks: dict[int, dict[int, str]], ticks: int = 100) -> Stage:
-    """Play a match of Othello up to a tick; `walks` is tick -> seat -> disc."""
+    """Play Othello up to a tick; `walks` says in which tick which seat steps on which disc."""
     poses = {tick: {s: cell(c) for s, c in step.items()} for tick, step in walks.items()}
     return play(Stage("othello", QUICK, script=Script(poses=poses)), ticks)
 
@@ -87,7 +87,7 @@ def test_a_flip_and_what_came_of_it() -> None:
 
 
 def test_an_event_may_appear() -> None:
-    """Rules 4.1: taking back a flip may make a later flip appear, which is a new event."""
+    """Rules 4.1: if a flip is taken back, a later flip may appear as a new event."""
     stage = othello(
         {
             5: {RIGHT: "c3r2", LEFT: "c2r1"},
@@ -471,7 +471,7 @@ def test_taking_back_a_set_without_effect_changes_nothing(arena: str, data: st.D
 def test_a_fold_leaves_the_history_alone_and_can_be_repeated(
     arena: str, data: st.DataObject
 ) -> None:
-    """Judging a history without an event does not change it, and gives the same result twice."""
+    """Judging a history with one event left out does not change it, and always gives the same."""
     history = History(GAMES[arena])
     number = 1
     for observation in data.draw(observations(arena)):

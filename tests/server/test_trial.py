@@ -35,7 +35,7 @@ SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-d
 
 @pytest.fixture(scope="module")
 def courses() -> dict[str, Course]:
-    """Give the course of each sample robot by name: a floor for its trials."""
+    """Map each sample robot's name to its course: a floor for the robot's trials."""
     return {name: make_course(entry_of(name).robot) for name in ROBOTS}
 
 
@@ -204,7 +204,7 @@ def test_keys_as_people_type_them() -> None:
 
 @pytest.mark.parametrize("seed", range(len(FAULTS)), ids=FAULTS)
 def test_the_first_sentence_names_the_fault(seed: int) -> None:
-    """The first sentence names the only fault of a gait and its leg, or no fault if it has none."""
+    """If a gait has one fault, the first sentence names it and its leg; else it names no fault."""
     told = tell(seed)
     assert told.named, told
 

@@ -152,7 +152,7 @@ def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> 
 
 
 def test_a_halted_match_waits_in_silence_and_a_long_silence_ends_it() -> None:
-    """Rules 7: a halted match waits while its seat is silent, and goes on when it is heard.
+    """Rules 7: a halted match waits while its seat is silent, and goes on when the seat is heard.
 
     After `unattended_s` of silence the match ends, and the next one opens.
     """

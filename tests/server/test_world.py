@@ -421,7 +421,7 @@ def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
 
 
 def test_touch_costs_no_bit() -> None:
-    """Asking what is touched does not change the path."""
+    """Asking what a robot touches does not change its path."""
     asked, quiet = world(), world()
     for it in (asked, quiet):
         it.place(LEFT, Place(-0.3, 0.0, 0.0))

@@ -21,7 +21,7 @@ a leak of 0.1 MB in each match gives more than this limit.
 def test_nothing_grows_and_nothing_is_left_over() -> None:
     """No process gains threads, files, sockets or children after the warm-up; all records verify.
 
-    The memory of each process except the visitors' grows by less than 3 %.
+    Except in visitors, the memory of each process grows by less than 3 %.
     """
     figures = soak(MINUTES, match_s=10.0, speed=2.0, warm_minutes=WARM_MINUTES, visitors_most=5)
     assert figures.same == figures.matches > 0
