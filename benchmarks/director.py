@@ -237,9 +237,9 @@ class _Way(NamedTuple):
 def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
     """Return how many moments a director who knows them all can show while keeping the rules.
 
-    Each cut is made as early as the rules allow: once the court on air has shown its moment, and
-    the fourth cut before this one is a minute old. No other ways are tried, because an earlier cut
-    forbids nothing that a later one allows.
+    Each cut is made as early as the rules allow: after the court on air has shown its moment, not
+    away from a close end, and with at most four cuts in a minute. Later cuts are not tried, because
+    whatever is possible after a later cut is possible after an earlier one.
     """
     closing = {one.name: one.closing() for one in courts}
     ways: dict[str, list[_Way]] = {}

@@ -145,7 +145,7 @@ def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
 
 
 def test_both_links_get_the_delay_of_the_slower() -> None:
-    """If the court makes links equal, keys that answer one frame take effect in one beat."""
+    """With equal links, keys of both seats that answer the same frame act in the same beat."""
     clock = warm(1, 12)
     assert clock.links.delay_ms == 240
     for _ in range(40):

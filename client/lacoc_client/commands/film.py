@@ -93,8 +93,8 @@ def film_command(
 ) -> None:
     """Make a film of a recorded match, or of the best moments of a contest, as an MP4.
 
-    The pages draw each picture for its own moment, however long that takes, so nothing is dropped.
-    It needs Chromium and the extra "film".
+    Chromium draws picture by picture, however long each takes, so no picture is missing. The
+    command needs Chromium and the extra "film".
     """
     look = _look(size, view, quality, overlay, language)
     _check(record, out, highlights, moments)

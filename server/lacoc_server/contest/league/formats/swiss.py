@@ -240,10 +240,12 @@ def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
 
 
 def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
-    """Pair so that fewest teams meet again, then fewest have two byes, then sides differ least.
+    """Pair so that as few rules as possible are broken.
 
-    Among such pairings, choose one in which opponents differ least in points; and among teams with
-    equal points, let the upper half meet the lower half.
+    First as few pairs as possible have met before; then as few teams as possible get a second bye;
+    then in as few pairs as possible both teams are due the same side. Among such pairings, choose
+    one in which opponents differ least in points; and among teams with equal points, let the upper
+    half meet the lower half.
     """
     ordered = sorted(players, key=lambda player: (-player.points, player.number))
     equals = Counter(player.points for player in players)
