@@ -16,7 +16,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from lacoc_shared.seat import Phase
 
-TIMEOUT_MS = 30_000
+TIMEOUT_MS = 90_000
 
 
 class Contestant:

@@ -20,6 +20,8 @@ pytestmark = pytest.mark.slow
 
 BOOK = "Loco-data.xlsx"
 TIMEOUT_MS = 60_000
+BRED_MS = 240_000
+"""Variants are tried in the background, which is slow while other tests keep the machine busy."""
 TIP = "solo/leg4_2"
 """The 2nd link of the left middle leg."""
 
@@ -252,13 +254,13 @@ def test_other_gaits_are_watched_and_taken(
     assert page.page.evaluate("window.__studio.trials.all.value.length") == 0
     page.page.click(".coach >> text=Six variants")
     cards = page.find(".variants li")
-    expect(cards).to_have_count(6, timeout=TIMEOUT_MS)
+    expect(cards).to_have_count(6, timeout=BRED_MS)
     first = cards.first.inner_text()
     page.find(".variants .keep input").nth(0).check()
     page.find(".variants .keep input").nth(3).check()
     assert violations(page.page) == []
     page.page.click("button:text-is('Next six')")
-    page.sees(".variants", "Round 2")
+    expect(page.find(".variants")).to_contain_text("Round 2", timeout=BRED_MS)
     page.page.click(".variants button:text-is('Back')")
     page.sees(".variants", "Round 1")
     assert cards.first.inner_text() == first
