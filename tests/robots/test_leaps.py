@@ -21,10 +21,10 @@ def test_no_robot_that_is_let_in_leaps() -> None:
     assert max(refused_m) > 2 * FARTHEST_M  # some refused robots did leave it
 
 
-@pytest.mark.long(minutes=8)
+@pytest.mark.long(minutes=4)
 def test_no_search_finds_a_leap() -> None:
-    """Among 2,000 random robots and 2,000 variants, no accepted robot leaves its start place."""
-    found = list(search(2000, 2000, os.cpu_count() or 1, seed=0))
+    """Among 1,000 random robots and 1,000 variants, no accepted robot leaves its start place."""
+    found = list(search(1000, 1000, os.cpu_count() or 1, seed=0))
     leaps_m = [one.leap_m for one in found if one.leap_m is not None]
-    assert len(leaps_m) > 500
+    assert len(leaps_m) > 250
     assert max(leaps_m) <= FARTHEST_M
