@@ -8,7 +8,7 @@ from hypothesis import settings
 
 # No deadline: the time of an example says more about the machine than about the code.
 settings.register_profile("quick", deadline=None, max_examples=40)
-settings.register_profile("thorough", deadline=None, max_examples=400)
+settings.register_profile("thorough", deadline=None, max_examples=200)
 
 # The commands of these tests print English, also on a machine whose language is Japanese.
 os.environ["LACOC_LANGUAGE"] = "en"
@@ -22,13 +22,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--long",
         action="store_true",
-        help="run what a usual run leaves out: tests marked long, and properties of ten times as "
+        help="run what a usual run leaves out: tests marked long, and properties of five times as "
         "many examples",
     )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Set the number of examples for each property, 40 or 400 with --long, and the environment."""
+    """Set the number of examples for each property, 40 or 200 with --long, and the environment."""
     settings.load_profile("thorough" if config.getoption("long") else "quick")
     if "PYTEST_XDIST_WORKER" in os.environ or not config.getoption("numprocesses", None):
         # A process whose files may not grow would write half of its bytecode, which breaks others.
