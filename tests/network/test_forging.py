@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.slow
-@pytest.mark.long
+@pytest.mark.long(minutes=3)
 def test_nothing_forged_is_accepted() -> None:
     """No forgery is accepted with all protection, with seals alone, or with access rules alone."""
     command = [sys.executable, "-m", "benchmarks.forging", "--attempts", "2000"]
