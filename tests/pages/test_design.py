@@ -260,7 +260,7 @@ def test_other_gaits_are_watched_and_taken(
     page.find(".variants .keep input").nth(3).check()
     assert violations(page.page) == []
     page.page.click("button:text-is('Next six')")
-    expect(page.find(".variants")).to_contain_text("Round 2", timeout=BRED_MS)
+    expect(page.find(".variants").first).to_contain_text("Round 2", timeout=BRED_MS)
     page.page.click(".variants button:text-is('Back')")
     page.sees(".variants", "Round 1")
     assert cards.first.inner_text() == first
