@@ -155,7 +155,7 @@ def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, .
     if not players:
         return []
     found = fewest_faults(players)
-    # Where the rules can't all be kept, the engine would try all pairings, which may take days.
+    # Where the rules can't all be kept, the engine would try all pairings, for minutes or longer.
     if len(players) <= LARGEST and _legal(found, players):
         by_system = dutch(players, round_number)
         found = by_system if _legal(by_system, players) else found
