@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 from court_process import CourtProcess, OpenCourt, environment
 from lacoc_process import COMMAND, run_lacoc
-from waiting import until
 
 from lacoc_robots.library import sample_gait_files
 
@@ -219,8 +218,8 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     assert code == 0, said
     assert "Files used from this folder: Loco-data.txt." in said
     assert "[2] refused: your gait file has no such key." in said
-    # The record may still be packed by a process that outlives the practice.
-    until(lambda: [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"])
+    kept = {path.suffix for path in (tmp_path / "kept").iterdir()}
+    assert ".mcap" in kept  # segments, until a process that outlives the practice has packed them
 
 
 @pytest.mark.long
