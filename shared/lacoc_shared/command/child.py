@@ -85,7 +85,7 @@ class Child:
         return self._process.poll() is not None
 
     def show_crash(self) -> None:
-        """Print the errors of a process that crashed: the file with them is deleted soon."""
+        """If the process crashed, print its errors, because the file with them is deleted soon."""
         if self._process.poll():
             screen.note(_text(self._complained))
 

@@ -49,7 +49,7 @@ class AssignedSeat(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def files(self) -> tuple[SentFile | None, SentFile | None, SentFile | None]:
-        """Robot file, Loco-data file, LocoTra-data file."""
+        """Robot file, Loco-data file and LocoTra-data file; None for a missing file."""
         return self.robot, self.postures, self.locomotion
 
 

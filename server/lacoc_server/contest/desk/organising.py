@@ -119,7 +119,7 @@ def tokens(book: Book) -> TeamTokenList:
     """Return the tokens of all teams of people that are in or wait.
 
     Raises:
-        UserError: if a new one can't be written.
+        UserError: if a new token can't be written.
     """
     people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]
     waiting = [team for team in book.applications.waiting if team not in people]
