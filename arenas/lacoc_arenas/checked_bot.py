@@ -19,11 +19,14 @@ _A_KEY = say("expected.key", restart=RESTART_KEY)
 
 
 def checked(name: str, bot: BotFactory) -> BotFactory:
-    """Return the same bot, with every result checked.
+    """Return a bot that plays as the given bot does, and checks every result.
+
+    The returned bot and its brains raise UserError if the given bot or its brain fails, or returns
+    something that is not allowed.
 
     Args:
         name: the bot's name, as the user typed it.
-        bot: the function that makes a brain. The checked bot and its brains raise UserError.
+        bot: the function that makes a brain.
     """
 
     def make(sheet: Sheet, seat: int) -> Brain:

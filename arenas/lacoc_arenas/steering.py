@@ -202,7 +202,7 @@ def _is_near(pose: Pose, other: Pose) -> bool:
 
 
 def _key_for(bearing_rad: float, stray_rad: float) -> Key:
-    """Return the key to walk if the bearing is small, else the key to turn towards it."""
+    """Return the key to walk if the bearing is at most `stray_rad`, else the key to turn to it."""
     bearing_rad = math.remainder(bearing_rad, math.tau)
     if abs(bearing_rad) <= stray_rad:
         return FORWARD

@@ -54,7 +54,7 @@ def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
 
 
 def message_hash(message: bytes) -> bytes:
-    """Return the 8 bytes by which frames, sheets and health name an encoded `Scene` or `Sheet`."""
+    """Hash an encoded `Scene` or `Sheet`: 8 bytes, with which other messages refer to it."""
     return hashlib.blake2b(message, digest_size=8).digest()
 
 

@@ -91,7 +91,10 @@ class FileRefused(ValueError):
         self.mistakes = mistakes
 
     def notes(self) -> tuple[Phrase, ...]:
-        """Return notes for a join that does without the files: how many mistakes, and the first."""
+        """Return notes for a contestant who joins, but whose new files were refused.
+
+        The first note says how many mistakes there are. The others are the first few mistakes.
+        """
         first = (mistake.phrase for mistake in self.mistakes[:_NOTED])
         return (say("note.files-refused", count=len(self.mistakes)), *first)
 

@@ -108,7 +108,7 @@ class Planner(_Hunter):
     def _worths(
         self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]
     ) -> dict[int, float]:
-        """Return what each marker that can be gained is worth to this seat, if above 0."""
+        """Return the worth to this seat of each marker that can be gained; only worths above 0."""
         pose, other = poses[self.seat], poses[1 - self.seat]
         worths = {}
         for marker, info in enumerate(self.game.markers):

@@ -161,7 +161,12 @@ class FlagStrike:
     def _strikes(
         self, state: State, observation: Observation, struck: AbstractSet[Claim]
     ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
-        """Return the touches that are void after this tick, and each strike's flag and seat."""
+        """Find the void touches and the strikes of a tick.
+
+        Returns:
+            The touches that are void after the tick, each as (seat, flag); and the strikes, each as
+            (flag, seat).
+        """
         void: list[tuple[int, int]] = []
         touching: dict[int, list[int]] = {}
         for seat, robot in enumerate(observation):

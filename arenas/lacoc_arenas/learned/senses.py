@@ -44,12 +44,12 @@ class Robot(NamedTuple):
 
     @property
     def first(self) -> int:
-        """Index of the first byte of its joint angles."""
+        """Index of the first byte of the robot's joint angles in `Frame.poses`."""
         return self.pose + _POSE.size
 
     @property
     def end(self) -> int:
-        """Index after the last byte of its joint angles."""
+        """Index after the last byte of the robot's joint angles in `Frame.poses`."""
         return self.first + _FLOAT.itemsize * self.joints
 
 
@@ -86,7 +86,10 @@ class Senses:
         self._boards: list[bytes] = []
 
     def see(self, frame: Frame) -> list[Numbers]:
-        """Return by seat the `size` numbers that it sees of a frame in phase READY or later."""
+        """Return what each seat sees of a frame: an array of `size` numbers for each seat.
+
+        The frame must be of phase READY or later.
+        """
         if frame.markers != self._packed:
             self._packed, self._boards = frame.markers, self._read_board(frame.markers)
         poses = frame.poses
@@ -148,7 +151,7 @@ def _place(marker: MarkerInfo, sign: int) -> tuple[object, ...]:
 
 
 def _value(state: int, seat: int) -> float:
-    """Return what a marker's state is for a seat."""
+    """Return a marker's state as a seat sees it: 1, -1, 0 or 0.5, as `Senses` explains."""
     if state == seat + 1:
         return 1.0
     return (0.0, -1.0, -1.0, 0.5)[state]

@@ -31,9 +31,9 @@ def command_line(words: Sequence[str]) -> list[str]:
 def apart() -> dict[str, Any]:
     """Return the options of `subprocess` with which a `lacoc` process is started.
 
-    Of the LACOC_ variables, the new process inherits only the language. Ctrl-C does not reach it:
-    the command that started it ends it. If that command is killed, the new process ends too,
-    because its standard input ends then (`lacoc_shared.command.parent`).
+    Of the LACOC_ variables, the new process inherits only the language. Ctrl-C does not reach the
+    new process; the process that started it must end it. If the starter is killed, the new process
+    ends too, because then its own standard input ends (`lacoc_shared.command.parent`).
     """
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     return {
@@ -85,7 +85,7 @@ class Child:
         return self._process.poll() is not None
 
     def show_crash(self) -> None:
-        """Print the errors of a process that crashed: the file with them is deleted soon."""
+        """If the process crashed, print its errors, because the file with them is deleted soon."""
         if self._process.poll():
             screen.note(_text(self._complained))
 

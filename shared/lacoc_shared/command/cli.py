@@ -128,7 +128,7 @@ def _load(entry: EntryPoint) -> Any:
 
 
 def _prepare_help(command: Any) -> None:
-    """Translate a command's help, and let the terminal's width break its lines."""
+    """Translate a command's help, and join its lines: they break at the terminal's width then."""
     if command.help:
         paragraphs = command.help.split("\n\n")
         command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)

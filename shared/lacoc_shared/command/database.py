@@ -24,12 +24,12 @@ def connect(
         application: number in the file's header that marks this kind of file.
         version: version of its tables.
         tables: SQL statements that make the tables of a new file.
-        alone: True: no other program can open the file meanwhile.
+        alone: True: while the file is open here, no other program can open it.
 
     Raises:
         Damaged: if SQLite can't read the file as a database.
-        UserError: if another program has the file for itself, if it is a database of something
-            else, or if it can't be opened.
+        UserError: if another program has locked the file, or the file is a database of something
+            else, or it can't be opened.
     """
     try:
         db = sqlite3.connect(

@@ -82,7 +82,10 @@ def translate_typer() -> None:
 
 
 def _folded(make: Callable[..., Any], **what: Any) -> Any:
-    """Make a text that may break anywhere, as Japanese must; else a table cuts off long words."""
+    """Call `make`, typer's function for a text, and let the lines of its text break anywhere.
+
+    Japanese has no spaces. So a table would take a line for one long word, and cut it off.
+    """
     text = make(**what)
     text.overflow = "fold"
     return text
@@ -90,7 +93,7 @@ def _folded(make: Callable[..., Any], **what: Any) -> Any:
 
 @cache
 def _context(base: Any) -> Any:
-    """Make a class of contexts whose formatter and help option use the language of this process."""
+    """Derive a class from a context class; its help is in the language of this process."""
 
     class Formatter(base.formatter_class):  # type: ignore[misc]
         def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:

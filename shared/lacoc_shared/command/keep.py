@@ -58,7 +58,10 @@ def make_room(path: Path) -> Path | None:
 
 
 def _claimed(path: Path) -> Path:
-    """Make an empty file with the first free number, so that no other program takes that number."""
+    """Make an empty file whose name has the first free number; return its path.
+
+    From then on no other program can take that number.
+    """
     for number in itertools.count(1):
         numbered = path.with_name(f"{path.stem}.{number}{path.suffix}")
         try:

@@ -49,7 +49,10 @@ class _Writer:
     info = warning = msg  # structlog calls the method of the level
 
     def close(self) -> None:
-        """Wait up to a second until the queued lines are written; never wait for a full queue."""
+        """Wait until all queued lines are written, but at most a second.
+
+        If the queue is full, do not wait at all.
+        """
         try:
             self._lines.put_nowait(None)
         except queue.Full:

@@ -14,7 +14,7 @@ from lacoc_shared.words import say
 
 
 def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Return court, address and certificate (with keys) for a client that only watches.
+    """Return the access of a client that only watches: court, address and, with keys, certificate.
 
     Args:
         contest: the contest file, if there is one; it gives what the options leave open.
@@ -22,8 +22,8 @@ def spectator_access(contest: Contest | None, court: str | None, connect: str | 
         connect: the court's address, or None.
 
     Raises:
-        UserError: if the contest has no such court, or several and none is named, or if the address
-            is wrong or the keys can't be read.
+        UserError: if the contest has no court of this name; if it has several courts and none is
+            named; if the address is wrong; or if the keys can't be read.
     """
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
@@ -126,7 +126,7 @@ def _office_token(contest: Contest) -> bytes:
 
 
 def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[str, str]:
-    """Return the two ways of a team into a contest: the link of its page, and its command line.
+    """Return a team's two ways into a contest: its page as "link", its command line as "command".
 
     Args:
         contest: the contest.
@@ -142,7 +142,7 @@ def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[
 
 
 def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
-    """Return everybody's access to a court with keys: seats, referee, gateway, spectators.
+    """Return all accesses to a court with keys, by seat and as "referee", "gateway", "spectators".
 
     Args:
         contest: a contest with keys.
@@ -162,7 +162,7 @@ def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict
 
 
 def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
-    """Return the command line for each person at a court: the seats, the referee, spectators.
+    """Return the command lines for a court: by seat, for "referee" and for "spectators".
 
     Args:
         name: the court's name.

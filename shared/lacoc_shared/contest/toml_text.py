@@ -53,11 +53,12 @@ def read_toml(
     Args:
         text: the file; bytes are UTF-8, with or without a byte order mark.
         max_bytes: a longer text is refused unread.
-        any_integers: leave integers beyond 64 bits to the caller, which can name their place.
+        any_integers: True accepts integers beyond 64 bits. The caller then checks the integers, and
+            can say where a wrong one stands.
 
     Raises:
-        BadToml: if it is too long, not TOML, nested too deep, has an integer beyond 64 bits, or
-            has too many dots in a line.
+        BadToml: if it is too long, not TOML or nested too deep, has too many dots in a line, or has
+            an integer beyond 64 bits that is not accepted.
     """
     if len(text) > max_bytes:
         raise BadToml(say("toml.too-long", bytes=len(text), most=max_bytes))

@@ -232,7 +232,11 @@ class _Reader:
         return LocomotionTable(tuple(sequences))
 
     def _count(self, row: Row, column: int, highest: int, what: Phrase) -> int | None:
-        """Read a row's last cell, a whole number from 1 to `highest`; None if it is not one."""
+        """Read the cell in a column of a row: a whole number from 1 to `highest`; else None.
+
+        Columns are counted from 1. It is noted as a mistake if the number is wrong, or if a cell
+        after this column is neither empty nor 0.
+        """
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
         if without_zeros(row.cells[column:]):
             self._add(
@@ -251,9 +255,10 @@ class _Reader:
     def _joints(self, rows: Sequence[Row], first: int) -> int:
         """Return how many angles a row should have.
 
-        If a robot is given and a row has an angle for each of its joints, return their number. Else
-        return the most common number in the file that fits 4, 6 or 8 legs; a given robot then does
-        not fit the file, which is noted as a mistake.
+        If a robot is given, return the robot's number of joints. But if no row has so many angles,
+        and some rows fit another robot, the file is for another robot: note this as one mistake.
+        Then, and if no robot is given, return the number of angles that fits 4, 6 or 8 legs and is
+        most common in the file.
         """
         counts = Counter(len(row.cells) - first for row in rows)
         known = {legs * JOINTS_PER_LEG for legs in LEG_LABELS}

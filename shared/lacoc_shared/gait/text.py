@@ -143,9 +143,10 @@ def line_cells(line: str) -> list[str]:
 
 
 def _is_csv(lines: Iterable[str]) -> bool:
-    """Return whether commas or semicolons separate the cells, and not tabs.
+    """Return whether lines are CSV: commas or semicolons separate their cells, and not tabs.
 
-    One comma in a cell may be a decimal comma, so only more of them show that it is a CSV file.
+    Each cell of a gait file may have one decimal comma. So only a line with more commas and
+    semicolons than cells is CSV.
     """
     lines = list(lines)
     return not any("\t" in line for line in lines) and any(

@@ -49,7 +49,7 @@ class AssignedSeat(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def files(self) -> tuple[SentFile | None, SentFile | None, SentFile | None]:
-        """Robot file, Loco-data file, LocoTra-data file."""
+        """Robot file, Loco-data file and LocoTra-data file; None for a missing file."""
         return self.robot, self.postures, self.locomotion
 
 
@@ -93,7 +93,7 @@ class Assign(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     @property
     def assigned(self) -> Assigned:
-        """The part of the request that is no secret of the office."""
+        """Call, fixture and seats of this request, as the match's setup keeps them."""
         return Assigned(call=self.call, fixture=self.fixture, seats=self.seats)
 
 

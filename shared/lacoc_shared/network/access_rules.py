@@ -138,7 +138,7 @@ def _watching() -> Rules:
 
 
 def _actors(protection: Protection) -> dict[str, Rules]:
-    """Make the rules by which users may send keys and requests of a seat, or decisions."""
+    """Return the rules by user: a seat's user may send keys and requests, the referee decisions."""
     keys = Keys(protection.court)
     seats = {
         user: _acting(

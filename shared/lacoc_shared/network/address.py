@@ -175,7 +175,7 @@ def _why_not_trusted(one: str, host: str, error: ssl.SSLCertVerificationError) -
 
 
 def _trusting_all() -> ssl.SSLContext:
-    """Make a context that trusts everybody, only to find out whether the court has keys."""
+    """Make a TLS context that accepts every certificate, to test whether the court has keys."""
     context = ssl.create_default_context()
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
     return context

@@ -18,7 +18,10 @@ that size then stay in the heaps.
 
 
 def share() -> None:
-    """Let later threads share a few heaps, and return large blocks as soon as they are freed."""
+    """Set two limits for the memory that glibc keeps.
+
+    Threads that start later share a few heaps. Large blocks go back to the system when freed.
+    """
     _call("mallopt", _M_ARENA_MAX, _HEAPS)
     _call("mallopt", _M_MMAP_THRESHOLD, _BLOCK_BYTES)
 

@@ -98,7 +98,7 @@ def read(paths: Sequence[Path]) -> list[Message]:
 
 
 def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Popen[bytes]:
-    """Pack matches in another process, which a Ctrl-C for this one does not stop.
+    """Pack matches in another process, which goes on when Ctrl-C ends this process.
 
     Raises:
         OSError: if the system has no room for another process.
@@ -149,7 +149,7 @@ def _compare(wanted: Sequence[Message], wrong: Stop | None, packed: Path) -> Non
         packed: the packed file.
 
     Raises:
-        UserError: if the packed file lacks anything, or either is damaged.
+        UserError: if the packed file lacks anything, or if it or the last segment is damaged.
     """
     found, found_wrong = _messages([packed])
     if found_wrong or wrong or found[max(0, len(found) - len(wanted)) :] != wanted:
@@ -185,7 +185,11 @@ def _write(messages: Sequence[Message], path: Path) -> None:
 
 
 def main(folder: str, *match_ids: str) -> int:
-    """Pack matches of a folder, or with "--copy" a copy of one; return the exit code."""
+    """Pack matches of a folder; return the exit code.
+
+    With "--copy" in place of the folder, the other arguments are the path of a packed file and the
+    segments of one match. The segments are packed into that file, and stay.
+    """
     if hasattr(os, "nice"):
         os.nice(10)  # lower priority: the next match is running
     if folder == "--copy":

@@ -218,7 +218,10 @@ class RecordWriter:
         )
 
     def _ending(self) -> bytes:
-        """Return the bytes after the last message of a finished file (without chunks: no index)."""
+        """Return the bytes that follow the last message in a finished file.
+
+        They have no index, because an index lists chunks, and a segment has none.
+        """
         end = _bytes(DataEnd(data_section_crc=0))
         start = self._file.tell() + len(self._backlog) + len(end)
         statistics = Statistics(

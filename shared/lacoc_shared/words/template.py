@@ -48,7 +48,7 @@ def parse(text: str) -> tuple[Part, ...]:
     """Parse a template.
 
     Raises:
-        BadTemplate: if it does not follow the language; a test parses the whole table.
+        BadTemplate: if the text is no valid template. A test parses every template of the table.
     """
     parts: list[Part] = []
     clause: list[str | Hole] | None = None

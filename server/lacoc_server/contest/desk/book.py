@@ -67,7 +67,7 @@ class Book:
 
     @property
     def event(self) -> EventInfo:
-        """What everybody may know."""
+        """The contest's name, whether entries are open, and when they close; no secret."""
         closes_ms = milliseconds(self.where.contest.entries_close)
         return EventInfo(
             name=self.where.contest.name, open=not self.contest.closed, closes_ms=closes_ms

@@ -62,14 +62,14 @@ def apply(book: Book, team: str, entry: Entry) -> OwnEntry:
 
 
 def change(book: Book, team: str, entry: Entry) -> OwnEntry:
-    """Take other files of a team, which were weighed in.
+    """Take new files of a team; they have been weighed in.
 
     While entries are open, a team that is in uses its new files at once. When entries are closed,
     or if the team itself still waits, its files wait for the organiser.
 
     Raises:
-        UserError: if the team has left, if entries closed before it was in, or if the files can't
-            be written.
+        UserError: if the team has left the contest, if entries were closed before the team was in,
+            or if the files can't be written.
     """
     close_in_time(book.where, book.store)
     there = book.team(team)

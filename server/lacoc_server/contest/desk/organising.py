@@ -23,8 +23,8 @@ def approve(book: Book, asked: Approve) -> Said:
     """Let teams take part, or use their late files.
 
     Raises:
-        UserError: if a team has not applied, entries are closed, or a reason is missing. The teams
-            before it in the list are then in.
+        UserError: if a team has not applied, entries are closed, or a reason is missing. Teams
+            earlier in the list than this team have been let in then.
     """
     said: list[Phrase] = []
     for team in asked.teams:
@@ -38,10 +38,12 @@ def approve(book: Book, asked: Approve) -> Said:
 
 
 def decline(book: Book, team: str) -> Said:
-    """Turn an application down. A team that is in keeps its token.
+    """Turn a team's application down, and forget that its files were refused.
+
+    A team that is already in the contest keeps its token; any other team loses it.
 
     Raises:
-        UserError: if no files of the team wait, and none were refused.
+        UserError: if the team has neither waiting nor refused files.
     """
     if team not in book.applications.waiting and team not in book.refused:
         raise UserError(say("desk.no-application", team=team))
@@ -94,8 +96,8 @@ def move(book: Book, asked: Move) -> Said:
     """Move a match to another court, before another match, or to a later time.
 
     Raises:
-        UserError: if there is no such match or court, the match is decided, or it should be before
-            itself.
+        UserError: if there is no such match or court, if the match is decided, or if the match
+            would have to be played before itself.
     """
     match = deciding.match_of(book.contest, asked.pairing)
     if asked.before:
@@ -117,7 +119,7 @@ def tokens(book: Book) -> TeamTokenList:
     """Return the tokens of all teams of people that are in or wait.
 
     Raises:
-        UserError: if a new one can't be written.
+        UserError: if a new token can't be written.
     """
     people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]
     waiting = [team for team in book.applications.waiting if team not in people]

@@ -82,11 +82,11 @@ def play(
         changed: called with the contest, at the beginning and after each change.
 
     Returns:
-        How many games were played now; others were known.
+        How many games this call played; games whose result was already there do not count.
 
     Raises:
-        UserError: if something can't be written; what was played is kept. Also if games can't be
-            played, because of a bot with a mistake for example: all others are played before.
+        UserError: if something can't be written; what was played is kept. Also if a game can't be
+            played, for example because a bot has a mistake; all other games are played first.
     """
     playing: dict[Future[Ended | Phrase], _Game] = {}
     failed: dict[tuple[str, int], tuple[Job, Phrase]] = {}
@@ -133,10 +133,10 @@ def play(
 
 
 def _still_due(known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
-    """Yield the results that are still wanted.
+    """Yield the results in `known` of games that, by the facts, are still to be played.
 
-    Meanwhile another program may have appended a result of the same game, or a fact after which
-    the game is not played.
+    Another program may just have appended another result of such a game, or a fact after which the
+    game is not played.
     """
     contest = compute(facts, FORMATS)
     due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in playable(contest)}
@@ -175,11 +175,12 @@ def _seated(seat: int, team: str, entry: Entry, steer: str) -> Seated:
 
 
 def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
-    """Return how many ticks later the bots start in the next game of a match.
+    """Return how many ticks late the bots start in the next game of a match.
 
-    Otherwise teams that meet again would play the same game again. The number depends on the draw,
-    and on how often this game was played without a result that counts; never on the order in which
-    other games are played. Contest and facts are those before the game.
+    If they always started at once, two teams that meet again would repeat their earlier game. The
+    number depends on the draw, and on how often this next game was played without a result that
+    counts. It never depends on the order in which other games are played. Contest and facts are
+    those before the game.
     """
     before = 0
     for view in contest.stages:

@@ -78,7 +78,7 @@ class Applications:
         """Forget the files of a team; nothing happens if none wait.
 
         Raises:
-            UserError: if that can't be written.
+            UserError: if the database can't be written.
         """
         self._write("DELETE FROM applications WHERE team = ?", (team,))
         self._known.pop(team, None)

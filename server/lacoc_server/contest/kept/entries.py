@@ -84,7 +84,7 @@ def gather(folder: Path | None, bot: str, robot: str) -> Entry:
 
 
 def weigh(entry: Entry, games: Iterable[Arena], limits: Mapping[str, Any]) -> None:
-    """Check an entry: its files, as in a join at a court; that the robot stands; and its bot.
+    """Check an entry: weigh in its files as a court does, let its robot stand, and check its bot.
 
     Args:
         entry: the entry.

@@ -16,7 +16,9 @@ from lacoc_shared.words import render, say
 
 
 def pos_data(record: Record, seat: str) -> bytes:
-    """Make the Pos-data.txt of a seat (rules 2); it begins again when a team changes its robot.
+    """Make the Pos-data.txt of a seat (rules 2).
+
+    When a team comes with a robot that has another number of joints, all earlier rows are dropped.
 
     Raises:
         UserError: if there is no such seat, or no frame has poses of robots.
