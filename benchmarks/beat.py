@@ -29,8 +29,8 @@ def beat(arena: str, rounds: int) -> dict[str, Any]:
     A beat is drive, physics, rules, frame, encoding and record, as the court does it.
 
     Returns:
-        The median times of a beat and of its bare physics [us], the median of the rounds' ratios,
-        and the time of a beat outside `mj_step` in the quickest round [us].
+        The median times of a beat and of its bare physics [us]; the median ratio of a beat to its
+        bare physics; and the time of a beat outside `mj_step` in the quickest round [us].
     """
     ours, bare_us, ratios, own_us = [], [], [], []
     with tempfile.TemporaryDirectory() as folder:

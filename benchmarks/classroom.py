@@ -51,7 +51,7 @@ class Page:
         self._last = 0
 
     async def ask(self, do: str, **fields: Any) -> Any:
-        """Ask, and return the value of the reply.
+        """Ask the gateway to do something; return the value of the reply.
 
         Raises:
             ConnectionClosed: if the gateway has gone.
@@ -222,7 +222,7 @@ class Clock:
 
 
 async def _hold(options: argparse.Namespace, folder: Path) -> tuple[Lesson, float]:
-    """Hold the lesson; return what was found, and the processor time [s]."""
+    """Hold a lesson; return it with what its pages found, and the gateway's processor time [s]."""
     rng, clock = random.Random(1), Clock()
     words = ["class", str(folder), "--no-open", "--json", "--listen"]
     minutes_s = 60 * options.minutes / options.speed

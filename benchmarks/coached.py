@@ -74,7 +74,11 @@ def main() -> None:
 
 
 def _matters(workers: Workers) -> tuple[dict[str, Any], bool]:
-    """Rank the sample's numbers as the coach does, and compare the order with longer trials."""
+    """Rank the sample's numbers as the coach does; compare with the order by longer trials.
+
+    Returns:
+        The figures; whether both aims, for the time and for the order, are met.
+    """
     entry = entry_of(_ROBOT)
     task = task_of(entry.robot, entry.gait, _KEY, Goal.FORWARD, None)
     trials = Trials(task, workers, threading.Event())
@@ -90,7 +94,11 @@ def _matters(workers: Workers) -> tuple[dict[str, Any], bool]:
 
 
 def _sample(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
-    """Search from the sample's own table, with each way to advance to the next posture."""
+    """Search from the sample's own table, with each way to advance to the next posture.
+
+    Returns:
+        The figures for each way; whether every gait found is fast enough and keeps the robot up.
+    """
     entry = entry_of(_ROBOT)
     ways: dict[str, RobotSpec] = {
         "reached": entry.robot,
@@ -107,7 +115,11 @@ def _sample(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
 
 
 def _map(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
-    """Search for gaits of all speeds and arousals (how excited a gait looks) from the sample."""
+    """Search for gaits of all speeds and arousals (how excited a gait looks) from the sample.
+
+    Returns:
+        The figures; whether all gaits that were found are sound.
+    """
     mapped = map_gaits(_sample_trials(workers), seconds, 0, lambda _: None)
     grid, elites = mapped.archive.grid, mapped.archive.elites.values()
     speeds = [one.figures.speed_mm_s for one in elites]
@@ -123,7 +135,11 @@ def _map(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
 
 
 def _variants(workers: Workers) -> tuple[dict[str, Any], bool]:
-    """Look for six variants of the sample, and for six more that are bred from the first two."""
+    """Look for six variants of the sample, and for six more that are bred from the first two.
+
+    Returns:
+        The figures of both rounds; whether each round found six variants, all of them sound.
+    """
     trials = _sample_trials(workers)
     own = trials.task.table.angles_deg
     keep, before, rounds = [own], [own], []
@@ -156,7 +172,11 @@ def _sample_trials(workers: Workers) -> Trials:
 
 
 def _beginners(workers: Workers, options: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    """Search for a better table from each of many beginners' tables."""
+    """Search for a better table from each of many beginners' tables.
+
+    Returns:
+        The figures; whether the median gain of speed reaches the aim.
+    """
     robot = entry_of(_ROBOT).robot
     ratios, searched_s = [], []
     for _, gait in zip(range(options.tables), beginners(robot), strict=False):

@@ -47,7 +47,7 @@ settings = { match = { duration_s = 4.0, countdown_s = 1.0, start = "ready" } }
 
 
 def main() -> None:
-    """Play both contests, print what differs, and exit with 1 if anything does."""
+    """Play a contest without and with kills; print all differences, and exit with 1 if any."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.contest_kills", description=__doc__)
     parser.add_argument("--teams", type=int, default=30)
     parser.add_argument("--courts", type=int, default=4)
@@ -159,7 +159,7 @@ def _twice(facts: Sequence[AnyFact]) -> int:
 
 
 def _on_two_courts(facts: Sequence[AnyFact]) -> int:
-    """Count the calls of teams that were on a court already, and of courts that had a game."""
+    """Count the calls that name a team already on a court, or a court that already has a game."""
     wrong = 0
     on: dict[tuple[str, int], Called] = {}
     for fact in facts:

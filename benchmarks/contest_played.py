@@ -66,7 +66,7 @@ class Here:
         pass
 
     def submit(self, job: Job) -> "Future[Ended | Phrase]":
-        """Play a game."""
+        """Play a game at once; return a future that already holds its result."""
         future: Future[Ended | Phrase] = Future()
         future.set_result(attempt(job))
         return future

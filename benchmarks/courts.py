@@ -32,8 +32,9 @@ def courts(number: int, seconds: float, arena: str) -> dict[str, Any]:
         arena: the game that all courts play.
 
     Returns:
-        Beats and slow beats of the courts and of the sleeper, and the courts' processor time for a
-        beat and as a share of all cores.
+        The numbers of beats and of slow beats, for the courts and for a sleeper (a process that
+        only sleeps from beat to beat); and the courts' processor time for a beat and as a share of
+        all cores.
     """
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
@@ -86,7 +87,7 @@ def courts(number: int, seconds: float, arena: str) -> dict[str, Any]:
 
 
 def _sleep() -> None:
-    """Sleep from beat to beat as a court does; answer each line with a count."""
+    """Sleep from beat to beat as a court does; answer each input line with beats and slow beats."""
     pace, beats = Pace(time.monotonic()), 0
     os.set_blocking(sys.stdin.fileno(), False)
     print("{}", flush=True)

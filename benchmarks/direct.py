@@ -21,7 +21,7 @@ _OPEN_S = 60.0
 
 
 def main() -> None:
-    """Open the sessions, then count until the input ends."""
+    """Open the sessions. At each line of the input, print the frames since the last line."""
     parser = argparse.ArgumentParser()
     parser.add_argument("address")
     parser.add_argument("court")

@@ -78,7 +78,7 @@ class Line(msgspec.Struct, frozen=True):
 
 
 def play(number: int) -> Line:
-    """Play one of the matches; the same number gives the same match."""
+    """Play a match, and return its line of scores; the same number gives the same match."""
     name = ("othello", "flag-strike")[number % 2]
     arena = arenas.load(name)
     pair = number // 2
@@ -143,7 +143,7 @@ class Placed:
         return self.begins_s + self._beats[-1] * BEAT_S
 
     def now(self, now_s: float) -> CourtNow:
-        """Return the court at a time."""
+        """Return what the director sees of this court at a time."""
         beat = round((now_s - self.begins_s) * BEATS_PER_S)
         index = bisect_right(self._beats, beat) - 1
         if index < 0:
@@ -161,7 +161,10 @@ class Placed:
                 yield Moment(self.begins_s + after.beat * BEAT_S, self.name, size)
 
     def closing(self) -> list[tuple[float, float]]:
-        """Return when no cut may leave the match: while it is close in its last 30 s."""
+        """Return the spans (from, to) [s] in which no cut may leave the match.
+
+        In them the match is close, in its last 30 s.
+        """
         found: list[tuple[float, float]] = []
         end_s = self.ends_s
         from_s = end_s - LAST_S - 1.0
@@ -211,7 +214,10 @@ def tenth(moments: list[Moment]) -> list[Moment]:
 
 
 def of_windows(moments: list[Moment], window_s: float) -> list[Moment]:
-    """Find the largest swing of each window; return the largest of them, one for ten windows."""
+    """Find the largest swing in each window of time; return the largest of these swings.
+
+    One swing is returned for every ten windows; the swings are in order of time.
+    """
     best: dict[int, Moment] = {}
     for one in sorted(moments):
         window = int(one.at_s / window_s)
@@ -306,7 +312,12 @@ def largest(courts: list[Placed]) -> dict[str, list[Moment]]:
 
 
 def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
-    """Direct some arrangements; return the shares that were on air and how rules were kept."""
+    """Direct the courts in some arrangements of the matches.
+
+    Returns:
+        The cuts in a minute; the most cuts in any minute; the number of cuts away from a close end;
+        and for each kind of moment, the share that was on air.
+    """
     found = [measure(one, ahead_s) for one in events]
     wanted = [largest(one) for one in events]
     return {

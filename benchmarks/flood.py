@@ -36,7 +36,7 @@ _LOST_S = 5.0
 
 
 def flood(rounds: int) -> dict[str, Any]:
-    """Measure quiet and flooded rounds in turns.
+    """Measure a court's beats in turns: quiet rounds, and rounds with a flood of commands.
 
     Returns:
         The CPU time of a beat [us], quiet and flooded; their ratios; how many commands the flooder

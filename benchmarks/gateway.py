@@ -30,7 +30,7 @@ _SETTLE_S = 1.0
 def gateway(
     pages: int = 300, hz: float = 25.0, seconds: float = 10.0, rounds: int = 3
 ) -> dict[str, Any]:
-    """Measure rounds without and with the pages in turns.
+    """Measure a gateway and a court in turns: rounds without pages, and rounds with many pages.
 
     Returns:
         Processor time of the gateway [% of a core] and of a beat of the court [us], without and

@@ -17,8 +17,8 @@ from lacoc_shared.seat import BEAT_S, Phase
 def latency(rounds: int) -> dict[str, Any]:
     """Press keys at a court in a process of its own, and wait for the frame that shows each.
 
-    Court and echo take turns. A key waits for the next beat, 10 ms on average. The rest of
-    `over_echo_ms` is the time that the court itself takes.
+    Keys and echoes take turns. `over_echo_ms` is the median time of a key less that of an echo. On
+    average 10 ms of it are the wait for the next beat; the rest is the court's own time.
 
     Returns:
         Times of keys and echoes [ms].

@@ -34,7 +34,7 @@ class _Seen(NamedTuple):
 
 
 def scrape(rounds: int) -> dict[str, Any]:
-    """Measure quiet and scraped rounds in turns.
+    """Measure a court's beats in turns: quiet rounds, and rounds in which its metrics are scraped.
 
     Returns:
         The time of a beat's work [ms] and the slow beats, for quiet and for scraped rounds; the

@@ -120,7 +120,7 @@ def soak(
     warm_minutes: float | None = None,
     visitors_most: int = 10,
 ) -> Figures:
-    """Play until the time is over.
+    """Play matches, with visitors that come and go, until the time is over; return the figures.
 
     Args:
         minutes: length of the run.
@@ -174,7 +174,7 @@ class _Run:
         self._begin_s = time.monotonic()
 
     def run(self, seconds: float, warm_s: float) -> Figures:
-        """Referee matches until the time is over."""
+        """Referee matches until the time is over; return the figures of the run."""
         with open_client([self._opened.address]) as session:
             self._view = Spectator(session, self._opened.name)
             self._referee = RefereeClient(session, self._opened.name, self._opened.referee)

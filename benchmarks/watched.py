@@ -27,7 +27,7 @@ _SETTLE_S = 2.0
 
 
 def watched(direct: int, pages: int, seconds: float, rounds: int) -> dict[str, Any]:
-    """Measure rounds without and with the crowd in turns.
+    """Measure a court's beats in turns: rounds without spectators, and rounds with a crowd of them.
 
     Args:
         direct: number of spectators with a session of their own with the court.

@@ -62,7 +62,7 @@ class Room(NamedTuple):
 
 @pytest.fixture
 def room(tmp_path: Path) -> Iterator[Room]:
-    """Give a court that runs in a thread of this process, so that a test can change its disk."""
+    """Run a court in a thread, so that a test can fake a full disk; give the court's clients."""
     arena = arenas.load("othello", {"match": {"countdown_s": 0.02}})
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), arena.match.open_levels)

@@ -39,7 +39,7 @@ def test_the_chances_of_both_seats_add_up(found: list[int]) -> None:
 
 @given(MARGINS, st.integers(1, 20))
 def test_more_points_are_a_better_chance(found: list[int], more: int) -> None:
-    """If every fork gave a seat more points, the seat's chance would be at least as large."""
+    """If a seat gets more points in every fork, its chance to win does not become smaller."""
     assert odds.chance([margin + more for margin in found]) >= odds.chance(found)
 
 
@@ -57,7 +57,11 @@ def moment(beat: int, chance: float) -> Moment:
 
 
 def test_swings_and_where_to_look() -> None:
-    """The largest swing comes first; the next beat to try is its middle, or just after an event."""
+    """`swings` begins with the largest swing; `between` finds the next beat to try in a swing.
+
+    This beat comes just after the event nearest to the middle of the swing. Without an event it is
+    the middle.
+    """
     found = [moment(0, 0.5), moment(100, 0.55), moment(300, 0.95), moment(400, 0.6)]
     first, second, third = odds.swings(found)
     assert [one.before.beat for one in (first, second, third)] == [100, 300, 0]
@@ -70,7 +74,7 @@ def test_swings_and_where_to_look() -> None:
 
 
 def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
-    """Moments lie before and after the largest changes of the lead; near changes count as one."""
+    """`jumps` finds beats around the largest changes of the lead; near changes count as one."""
     playing = range(1000, 1400)
     leads = [0.0] * 400
     for index, change in ((50, 1.0), (55, 3.0), (200, 2.0), (300, -1.0), (395, -8.0)):
@@ -82,7 +86,7 @@ def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
 
 
 def test_near_moments_share_their_forks() -> None:
-    """A fork counts for all moments up to a second away; the chance at the end stays as it is."""
+    """Forks up to a second away count for a moment's odds, but not for the odds at the end."""
     margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 101: (1.0, 1.0)}
     found = [
         Moment(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
@@ -181,9 +185,9 @@ def test_an_error_comes_back_as_words(tmp_path: Path) -> None:
 
 
 def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
-    """The hash of kept forks changes with all that decides how forks end.
+    """The hash of kept forks changes when anything changes that decides how forks end.
 
-    These are the file of a bot, the record of a ghost, the folder of the game, and the software.
+    This can be a bot's file, a ghost's record, the folder of the game, or the software.
     """
     arena = arenas.load("othello", QUICK)
     players = [player(arena, 0, "straight"), player(arena, 1, "straight")]

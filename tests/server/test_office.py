@@ -53,7 +53,7 @@ def office(folder: Path) -> Iterator[Office]:
 
 @pytest.fixture
 def waiting(office: Office) -> Office:
-    """Make the court wait for the office, and give the office's side of it."""
+    """Make the court wait for the office; return the office's side of this court."""
     office.until(lambda: office.link.call is not None)
     with suppress(UserError):  # it is over, or there is none
         referee(office).decide(Abort(), "the test has ended", "Kubota")
@@ -155,7 +155,7 @@ def test_frozen_files_win(waiting: Office) -> None:
 
 
 def test_the_same_call_twice_opens_one_match(waiting: Office) -> None:
-    """A call that is sent again changes nothing; it is refused once the court has another call."""
+    """A repeated call changes nothing; once the court has another call, the old one is refused."""
     call = waiting.assign("Ants", "Bees")
     left = waiting.controller("left", "Ants")
     left.join()
@@ -349,9 +349,10 @@ def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
 
 
 def test_a_team_asks_where_it_plays(waiting: Office) -> None:
-    """A court tells a team what the office said about it; nobody else can answer for the court.
+    """A court answers a team with what the office said about this team.
 
-    A client that offers to answer these questions receives none, so it collects no token.
+    Nobody else can answer for the court. A client that offers to answer such questions receives
+    none, so it collects no token.
     """
     keys = Keys("main")
     there = Whereabouts(team="Ants", state="waits", said=say("team.awaits-draw"))

@@ -197,7 +197,7 @@ def test_every_start_and_every_resume_has_a_countdown_of_150_beats(again: bool) 
 
 
 def test_a_countdown_also_where_the_seats_start_themselves() -> None:
-    """A match without a referee (start = "ready") has the same countdown."""
+    """A match without a referee (start = "ready") also has a countdown of 3 s."""
     stage = Stage(overrides={"match": {"start": "ready"}}).to_ready()
     stage.until(P.PLAYING)
     counted = [b.frame.countdown_beats for b in stage.beats if b.frame.phase is int(P.COUNTDOWN)]
@@ -366,7 +366,7 @@ def test_a_team_that_joins_after_the_end_plays_in_the_next_match() -> None:
 
 @pytest.mark.parametrize("change", [LeaveSeat(RIGHT), ReadySeat(RIGHT, False)])
 def test_start_is_refused_if_a_team_changes_its_mind_in_its_beat(change: Input) -> None:
-    """`start` is refused if a team leaves or takes ready back in the same beat."""
+    """If a team leaves or takes ready back in the beat of `start`, `start` is refused."""
     stage = Stage().to(P.READY)
     *_, started = stage.beat(change, decide(d.Start())).outcomes
     assert isinstance(started, Refusal)

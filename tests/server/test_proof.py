@@ -83,7 +83,7 @@ def test_bits_may_differ_only_where_another_arithmetic_recorded(
 
 
 def test_each_segment_says_what_made_it() -> None:
-    """Ticks may differ in their bits only if another arithmetic recorded some of them."""
+    """A section may be replayed with other bits only if another arithmetic recorded part of it."""
     headers = [header(), header(100, THERE)]
     bits = Difference(50, ("poses",))
     for first, last, kind in ((1, 99, Kind.DIFFERS), (90, 110, Kind.OTHER_ARITHMETIC)):
@@ -117,7 +117,7 @@ def test_a_fingerprint_names_the_machine() -> None:
 
 @pytest.mark.slow
 def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
-    """An honest record verifies as the same, and so does one without a fingerprint."""
+    """The verdict on an honest record is "same", even if the record has no fingerprint."""
     for path in paths:
         assert verdict(Record.read(path)).kind is Kind.SAME
     older = with_arithmetic(Record.read(paths[0]), {})
@@ -178,7 +178,7 @@ def test_a_pose_is_told_beyond_the_bound_only(
 def test_a_model_may_have_other_last_bits(
     nudge_m: float, made_by: Mapping[str, str], kind: Kind, paths: Sequence[Path]
 ) -> None:
-    """A scene may differ in its last bits only if the record's arithmetic builds another model."""
+    """A replay's scene may have other last bits than the record's only if the models differ too."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     for at, (beat, scene) in enumerate(record.scenes):
         old = message_hash(encode(scene))

@@ -78,7 +78,7 @@ def boundaries(data: bytes) -> list[int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
-    """A simulated match of either game verifies as the same."""
+    """The verdict on the record of a simulated match is "same", in either game."""
     made = setup(arena, {"match": {"duration_s": 20.0}})
     ground = arenas.load(arena)
     bots = list(ground.bots)
@@ -164,7 +164,7 @@ def test_a_changed_event_touch_or_snapshot_is_named(
 
 
 def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
-    """Write a record again as software of protocol 1 did; return the new record's path."""
+    """Copy a record as software of protocol 1 would have written it; return the copy's path."""
     header = record.header
     versions = {**header.versions, "protocol": "1"}
     writer = RecordWriter(folder, msgspec.structs.replace(header, versions=versions))
@@ -282,7 +282,7 @@ def test_a_beat_is_whole_or_not_at_all(
 @pytest.mark.slow
 @pytest.mark.parametrize("snapshot", [0, 1])
 def test_restored_from_any_snapshot(snapshot: int, live: tuple[Path, list[Beat]]) -> None:
-    """A match that is resumed from any snapshot ends with the same digest."""
+    """From whichever snapshot a match is resumed, it ends with the digest of the whole match."""
     path, beats = live
     record = Record.read(path)
     assert len(record.snapshots) == 2

@@ -50,7 +50,7 @@ SPOTS = {
 
 @st.composite
 def scripts(draw: st.DrawFn, arena: str) -> Script:
-    """Draw robots that hop about, touch flags and stop physics."""
+    """Draw a script of ticks in which robots jump about or touch flags, or physics stops."""
     ticks = st.integers(1, 60)
     spots = st.dictionaries(SEATS, st.sampled_from(SPOTS[arena]), min_size=1)
     flags = st.dictionaries(SEATS, st.sampled_from([(5,), (6, 9), (23,)]), min_size=1)

@@ -63,17 +63,17 @@ class Asker:
         self.process = process
 
     def begin(self, what: str, request: object) -> Question:
-        """Send a request; bytes are sent as they are."""
+        """Send a request (bytes as they are); return a question whose `wait` gives the reply."""
         payload = request if isinstance(request, bytes) else encode(request)
         return self.session.question(KEYS.request(what), payload, WAIT_S)
 
     def robot(self, robot: SentFile | None = None) -> RobotReply:
-        """Ask what a robot file describes."""
+        """Ask what a robot file describes; return the studio's reply."""
         payload = self.begin("robot", RobotRequest(protocol=PROTOCOL, robot=robot)).wait()
         return decode(payload, RobotReply, TRIAL_REPLY_MAX_BYTES)
 
     def trial(self, files: GaitFiles, keys: str = "", seconds: float | None = None) -> TrialReply:
-        """Ask for a trial."""
+        """Ask for a trial; return the studio's reply."""
         request = TrialRequest(protocol=PROTOCOL, files=files, keys=keys, seconds=seconds)
         return decode(self.begin("trial", request).wait(), TrialReply, TRIAL_REPLY_MAX_BYTES)
 
@@ -223,7 +223,7 @@ def test_mistakes_in_files_are_listed(asker: Asker) -> None:
 
 
 def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
-    """A killed process is replaced; only its own request is refused, as one to send again."""
+    """A killed process is replaced. Only its own request is refused, and it may be sent again."""
     asker.trial(GaitFiles(), seconds=0.1)
     until(lambda: len(asker.workers()) == 2)
     before = {one.pid for one in asker.workers()}
@@ -250,7 +250,7 @@ def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
 
 
 def coach_request(job: str, **more: object) -> CoachRequest:
-    """Make a request to improve a quadruped's gait, whose steps are small and trials short."""
+    """Make a request to improve a quadruped's gait; the gait has small steps and short trials."""
     entry = entry_of("quadruped")
     assert entry.gait.postures is not None
     one, other = (entry.gait.postures.postures[digit] for digit in (1, 3))
@@ -395,7 +395,7 @@ def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
 
 
 def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
-    """The reply of the longest trial of an octopod, the largest possible one, arrives."""
+    """An octopod's longest trial has the largest possible reply, and this reply arrives."""
     reply = asker.trial(files_of("octopod"), seconds=60.0)
     assert reply.ticks == LONGEST_TICKS
 

@@ -63,7 +63,7 @@ def walk(speed_mm_s: float, lift_mm: float, **more: Any) -> Figures:
 @pytest.mark.parametrize("robot", ["hexapod", "quadruped", "octopod"])
 @pytest.mark.parametrize("way", WAYS)
 def test_a_step_in_a_way_is_measured_as_one(robot: str, way: Way) -> None:
-    """If `turned` changes a table by one step of a way, `look` measures about one such step."""
+    """If `turned` moves a table one step in a `Way`, such as WIDTH, `look` measures about 1."""
     styles, own = styles_of(robot), task_for(robot).table.angles_deg
     index = WAYS.index(way)
     for step in (-1.0, 1.0):

@@ -177,7 +177,10 @@ def turned_script(stage: Stage, script: Script) -> Script:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("seed", range(6))
 def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
-    """Rules 4: if the seats are exchanged, the rules give exactly the turned match."""
+    """Rules 4: if a match is turned by 180 degrees, the rules give each seat what the other had.
+
+    Each robot takes the other robot's turned path. Claims, scores and the winner must be swapped.
+    """
     script = wander(arena, seed)
     half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
     one = Stage(arena, half_minute, script=script)

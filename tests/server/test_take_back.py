@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """If a match would have ended without an event, taking this event back ends it."""
+    """If one event alone kept a match from its end, taking back that event ends the match."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -471,7 +471,7 @@ def test_taking_back_a_set_without_effect_changes_nothing(arena: str, data: st.D
 def test_a_fold_leaves_the_history_alone_and_can_be_repeated(
     arena: str, data: st.DataObject
 ) -> None:
-    """Judging a history with one event left out does not change it, and always gives the same."""
+    """`History.without` does not change its history, and a second call repeats the result."""
     history = History(GAMES[arena])
     number = 1
     for observation in data.draw(observations(arena)):

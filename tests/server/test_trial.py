@@ -136,7 +136,7 @@ def test_the_figures_of_the_sample(sample: Walk) -> None:
 
 
 def test_feet_that_are_down_are_low(sample: Walk) -> None:
-    """In over 95 % of the ticks, a foot that counts as down is lower than 1 mm, others higher."""
+    """In over 95 % of cases, feet that count as down are below 1 mm, and other feet are not."""
     part = slice(sample.span.first, sample.span.end)
     down = sample.down[part]
     assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95

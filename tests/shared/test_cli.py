@@ -161,7 +161,10 @@ def test_a_wrong_command_suggests_the_nearest(lacoc: Lacoc) -> None:
 
 @pytest.mark.parametrize("args", [("serve",), ("serve", "--court", "x"), ("serve", "--help")])
 def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> None:
-    """A command that needs MuJoCo says in one line how to install MuJoCo, with any arguments."""
+    """If MuJoCo is missing, a command that needs MuJoCo says in one line how to install it.
+
+    The arguments of the command, such as `--help`, make no difference.
+    """
     code, out, err = lacoc(*args)
 
     assert (code, out) == (2, "")

@@ -59,7 +59,7 @@ def test_a_leak_would_be_seen() -> None:
 
 @pytest.mark.parametrize("what", ["threads", "files", "sockets", "children"])
 def test_what_is_left_over_would_be_seen(what: str) -> None:
-    """One more thread, file, socket or child process than during the warm-up is found."""
+    """`left_over` finds one thread, file, socket or child process more than during the warm-up."""
     steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
     last = steady[-1]._replace(**{what: getattr(steady[-1], what) + 1})
     figures = _figures([*steady[:-1], last])
