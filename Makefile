@@ -7,7 +7,7 @@ RUN := $(BIN)/python -m
 PIP := $(RUN) pip --disable-pip-version-check --quiet
 ARGS ?=
 # Processes that share the tests: more than the two cores, because a test often waits.
-WORKERS ?= 5
+WORKERS ?= 6
 PYTEST := $(RUN) pytest --numprocesses $(WORKERS) --dist worksteal
 
 # Our code is compiled once: else each of the tests' many processes compiles it again.

@@ -4,7 +4,7 @@ import json
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
@@ -184,7 +184,8 @@ def kill(process: Any) -> None:
     children = psutil.Process(process.pid).children(recursive=True)
     os.kill(process.pid, signal.SIGKILL)
     for child in children:
-        child.kill()
+        with suppress(psutil.NoSuchProcess):  # it has ended with its gateway
+            child.kill()
     process.communicate(timeout=60)
 
 
