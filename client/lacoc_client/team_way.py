@@ -90,7 +90,7 @@ class TeamWay:
         self._said: Phrase | None = None
         self._past = ""
         """The call that the team has played."""
-        self._session = patience.until(lambda: open_client([access.connect]))
+        self._session = patience.until(lambda: open_client(access.addresses))
         try:
             self._court = patience.until(
                 lambda: office_court(self._session, access.court, any_court=any_court)

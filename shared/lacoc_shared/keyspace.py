@@ -25,6 +25,9 @@ JOIN_MAX_BYTES = 65_536
 ASSIGN_MAX_BYTES = 196_608
 """Largest assignment of the office that is read, with the files of two teams and more."""
 
+COPY_PART_BYTES = 131_072
+"""Largest part of a record that a court sends to the office at once."""
+
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
 
@@ -109,5 +112,9 @@ class Keys:
         return f"{self.root}/where"
 
     def office(self, what: str) -> str:
-        """Return the key expression of an office's request; `what`: assign, withdraw, tell, `*`."""
+        """Return the key expression of an office's request.
+
+        Args:
+            what: assign, withdraw, tell, copy or retire; `*` is for all of them.
+        """
         return f"{self.root}/office/{what}"

@@ -23,18 +23,22 @@ from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.team_way import where
 from lacoc_server.contest.live.court_link import CourtLink, NoAnswer
+from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_shared.command.child import NOT_AGAIN
 from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, Keys
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import WAITING, Whereabouts
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NoReply, open_client
+from lacoc_shared.record.files import segment_paths
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
+LONGER = {"match": QUICK["match"] | {"duration_s": 20.0}}
 REFEREED = {"match": {"countdown_s": 0.1, "duration_s": 600.0}}
 
 
@@ -57,11 +61,8 @@ def waiting(office: Office) -> Office:
     office.until(lambda: office.link.call is not None)
     with suppress(UserError):  # it is over, or there is none
         referee(office).decide(Abort(), "the test has ended", "Kubota")
-    call = office.link.call
-    if office.link.result is not None and office.link.result.outcome != "void":
-        call = office.assign("Wasps", "Moths")
-    if call:
-        assert office.withdraw(call) == Done()
+    if call := office.link.call:
+        assert office.answer(lambda: office.link.withdraw(call, official=True)) == Done()
     office.until(lambda: office.link.call == "")
     return office
 
@@ -259,6 +260,50 @@ def test_mistakes_in_frozen_files_are_told(waiting: Office) -> None:
     assert {mistake.file for mistake in refusal.mistakes} == {"bees.txt"}
 
 
+def test_a_record_is_copied_while_it_is_written(
+    waiting: Office, folder: Path, tmp_path: Path
+) -> None:
+    """A copy is the beginning of the record; after the match it is all of it, and packed."""
+    waiting.assign("Ants", "Bees", arena_settings=LONGER)
+    sheet = waiting.link.sheet
+    assert sheet is not None
+    copy = RecordCopy(tmp_path, "main")
+    copy.want(sheet.match_id)
+    beats = {0}
+
+    def step() -> bool:
+        waiting.link.poll()
+        copy.step(waiting.link)
+        with suppress(UserError):  # not even its first message is whole
+            beats.add(len(Record.read(segment_paths(tmp_path, sheet.match_id)).frames))
+        return waiting.link.result is not None
+
+    waiting.plays("Ants", "Bees", until=step)
+    assert not copy.is_whole
+    assert waiting.answer(lambda: waiting.link.withdraw(sheet.call, official=True)) == Done()
+
+    def is_whole() -> bool:
+        step()
+        return copy.is_whole
+
+    waiting.until(is_whole)
+    name = f"{sheet.match_id}.mcap"
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_bytes() == (folder / "recordings" / name).read_bytes()
+    assert len(beats) > 2
+
+
+def test_a_court_that_is_told_to_retire_ends_for_good(tmp_path: Path) -> None:
+    """The court ends with the exit code after which nobody starts it again; its match stays."""
+    contest = write_office_contest(tmp_path / "contest.toml")
+    with office_of(contest, tmp_path / "recordings") as office:
+        office.assign("Ants", "Bees")
+        with suppress(NoReply):
+            office.link.retire().wait()
+        assert office.process.wait(60) == NOT_AGAIN
+    assert [*(tmp_path / "recordings").glob("*.live.mcap")]
+
+
 def test_strangers_are_refused_and_counted(waiting: Office) -> None:
     """A wrong token is refused and counted; a message that is too large gets no answer."""
     stranger = CourtLink(waiting.session, "main", "the token of nobody")
@@ -268,13 +313,15 @@ def test_strangers_are_refused_and_counted(waiting: Office) -> None:
     answer = stranger.assign(new_call(), FIXTURE, seats).wait()
     assert answer == Refusal(say("refused.no-office-token"))
     assert stranger.withdraw(new_call()).wait() == answer
+    assert stranger.copy("20260101-100000-main-001", {}).wait() == answer
+    assert stranger.retire().wait() == answer
     session, key = waiting.session, waiting.link._keys.office("assign")
     with pytest.raises(NoReply):
         session.ask(key, bytes(ASSIGN_MAX_BYTES + 1), 0.5)
     large = {"token": "x", "more": bytes(ASSIGN_MAX_BYTES - 100)}
-    answer = stranger._ask("assign", large).wait()  # type: ignore[arg-type]
+    answer = stranger._ask("assign", large, Done).wait()  # type: ignore[arg-type]
     assert answer == Refusal(say("refused.no-office-token"))
-    counted = before.dropped.get("wrong-token", 0) + 3
+    counted = before.dropped.get("wrong-token", 0) + 5
 
     def told() -> bool:
         health = waiting.link.health

@@ -198,6 +198,33 @@ def test_courts_that_can_run_at_once_are_right(file: Path, main: str, second: st
     assert list(contests.load(file).courts) == ["main", "second"]
 
 
+ELSEWHERE = TWO.format(
+    main='elsewhere = "10.0.0.7"', second='listen = ["127.0.0.1:7448"]\nelsewhere = "10.0.0.8:7450"'
+)
+
+
+def test_a_court_elsewhere_has_two_addresses(file: Path) -> None:
+    """Clients look for it on its machine first, then where the office runs it instead."""
+    file.write_text('[office]\ntoken = "token-of-the-office"\n' + ELSEWHERE)
+    contest = contests.load(file)
+    access = entrances.spectator_access(contest, "second", None)
+    assert access.addresses == ["tcp/10.0.0.8:7450", "tcp/127.0.0.1:7448"]
+    assert entrances.spectator_access(contest, "second", "10.9.9.9").addresses == [
+        "tcp/10.9.9.9:7447"
+    ]
+
+
+def test_mistakes_with_courts_elsewhere_are_told(file: Path) -> None:
+    """They need an office, and each needs an address of its own."""
+    file.write_text(ELSEWHERE)
+    with pytest.raises(UserError, match=r"\[court\.main\]: only an office can run"):
+        contests.load(file)
+    same = ELSEWHERE.replace("10.0.0.8:7450", "10.0.0.7")
+    file.write_text('[office]\ntoken = "token-of-the-office"\n' + same)
+    with pytest.raises(UserError, match=r'court\.second.*"main" is elsewhere at .*:7447 too'):
+        contests.load(file)
+
+
 def test_no_file_and_no_text_are_said(tmp_path: Path) -> None:
     """A missing file, or one that is not text, is refused with a message."""
     with pytest.raises(UserError, match=r"No such file.*lacoc contest init"):

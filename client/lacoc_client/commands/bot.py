@@ -96,7 +96,7 @@ def bot_command(
         stopping = stack.enter_context(stop_signals())
         patience = Patience(wait, stopping)
         session = stack.enter_context(
-            patience.until(lambda: open_client([access.connect], credentials=access.credentials))
+            patience.until(lambda: open_client(access.addresses, credentials=access.credentials))
         )
         controller = patience.until(
             lambda: Controller(
@@ -152,7 +152,7 @@ def _play_match(
 ) -> bool:
     """Play one match of a team; return whether it is over."""
     access = way.access(there)
-    with open_client([access.connect]) as session:
+    with open_client(access.addresses) as session:
         controller = Controller(session, access.court, access.seat, access.token, there.team)
         if is_over(controller.view, there.call):
             return True

@@ -48,7 +48,7 @@ def team(
         return None
     plan = _load(contest)
     if plan is not None:
-        name, entry = plan.court(court or next(iter(plan.courts)))
+        name, entry = plan.court(court or plan.asked)
         if len(entry.seat) == 1:
             return None
         court = name

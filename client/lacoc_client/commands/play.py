@@ -146,7 +146,7 @@ def play(
         FileRefused: if the court finds mistakes in the files.
         UserError: if the court refuses, does not answer, or the seat is lost.
     """
-    with open_client([access.connect], credentials=access.credentials) as session:
+    with open_client(access.addresses, credentials=access.credentials) as session:
         controller = _seated(session, access, team, files, ready=ready, greeting=greeting)
         with stop_signals() as stopping, open_keys() as keys:
             TerminalPlay(controller, keys, Path()).run(stopping)
@@ -155,7 +155,7 @@ def play(
 def _at_office(access: Access, any_court: bool) -> Access | None:
     """Find a court with an office for the page of a team; None: there is none now."""
     try:
-        with open_client([access.connect]) as session:
+        with open_client(access.addresses) as session:
             court = office_court(session, access.court, any_court=any_court)
     except UserError:
         return None
@@ -196,7 +196,7 @@ def _play_match(
 ) -> bool:
     """Play one match of a team at the terminal; return whether the team goes on."""
     access = way.access(there)
-    with open_client([access.connect]) as session:
+    with open_client(access.addresses) as session:
         controller = _seated(session, access, there.team, SeatFiles(), ready=ready)
         view = controller.view
 

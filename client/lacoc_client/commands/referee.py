@@ -186,7 +186,7 @@ def status(
 ) -> None:
     """Show phase, clock, score, connections, and which decisions are possible."""
     access = entrance.spectator(invitation, contest, court, connect)
-    with open_client([access.connect], credentials=access.credentials) as session:
+    with open_client(access.addresses, credentials=access.credentials) as session:
         view = Spectator(session, access.court)
         frame, health = _look(view)
         if json:
@@ -210,7 +210,7 @@ def log(
 ) -> None:
     """List the events of the match with their numbers; with --json, one on each line."""
     access = entrance.spectator(invitation, contest, court, connect)
-    with open_client([access.connect], credentials=access.credentials) as session:
+    with open_client(access.addresses, credentials=access.credentials) as session:
         view = Spectator(session, access.court)
         events = _history(view)
         if json:
@@ -244,7 +244,7 @@ def _decide(
     access = entrance.referee(**where)
     patience = Patience(wait)
     with patience.until(
-        lambda: open_client([access.connect], credentials=access.credentials)
+        lambda: open_client(access.addresses, credentials=access.credentials)
     ) as session:
         referee = RefereeClient(session, access.court, access.token)
 

@@ -67,7 +67,7 @@ def watch_command(
         pages.show_page(Home({access.court: access}, "player"), "/watch", browser)
         return
     with (
-        open_client([access.connect], credentials=access.credentials) as session,
+        open_client(access.addresses, credentials=access.credentials) as session,
         stop_signals() as stopping,
     ):
         view = Spectator(session, access.court)

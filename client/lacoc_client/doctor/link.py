@@ -29,7 +29,7 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
     """
     about = say("doctor.court", court=access.court)
     try:
-        with open_client([access.connect], credentials=access.credentials) as session:
+        with open_client(access.addresses, credentials=access.credentials) as session:
             view = Spectator(session, access.court)
             yield _version(about, access, view)
             yield _round_trip(session, view)

@@ -108,7 +108,7 @@ class CourtFeed:
         while self.session is None:
             try:
                 self.session = await self._threads.run(
-                    lambda: open_client([self.access.connect], credentials=self.access.credentials)
+                    lambda: open_client(self.access.addresses, credentials=self.access.credentials)
                 )
                 await self._subscribe(self.session)
             except UserError as error:

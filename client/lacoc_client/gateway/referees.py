@@ -24,7 +24,7 @@ def as_referee(access: Access, do: Callable[[RefereeClient], T]) -> T:
     Raises:
         UserError: if the court refuses, or does not let the referee in.
     """
-    with open_client([access.connect], credentials=access.credentials) as session:
+    with open_client(access.addresses, credentials=access.credentials) as session:
         return do(RefereeClient(session, access.court, access.token))
 
 

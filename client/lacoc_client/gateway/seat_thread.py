@@ -92,7 +92,7 @@ class SeatThread:
         try:
             noted: list[Phrase] = []
             files, wrong = self._files(noted)
-            with open_client([access.connect], credentials=access.credentials) as session:
+            with open_client(access.addresses, credentials=access.credentials) as session:
                 controller = Controller(
                     session,
                     access.court,

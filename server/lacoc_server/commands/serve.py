@@ -13,6 +13,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_server.court.assigning import Preparation
+from lacoc_server.court.copying import Copying
 from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
@@ -22,7 +23,7 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk
 from lacoc_server.journal.recovery import last_result, unfinished
 from lacoc_server.match.entry import Admission
-from lacoc_shared.command import log, options, screen
+from lacoc_shared.command import child, log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
@@ -31,7 +32,7 @@ from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.address import endpoint, own_address
+from lacoc_shared.network.address import ANY_HOST, endpoint, own_address
 from lacoc_shared.words import say
 
 app = typer.Typer()
@@ -118,7 +119,7 @@ def serve_command(
         levels,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
-    addresses = (endpoint(listen, plan.protocol),) if listen else entry.listen
+    addresses = (endpoint(listen, plan.protocol),) if listen else _own_addresses(entry)
     guard = protection(plan, name)
     with ExitStack() as opened:
         weighing = opened.enter_context(Weighing(admission))
@@ -137,7 +138,8 @@ def serve_command(
         office = None
         if plan.office is not None:
             prepare = Preparation(entry.arena, own_settings, inbox.seats, admission, weighing.aside)
-            office = OfficeDesk(hash_token(plan.office.token), inbox.seats, prepare)
+            copying = Copying(folder, name, weighing.aside)
+            office = OfficeDesk(hash_token(plan.office.token), inbox.seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard, office))
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
@@ -155,7 +157,10 @@ def serve_command(
             json=json,
         )
         log.start(json)
-        running.run(lambda: bool(stop))
+        running.run(lambda: bool(stop) or (office is not None and office.retired))
+    if office is not None and office.retired:
+        screen.note(say("serve.retired", court=name))
+        raise typer.Exit(child.NOT_AGAIN)
 
 
 def _contest(
@@ -170,6 +175,14 @@ def _contest(
     seats = [seat.id for seat in arenas.load(name).seats]
     listen_at = (listen or contests.LOOPBACK,)
     return contests.throwaway(name, seats, listen_at, court or contests.MAIN), True
+
+
+def _own_addresses(entry: contests.Court) -> tuple[str, ...]:
+    """Return where a court listens: one that is run elsewhere listens on its own machine."""
+    if not entry.elsewhere:
+        return entry.listen
+    protocol, port = entry.elsewhere.partition("/")[0], entry.elsewhere.rpartition(":")[2]
+    return (f"{protocol}/{ANY_HOST[0]}:{port}",)
 
 
 def _overrides(settings: dict[str, Any], seconds: float | None) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Any, NamedTuple, Self
 
 from lacoc_server.doors.decision_desk import DecisionDesk
-from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox, Later
+from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox
 from lacoc_server.doors.office_desk import Answer, OfficeDesk
 from lacoc_server.doors.outbox import Outbox
 from lacoc_shared.codec import encode, message_hash
@@ -28,7 +28,7 @@ from lacoc_shared.messages import (
     SeatHealth,
     Sheet,
 )
-from lacoc_shared.messages.office import Assigned, Whereabouts
+from lacoc_shared.messages.office import Assigned, Copied, Whereabouts
 from lacoc_shared.network.access_rules import Protection
 from lacoc_shared.network.session import Desk, Request, Ring, open_court
 from lacoc_shared.words import Phrase
@@ -40,9 +40,12 @@ _REQUESTS_PER_BEAT = 4  # refused ones; at most one request of a desk enters a b
 _FETCHES_PER_BEAT = 8
 
 
-_Told = Done | Whereabouts
+_Told = Done | Copied | Whereabouts
 """Answers that do not concern the match."""
-_Judge = Callable[[Request], Input | _Told | Refusal | Later]
+_Judged = Input | _Told | Refusal
+_Later = Callable[[], _Judged | None]
+"""A function that is called in each beat until it returns what became of a request."""
+_Judge = Callable[[Request], _Judged | _Later]
 
 
 class Arrival(NamedTuple):
@@ -101,7 +104,7 @@ class CourtNetwork:
         if office_desk is not None:
             self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
             self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(office_desk)))
-        self._waiting: dict[Desk, tuple[Request, Later]] = {}
+        self._waiting: dict[Desk, tuple[Request, _Later]] = {}
         """The request at each desk that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
@@ -243,7 +246,7 @@ class CourtNetwork:
         for _ in range(_REQUESTS_PER_BEAT):
             if desk in self._waiting:
                 request, later = self._waiting.pop(desk)
-                judged: Input | _Told | Refusal | Later = later() or later
+                judged: _Judged | _Later = later() or later
             elif (taken := desk.take()) is not None:
                 request, judged = taken, judge(taken)
             else:
@@ -278,7 +281,7 @@ class CourtNetwork:
         return self._decision_desk.decision(name, request.payload)
 
 
-def _seat_judge(judge: Callable[[int, bytes], Input | Refusal | Later], seat: int) -> _Judge:
+def _seat_judge(judge: Callable[[int, bytes], _Judged | _Later], seat: int) -> _Judge:
     return lambda request: judge(seat, request.payload)
 
 

@@ -19,7 +19,15 @@ from lacoc_shared import codec, seal
 from lacoc_shared.codec import encode
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Done, Refusal
-from lacoc_shared.messages.office import Assign, AssignedSeat, Tell, Withdraw
+from lacoc_shared.messages.office import (
+    Assign,
+    AssignedSeat,
+    Copied,
+    Copy,
+    Retire,
+    Tell,
+    Withdraw,
+)
 from lacoc_shared.mistakes import printable
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
@@ -38,7 +46,13 @@ Prepare = Callable[[Assign], Callable[[], T | Refusal | None]]
 It returns a function that is called in each beat until it returns what the court needs to open the
 match, or a refusal.
 """
-Answer = Done | Refusal | Callable[[], Done | Refusal | None]
+CopyPart = Callable[[Copy], Callable[[], Copied | Refusal | None]]
+"""Starts to read a part of a record, beside the beats.
+
+It returns a function that is called in each beat until it returns the part, or a refusal.
+"""
+_Reply = Done | Copied | Refusal
+Answer = _Reply | Callable[[], _Reply | None]
 """An answer, or a function that is called in each beat until it returns one."""
 
 
@@ -60,12 +74,18 @@ class OfficeDesk(Generic[T]):
         token_hash: hash of the office's token.
         seats: names of the court's seats, in the arena's order.
         prepare: prepares a match.
+        copy_part: reads a part of a record.
     """
 
-    def __init__(self, token_hash: str, seats: Sequence[str], prepare: Prepare[T]) -> None:
+    def __init__(
+        self, token_hash: str, seats: Sequence[str], prepare: Prepare[T], copy_part: CopyPart
+    ) -> None:
         self._token_hash = token_hash
         self._seats = tuple(seats)
         self._prepare = prepare
+        self._copy_part = copy_part
+        self.retired = False
+        """Whether the court goes on at another machine, so that this process must end."""
         self.wanted: Wanted[T] | None = None
         """What the court shall open next, as soon as its match allows it; None: nothing."""
         self.teams = TeamDesk()
@@ -94,8 +114,9 @@ class OfficeDesk(Generic[T]):
         """Judge a request.
 
         Args:
-            what: "assign", "withdraw" or "tell", from the key expression of the request.
-            payload: should be an `Assign`, a `Withdraw` or a `Tell`.
+            what: the kind of the request, from its key expression: "assign", "withdraw", "tell",
+                "copy" or "retire".
+            payload: should be an `Assign`, a `Withdraw`, a `Tell`, a `Copy` or a `Retire`.
         """
         try:
             token = codec.decode(payload, _Token, ASSIGN_MAX_BYTES).token
@@ -105,9 +126,15 @@ class OfficeDesk(Generic[T]):
                 case "assign":
                     return self._assign(codec.decode(payload, Assign, ASSIGN_MAX_BYTES))
                 case "withdraw":
-                    return self._withdraw(codec.decode(payload, Withdraw, ASSIGN_MAX_BYTES).call)
+                    return self._withdraw(codec.decode(payload, Withdraw, ASSIGN_MAX_BYTES))
                 case "tell":
                     self.teams.tell(codec.decode(payload, Tell, ASSIGN_MAX_BYTES).teams)
+                    return Done()
+                case "copy":
+                    return self._copy_part(codec.decode(payload, Copy, ASSIGN_MAX_BYTES))
+                case "retire":
+                    codec.decode(payload, Retire, ASSIGN_MAX_BYTES)
+                    self.retired = True
                     return Done()
         except codec.BadMessage as error:
             return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
@@ -144,17 +171,17 @@ class OfficeDesk(Generic[T]):
             self.wanted = None if found is None else Wanted(found)
         return None
 
-    def _withdraw(self, call: str) -> Answer:
-        return self._withdrawn(call) or partial(self._withdrawn, call)
+    def _withdraw(self, request: Withdraw) -> Answer:
+        return self._withdrawn(request) or partial(self._withdrawn, request)
 
-    def _withdrawn(self, call: str) -> Done | Refusal | None:
-        if self._call != call:
+    def _withdrawn(self, request: Withdraw) -> Done | Refusal | None:
+        if self._call != request.call:
             return Done()
         if self._plays:
             self.wanted = None
             return self._busy()
-        if self._phase is Phase.OFFICIAL:
-            return self._refuse(Why.OLD, say("refused.call-is-over", call=call))
+        if self._phase is Phase.OFFICIAL and not request.official:
+            return self._refuse(Why.OLD, say("refused.call-is-over", call=request.call))
         self.wanted = Wanted(None)
         return None
 

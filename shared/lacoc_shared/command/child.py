@@ -15,6 +15,8 @@ from lacoc_shared.command import parent, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, current, render, say
 
+NOT_AGAIN = 75
+"""Exit code of a process that must not be started again."""
 _OPEN_S = 60.0
 """Longest time until a process must be ready [s], also on a slow machine."""
 _CLOSE_S = 10.0
@@ -84,6 +86,11 @@ class Child:
         """Whether the process has ended."""
         return self._process.poll() is not None
 
+    @property
+    def ended_for_good(self) -> bool:
+        """Whether the process has ended, and must not be started again."""
+        return self._process.poll() == NOT_AGAIN
+
     def show_crash(self) -> None:
         """If the process crashed, print its errors, because the file with them is deleted soon."""
         if self._process.poll():
@@ -126,6 +133,8 @@ def kept_child(
 ) -> Iterator[dict[str, Any]]:
     """Run a `lacoc` command as `child` does, and start it again whenever it ends.
 
+    It is not started again after the exit code `NOT_AGAIN`.
+
     Args:
         words: the words of the command line after `lacoc`.
         folder: folder for the files with the process's output.
@@ -140,7 +149,7 @@ def kept_child(
 
     def keep(words: list[str]) -> None:
         nonlocal process
-        while not ending.wait(_AGAIN_S):
+        while not ending.wait(_AGAIN_S) and not process.ended_for_good:
             if process.ended:
                 process = Child(words, folder, what)
 

@@ -27,9 +27,11 @@ def spectator_access(contest: Contest | None, court: str | None, connect: str | 
     """
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
+    stand_in = entry.stand_in() if entry and not connect else ""
     keys = contest.keys if contest else None
     address = endpoint(address, contest.protocol if contest else "tcp")
-    return Access(court=name, connect=address, ca=keys.read(keys.ca) if keys else "")
+    ca = keys.read(keys.ca) if keys else ""
+    return Access(court=name, connect=address, stand_in=stand_in, ca=ca)
 
 
 def seat_access(
@@ -134,7 +136,7 @@ def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[
         pages: address of the contest's pages, such as "http://192.168.1.20:8080".
         any_host: the host to name if a court listens on all addresses of its machine.
     """
-    court = next(iter(contest.courts.values()))
+    court = contest.courts[contest.asked]
     return {
         "link": f"{pages}/play#key={page_key(contest)}&token={token}",
         "command": f"lacoc play --connect {court.address(any_host)} --token {token}",

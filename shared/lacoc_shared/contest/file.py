@@ -75,6 +75,10 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Addresses on which the court listens."""
     connect: str = ""
     """Address for clients; "": the first of `listen`."""
+    elsewhere: str = ""
+    """Address of another machine that runs the court; "": the office's machine runs it. If the
+    other machine is gone, the office runs the court at `listen`, and clients find it at `connect`.
+    """
     seat: dict[str, SeatHolder] = {}
     """Holders by the seat's name in the arena."""
     referee: Holder
@@ -107,6 +111,20 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         Args:
             any_host: the host to name if the court listens on all addresses of its machine.
         """
+        return self.elsewhere or self._address_here(any_host)
+
+    def stand_in(self, any_host: str = "127.0.0.1") -> str:
+        """Return the address to which a client connects if the court's machine is gone.
+
+        Args:
+            any_host: as in `address`.
+
+        Returns:
+            The address; "" if the court is not run elsewhere.
+        """
+        return self._address_here(any_host) if self.elsewhere else ""
+
+    def _address_here(self, any_host: str) -> str:
         address = self.connect or self.listen[0]
         if self.host:
             return address
@@ -148,6 +166,12 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     def given_name(self) -> str:
         """The name that the organiser gave the contest; "" if none."""
         return "" if self.name == _NO_NAME else self.name
+
+    @property
+    def asked(self) -> str:
+        """The court that teams ask where they play: the first one on the office's machine."""
+        here = (name for name, court in self.courts.items() if not court.elsewhere)
+        return next(here, next(iter(self.courts)))
 
     def court(self, name: str | None = None) -> tuple[str, Court]:
         """Return a court and its name; without a name, the only court.
@@ -262,6 +286,8 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     office = None if file.office is None else _convert(file.office, Holder, "office")
     if office is not None:
         _check_office(office, courts, keys)
+    elif far := [name for name, court in courts.items() if court.elsewhere]:
+        raise _Wrong(say("contest.elsewhere-without-office", court=far[0]))
     return Contest(
         name=general.name,
         recordings=folder / general.recordings,
@@ -293,12 +319,14 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
         Keys(name)
         listen = tuple(endpoint(one, protocol) for one in court.listen)
         connect = court.connect and endpoint(court.connect, protocol)
-        check_protocols([*listen, connect] if connect else listen, keys=keys)
+        elsewhere = court.elsewhere and endpoint(court.elsewhere, protocol)
+        check_protocols([*listen, *filter(None, (connect, elsewhere))], keys=keys)
         return msgspec.structs.replace(
             court,
             arena=_beside(folder, court.arena),
             listen=listen,
             connect=connect,
+            elsewhere=elsewhere,
             seat=holders,
         )
     except UserError as error:
@@ -328,6 +356,8 @@ def _check_ports(courts: dict[str, Court]) -> None:
         for at in () if apart else collisions(other.listen, one.listen):
             free = free_beside(at, taken)
             raise _Wrong(say("contest.same-port", court=second, other=first, at=at, free=free))
+        if one.elsewhere and one.elsewhere == other.elsewhere:
+            raise _Wrong(say("contest.same-machine", court=second, other=first, at=one.elsewhere))
 
 
 def _limit(name: str, value: Any) -> float:

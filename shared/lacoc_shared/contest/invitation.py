@@ -30,6 +30,8 @@ class Access(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     court: str
     connect: str
     """Address of the court."""
+    stand_in: str = ""
+    """Address at which the court goes on if the machine at `connect` is gone; "": none."""
     role: Role = "spectators"
     seat: str = ""
     """The seat's name; "" for every other role."""
@@ -40,6 +42,11 @@ class Access(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def __repr__(self) -> str:
         return f"Access(user={self.user!r}, connect={self.connect!r})"
+
+    @property
+    def addresses(self) -> list[str]:
+        """Where to look for the court: the first address that answers is used."""
+        return [self.connect, self.stand_in] if self.stand_in else [self.connect]
 
     @property
     def user(self) -> str:
@@ -79,8 +86,10 @@ def read_invitation(path: Path) -> Access:
     try:
         access = msgspec.convert(read_toml(path.read_bytes(), _MAX_BYTES), Access)
         Keys(access.court)
-        connect = endpoint(access.connect, "tls" if access.ca else "tcp")
-        return msgspec.structs.replace(access, connect=connect)
+        protocol = "tls" if access.ca else "tcp"
+        connect = endpoint(access.connect, protocol)
+        stand_in = access.stand_in and endpoint(access.stand_in, protocol)
+        return msgspec.structs.replace(access, connect=connect, stand_in=stand_in)
     except (OSError, BadToml, msgspec.ValidationError, UserError) as error:
         if isinstance(error, UserError):
             wrong = say("contest.invitation-wrong", path=str(path), why=error.phrase)

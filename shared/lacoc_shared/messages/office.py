@@ -98,10 +98,46 @@ class Assign(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class Withdraw(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: do not play this match, if it has not begun."""
+    """A request of the office: close this match, if it has not begun."""
 
     token: str
     call: Call
+    official: bool = False
+    """Whether to close it also when its result is official, so that its record ends."""
+
+
+class Copy(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A request of the office: send the next part of a match's record.
+
+    The office asks again and again, and so keeps a copy of what a court on another machine records.
+    """
+
+    token: str
+    """The office's token."""
+    match_id: str
+    have: dict[str, int] = {}
+    """What the office has: bytes of each file, by the file's name."""
+
+
+class Copied(msgspec.Struct, frozen=True, kw_only=True):
+    """A part of a record; the answer to `Copy`."""
+
+    file: str = ""
+    """Name of the file; "": the office has all that is recorded so far."""
+    offset: int = 0
+    """Where the part begins in the file [bytes]."""
+    data: bytes = b""
+    size: int = 0
+    """Present size of the file [bytes]."""
+    is_whole: bool = False
+    """True: the match is over, and the office has all of its record."""
+
+
+class Retire(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A request of the office: end your process. Your court goes on at another machine."""
+
+    token: str
+    """The office's token."""
 
 
 class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):

@@ -2,7 +2,14 @@
 
 import typer
 
-from lacoc_server.commands.contest import checking, deciding, inviting, playing, setting_up
+from lacoc_server.commands.contest import (
+    checking,
+    deciding,
+    elsewhere,
+    inviting,
+    playing,
+    setting_up,
+)
 
 app = typer.Typer(
     help="Run a contest: its file, courts and tokens; entries, matches, standings and their proof.",
@@ -17,6 +24,7 @@ for command in (
     inviting.invite,
     playing.withdraw,
     playing.run,
+    elsewhere.courts,
     playing.standings,
     deciding.decide,
     checking.publish,

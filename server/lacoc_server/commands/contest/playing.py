@@ -114,7 +114,8 @@ def run(
 
     The office of the contest runs here, with all courts of the contest file, the pages, and the
     bots of teams that are bots. A free court gets the next game; its result comes from the court.
-    Ctrl-C, or even kill -9, loses nothing: start it again, and the contest goes on.
+    Ctrl-C, or even kill -9, loses nothing: start it again, and the contest goes on. Courts with
+    'elsewhere' in the contest file run on other machines ('lacoc contest courts').
 
     With --headless there is no network: bots play as fast as the machine can. A game is known by
     the files of both teams, the rules and the software. If its record is there, it is not played
@@ -167,7 +168,14 @@ def _live(
         screen.show(say("contest.enter-page", url=f"{where.url}/enter", code=where.code))
 
     return play_live(
-        file, opened, changed, speed=speed, listen=listen, show=browser, entering=entries
+        file,
+        opened,
+        changed,
+        screen.note,
+        speed=speed,
+        listen=listen,
+        show=browser,
+        entering=entries,
     )
 
 

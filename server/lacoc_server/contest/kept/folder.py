@@ -34,6 +34,8 @@ class ContestFolder:
         """The entries that wait for the organiser."""
         self.tokens = folder / f"{file.stem}.tokens.json"
         """The tokens of the teams; secret."""
+        self.stand_ins = folder / f"{file.stem}.stand-ins.txt"
+        """Names of the courts that have left their machine, and are run here since; one a line."""
         self.entries = EntryFolder(folder / "entries")
         self.records = self.contest.recordings
 

@@ -8,7 +8,7 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, 
 from lacoc_server.contest.league.schedule import assign
 
 LOST_MS = 20_000
-"""A court that was not heard for this long loses a game that it has not begun."""
+"""A court that was not heard for this long loses its game."""
 
 
 class Ended(NamedTuple):
@@ -54,8 +54,8 @@ def taken_back(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Itera
     """Yield the games that are taken back from their courts.
 
     These are games that are not needed any more, because a team has left; games that were moved to
-    another court or a later time; and games of courts that are gone. A game that has begun stays
-    with its court: a court that was killed goes on with it.
+    another court or a later time; and games of courts that were not heard for `LOST_MS`. A game
+    that has begun stays with a court that is heard: a court that was killed goes on with it.
     """
     needed = {
         (match.pairing.id, match.next_game, match.next_seats)

@@ -15,7 +15,16 @@ from lacoc_shared import codec
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Done, Event, Frame, Health, Refusal, Sheet
-from lacoc_shared.messages.office import Assign, AssignedSeat, Tell, Whereabouts, Withdraw
+from lacoc_shared.messages.office import (
+    Assign,
+    AssignedSeat,
+    Copied,
+    Copy,
+    Retire,
+    Tell,
+    Whereabouts,
+    Withdraw,
+)
 from lacoc_shared.network.session import Mailbox, NoReply, Question, Refused, Session
 from lacoc_shared.seat import BEAT_S, Phase
 from lacoc_shared.words import Phrase
@@ -27,7 +36,7 @@ ANSWER_S = 5.0
 GONE_S = 2.0
 """A court that has sent no health for this long does not count as there."""
 _FETCH_S = 2.0
-_MAX_BYTES = 1 << 20  # of a sheet, or of the list of events
+_MAX_BYTES = 1 << 20  # of a sheet, of the list of events, or of a part of a record
 
 
 class NoAnswer(Enum):
@@ -36,26 +45,32 @@ class NoAnswer(Enum):
     NO_ANSWER = "no-answer"
 
 
-class Asked:
-    """A request to a court that is under way."""
+class Asked(Generic[T]):
+    """A request to a court that is under way.
 
-    def __init__(self, question: Question) -> None:
+    Args:
+        question: the request.
+        kind: the kind of message that the court answers.
+    """
+
+    def __init__(self, question: Question, kind: type[T]) -> None:
         self._question = question
+        self._kind = kind
 
-    def take(self) -> Done | Refusal | NoAnswer | None:
+    def take(self) -> T | Refusal | NoAnswer | None:
         """Return the court's answer, or None if it has not come yet; never blocks."""
         return self._read(wait=False)
 
-    def wait(self) -> Done | Refusal | NoAnswer:
+    def wait(self) -> T | Refusal | NoAnswer:
         """Wait for the court's answer."""
         found = self._read(wait=True)
         assert found is not None, "a question that is waited for has an answer"
         return found
 
-    def _read(self, wait: bool) -> Done | Refusal | NoAnswer | None:
+    def _read(self, wait: bool) -> T | Refusal | NoAnswer | None:
         try:
             answer = self._question.wait() if wait else self._question.take()
-            return None if answer is None else codec.decode(answer, Done)
+            return None if answer is None else codec.decode(answer, self._kind, _MAX_BYTES)
         except Refused as refused:
             try:
                 return codec.decode(refused.payload, Refusal, _MAX_BYTES)
@@ -113,7 +128,7 @@ class CourtLink:
         arena: str = "",
         arena_settings: dict[str, Any] | None = None,
         limits: dict[str, float] | None = None,
-    ) -> Asked:
+    ) -> Asked[Done]:
         """Assign a match to the court; the answer comes when the match is open and on disk.
 
         Args:
@@ -133,19 +148,39 @@ class CourtLink:
             arena_settings=arena_settings or {},
             limits=limits or {},
         )
-        return self._ask("assign", request)
+        return self._ask("assign", request, Done)
 
-    def withdraw(self, call: str) -> Asked:
-        """Take an assigned match back; refused if it has begun or is official."""
-        return self._ask("withdraw", Withdraw(token=self._token, call=call))
+    def withdraw(self, call: str, *, official: bool = False) -> Asked[Done]:
+        """Have an assigned match closed; refused if it has begun.
 
-    def tell(self, teams: Mapping[str, Whereabouts]) -> Asked:
+        Args:
+            call: id of its call.
+            official: whether to close it also if its result is official; else this is refused.
+        """
+        request = Withdraw(token=self._token, call=call, official=official)
+        return self._ask("withdraw", request, Done)
+
+    def copy(self, match_id: str, have: Mapping[str, int]) -> Asked[Copied]:
+        """Ask for the next part of a match's record.
+
+        Args:
+            match_id: the match.
+            have: bytes that are here already, by the file's name.
+        """
+        request = Copy(token=self._token, match_id=match_id, have=dict(have))
+        return self._ask("copy", request, Copied)
+
+    def retire(self) -> Asked[Done]:
+        """Have the court's process end, because the court goes on elsewhere."""
+        return self._ask("retire", Retire(token=self._token), Done)
+
+    def tell(self, teams: Mapping[str, Whereabouts]) -> Asked[Done]:
         """Tell the court where all teams are.
 
         Args:
             teams: by the salted hash of the team's token.
         """
-        return self._ask("tell", Tell(token=self._token, teams=dict(teams)))
+        return self._ask("tell", Tell(token=self._token, teams=dict(teams)), Done)
 
     def poll(self) -> None:
         """Take in what arrived."""
@@ -224,9 +259,13 @@ class CourtLink:
             newest is not None and newest.match == health.match and newest.number >= health.events
         )
 
-    def _ask(self, what: str, request: msgspec.Struct) -> Asked:
+    def close(self) -> None:
+        """Close the connection."""
+        self._session.close()
+
+    def _ask(self, what: str, request: msgspec.Struct, kind: type[T]) -> Asked[T]:
         key = self._keys.office(what)
-        return Asked(self._session.question(key, encode(request), ANSWER_S))
+        return Asked(self._session.question(key, encode(request), ANSWER_S), kind)
 
 
 def result_of(sheet: Sheet, events: Sequence[Event]) -> CourtResult | None:

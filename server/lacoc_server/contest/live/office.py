@@ -5,7 +5,7 @@ again, it reads the facts, asks the courts what they have, and goes on.
 """
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 
 from lacoc_server.contest.headless.play import outcome
@@ -21,7 +21,7 @@ from lacoc_server.contest.live.calling import Ended, Seen, calls, results, taken
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.teller import Teller
 from lacoc_server.contest.live.whereabouts import Known
-from lacoc_shared.messages import Refusal
+from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
@@ -39,7 +39,8 @@ class Office:
         store: the facts.
         entries: the frozen files of the teams.
         token_of: returns a team's token.
-        links: the courts by name, in the order in which they are filled.
+        links: the courts by name, in the order in which they are filled; None: a court that is not
+            connected yet.
         addresses: the courts' addresses for contestants, by name.
         least_rest_ms: shortest time between two matches of a team.
         draw_from_ms: when the office closes entries and draws the first stage, in milliseconds
@@ -51,7 +52,7 @@ class Office:
         store: FactStore,
         entries: EntryFolder,
         token_of: Callable[[str], str],
-        links: Mapping[str, CourtLink],
+        links: Mapping[str, CourtLink | None],
         addresses: Mapping[str, str],
         least_rest_ms: int = 0,
         draw_from_ms: int | None = 0,
@@ -59,12 +60,13 @@ class Office:
         self._store = store
         self._entry = cache(entries.load)
         self._hash_of = cache(lambda team: lasting_hash(token_of(team)))
-        self._links = links
-        self._teller = Teller(links, addresses, token_of, least_rest_ms)
+        self._links = dict(links)
+        self._addresses = dict(addresses)
+        self._teller = Teller(self._links, self._addresses, token_of, least_rest_ms)
         self._least_rest_ms = least_rest_ms
         self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)
-        self._asked: dict[str, Asked] = {}
+        self._asked: dict[str, Asked[Done]] = {}
         """Assignments that are not answered yet, by the id of the call."""
         self._asked_ms: dict[str, int] = {}
         """When a court was asked last, by the id of the call."""
@@ -75,9 +77,29 @@ class Office:
         """What it knew at the newest step; any thread may read it."""
 
     @property
+    def facts(self) -> Sequence[AnyFact]:
+        """The facts as of the newest step, in their order."""
+        return self._facts
+
+    @property
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
         return not self.contest.planned and all(view.over for view in self.contest.stages)
+
+    def connect(self, court: str, link: CourtLink, address: str) -> None:
+        """Use another connection to a court from now on.
+
+        Args:
+            court: the court's name.
+            link: the connection.
+            address: the court's address for contestants.
+        """
+        self._links[court] = link
+        self._addresses[court] = address
+
+    def expect(self, court: str) -> None:
+        """Count a court as heard now: it is being opened, and goes on with its game."""
+        self._heard_ms[court] = time.time_ns() // 1_000_000
 
     def step(self) -> None:
         """Look at the courts once, and do what follows.
@@ -98,7 +120,7 @@ class Office:
         for call in wanted(self.contest, seen):
             link = self._links.get(call.court)
             if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
-                self._asked[call.id] = self._assign(call)
+                self._asked[call.id] = self._assign(link, call)
         self._take_back(now_ms)
         self._teller.tell(self.contest, self._facts, seen, now_ms)
         self.known = Known(seen, self._teller.pace, dict(self.held))
@@ -110,7 +132,9 @@ class Office:
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
         return over and sum(not team.gone for team in self.contest.teams) >= _TEAMS_LEAST
 
-    def _look(self, name: str, link: CourtLink, now_ms: int) -> Seen:
+    def _look(self, name: str, link: CourtLink | None, now_ms: int) -> Seen:
+        if link is None:
+            return Seen(self._heard_ms[name])
         link.poll()
         if link.is_there:
             self._heard_ms[name] = now_ms
@@ -146,7 +170,7 @@ class Office:
             back.append(new(Recalled, pairing=call.pairing, game=call.game, reason="court refused"))
         return back
 
-    def _assign(self, call: Called) -> Asked:
+    def _assign(self, link: CourtLink, call: Called) -> Asked[Done]:
         view = next(
             view
             for view in self.contest.stages
@@ -167,7 +191,7 @@ class Office:
                     locomotion=join.locomotion,
                 )
             )
-        return self._links[call.court].assign(
+        return link.assign(
             call.id,
             fixture(self.contest, view, match, call.game),
             seats,
@@ -179,7 +203,7 @@ class Office:
     def _take_back(self, now_ms: int) -> None:
         """Withdraw matches that courts have, but should not have any more."""
         running = {call.id for call in self.contest.running}
-        for link in self._links.values():
+        for link in filter(None, self._links.values()):
             call = link.call
             waits = link.phase in (Phase.LOBBY, Phase.READY)
             if call and waits and call not in running and self._may_ask(call, now_ms):

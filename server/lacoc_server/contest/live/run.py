@@ -1,8 +1,9 @@
 """A contest at its courts, with people and bots."""
 
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, ExitStack
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -16,6 +17,7 @@ from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.live import venue
+from lacoc_server.contest.live.away import AwayCourt
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.organiser import prepare
@@ -23,12 +25,17 @@ from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.contest.entrances import event_code, organiser_key
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 _STEP_S = 0.05
 """Time between two looks at the courts."""
 _FAREWELL_S = 5.0
 """The courts stay for so long after the end, so that all teams hear that the contest is over."""
+_COPY_S = 60.0
+"""Longest further wait for the newest records of courts on other machines."""
+_SHOWN_S = 60.0
+"""If the office stays, the last match is shown for so long on a court of another machine. Then the
+court closes it, so that its record can be copied whole."""
 
 
 class Opened(NamedTuple):
@@ -48,6 +55,7 @@ def play_live(
     file: Path,
     opened: Callable[[Opened], None],
     progress: Progress,
+    tell: Callable[[Phrase], None],
     *,
     speed: float = 1.0,
     listen: str | None = None,
@@ -63,6 +71,7 @@ def play_live(
         file: the contest file.
         opened: called when courts and pages are there.
         progress: told about each change.
+        tell: told what becomes of courts on other machines.
         speed: 2 plays twice as fast as real time.
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.
@@ -83,19 +92,22 @@ def play_live(
         store = stack.enter_context(FactStore(where.facts))
         prepare(where, store, entering=entering)
         logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-contest-")))
-        addresses = stack.enter_context(venue.courts(where, logs, speed))
-        links = {
-            name: CourtLink(
-                stack.enter_context(open_client([address])), name, where.contest.office.token
-            )
-            for name, address in addresses.items()
-        }
+        run_here = partial(_run_here, where, logs, speed)
+        addresses: dict[str, str] = {}
+        told: dict[str, str] = {}
+        links: dict[str, CourtLink | None] = dict.fromkeys(where.contest.courts)
+        away: list[AwayCourt] = []
+        for name, court in where.contest.courts.items():
+            if court.elsewhere:
+                addresses[name] = told[name] = court.elsewhere
+                away.append(stack.enter_context(AwayCourt(where, name, run_here, tell)))
+                continue
+            addresses[name] = address = stack.enter_context(run_here(name))
+            told[name] = venue.told_address(court, address)
+            session = stack.enter_context(open_client([address]))
+            links[name] = CourtLink(session, name, where.contest.office.token)
         tokens = TeamTokens(where.tokens)
         rest_ms = round(1000 * where.contest.least_rest_s)
-        told = {
-            name: venue.told_address(where.contest.courts[name], address)
-            for name, address in addresses.items()
-        }
         draw_from_ms = (milliseconds(where.contest.entries_close) or None) if entering else 0
         office = Office(store, where.entries, tokens.of, links, told, rest_ms, draw_from_ms)
         applications = stack.enter_context(Applications(where.applications))
@@ -104,18 +116,38 @@ def play_live(
         book = Book(where, own_store, applications, tokens)
         desk = Desk(book, key, code, lambda: office.known)
         service = stack.enter_context(DeskService(desk))
-        bots = stack.enter_context(venue.Bots(where, tokens, next(iter(addresses.values()))))
+        bots = stack.enter_context(venue.Bots(where, tokens))
         writer = SheetWriter(where, progress)
         writer(office.contest)
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
         opened(Opened(url, addresses, f"{url}/office#organiser={key}", code))
+        over_s: float | None = None
         while entering or not office.over:
+            over_s = (over_s or time.monotonic()) if office.over else None
             office.step()
+            shown = over_s is not None and time.monotonic() - over_s > _SHOWN_S
+            for one in away:
+                one.step(office, closing=shown)
             writer(office.contest)
             bots.follow(office.contest)
             time.sleep(_STEP_S)
-        end_s = time.monotonic() + _FAREWELL_S
-        while time.monotonic() < end_s:
+        begun_s = time.monotonic()
+        while not _farewell_over(time.monotonic() - begun_s, away):
             office.step()
+            for one in away:
+                one.step(office, closing=time.monotonic() - begun_s > _FAREWELL_S)
             time.sleep(_STEP_S)
         return writer.write()
+
+
+def _run_here(
+    where: ContestFolder, logs: Path, speed: float, name: str
+) -> AbstractContextManager[str]:
+    """Return a context manager that runs a court on this machine, and gives its address."""
+    return venue.court(where, name, logs / name, speed, here=True)
+
+
+def _farewell_over(passed_s: float, away: Sequence[AwayCourt]) -> bool:
+    """Return whether the office may end: teams have heard, and all records are here."""
+    is_copied = all(one.is_copied for one in away)
+    return passed_s > _FAREWELL_S and (is_copied or passed_s > _FAREWELL_S + _COPY_S)

@@ -11,6 +11,7 @@ from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared import seal
+from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts
 
 _LOOK_MS = 1000
@@ -26,7 +27,7 @@ class Teller:
     """Keeps all courts informed; never waits for one.
 
     Args:
-        links: the courts by name.
+        links: the courts by name; None: a court that is not connected.
         addresses: their addresses for contestants.
         token_of: returns a team's token.
         least_rest_ms: shortest time between two matches of a team.
@@ -34,7 +35,7 @@ class Teller:
 
     def __init__(
         self,
-        links: Mapping[str, CourtLink],
+        links: Mapping[str, CourtLink | None],
         addresses: Mapping[str, str],
         token_of: Callable[[str], str],
         least_rest_ms: int,
@@ -54,7 +55,7 @@ class Teller:
         self._first_ms = 0
         self._told: dict[str, tuple[int, dict[str, Whereabouts]]] = {}
         """When each court was told last, and what."""
-        self._asked: dict[str, Asked] = {}
+        self._asked: dict[str, Asked[Done]] = {}
 
     def tell(
         self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, Seen], now_ms: int
@@ -84,7 +85,7 @@ class Teller:
             self._asked.pop(name, None)
             told_ms, told = self._told.get(name, (0, {}))
             is_due = now_ms - told_ms >= _AGAIN_MS
-            if link.is_there and (is_due or told != self._teams):
+            if link is not None and link.is_there and (is_due or told != self._teams):
                 self._told[name] = now_ms, self._teams
                 self._asked[name] = link.tell(self._teams)
 

@@ -25,45 +25,47 @@ _AGAIN_S = 5.0
 
 
 @contextmanager
-def courts(where: ContestFolder, folder: Path, speed: float) -> Iterator[dict[str, str]]:
-    """Run the contest's courts until the block ends; give the address of each by its name.
+def court(
+    where: ContestFolder, name: str, folder: Path, speed: float, *, here: bool
+) -> Iterator[str]:
+    """Run a court of the contest until the block ends; give its address.
 
-    A court that ends is started again: it goes on with its match.
+    A court that ends is started again: it goes on with its match. If its address is taken, it is
+    tried again for some seconds: if an office was killed, its courts may hold their addresses for
+    some seconds more.
 
     Args:
         where: the contest.
-        folder: folder for what the processes print.
+        name: the court's name.
+        folder: folder for what the process prints; it is made.
         speed: 2 plays twice as fast as real time.
+        here: True on the office's machine; False: on the machine that the contest file names for
+            the court, if it names one.
+
+    Raises:
+        UserError: if the court can't be opened.
     """
-    with ExitStack() as stack:
-        addresses = {}
-        for name in where.contest.courts:
-            words = ["serve", "--contest", str(where.file), "--court", name, "--json"]
-            words += ["--speed", str(speed)]
-            place = folder / name
-            place.mkdir()
-            addresses[name] = stack.enter_context(_court(name, words, place))["locators"][0]
-        yield addresses
-
-
-@contextmanager
-def _court(name: str, words: list[str], folder: Path) -> Iterator[dict[str, Any]]:
-    """Run a court; if its address is taken, try again for some seconds.
-
-    If an office was killed, its courts may hold their addresses for some seconds more.
-    """
+    words = ["serve", "--contest", str(where.file), "--court", name, "--json"]
+    words += ["--speed", str(speed)]
+    entry = where.contest.courts[name]
+    if here and entry.elsewhere:
+        words += ["--listen", entry.listen[0]]
+    again = _at_same_port(
+        words, entry.elsewhere if entry.elsewhere and not here else entry.listen[0]
+    )
+    folder.mkdir(parents=True, exist_ok=True)
     end_s = time.monotonic() + _ADDRESS_S
     with ExitStack() as stack:
         while True:
             what = say("child.contest-court", court=name)
             try:
-                opened = stack.enter_context(kept_child(words, folder, what, _at_same_place(words)))
+                opened = stack.enter_context(kept_child(words, folder, what, again))
                 break
             except UserError:
                 if time.monotonic() > end_s:
                     raise
                 time.sleep(_LOOK_S)
-        yield opened
+        yield opened["locators"][0]
 
 
 @contextmanager
@@ -89,7 +91,7 @@ def pages(
 
 
 def told_address(court: Court, opened: str) -> str:
-    """Return the address of a court for contestants, who may be on other machines.
+    """Return the address for contestants of a court on this machine; they may be on others.
 
     Args:
         court: its entry in the contest file.
@@ -103,9 +105,19 @@ def told_address(court: Court, opened: str) -> str:
     return f"{opened.partition('/')[0]}/{own_address()}:{port}"
 
 
-def _at_same_place(words: list[str]) -> Callable[[dict[str, Any]], list[str]]:
-    """Return a function that gives the words of a court's later starts, at its first address."""
-    return lambda opened: [*words, "--listen", opened["locators"][0]]
+def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], list[str]]:
+    """Return a function that gives the words of a court's later starts.
+
+    If the court took a free port at its first start, it has the same port later.
+    """
+    place, _, port = listen.rpartition(":")
+
+    def again(opened: dict[str, Any]) -> list[str]:
+        if port != "0":
+            return words
+        return [*words, "--listen", f"{place}:{opened['locators'][0].rpartition(':')[2]}"]
+
+    return again
 
 
 def _same(words: list[str]) -> Callable[[object], list[str]]:
@@ -121,13 +133,11 @@ class Bots:
     Args:
         where: the contest.
         tokens: the tokens of the teams.
-        address: the address of a court, which tells the bots where they play.
     """
 
-    def __init__(self, where: ContestFolder, tokens: TeamTokens, address: str) -> None:
+    def __init__(self, where: ContestFolder, tokens: TeamTokens) -> None:
         self._where = where
         self._tokens = tokens
-        self._address = address
         self._playing: dict[tuple[str, str], subprocess.Popen[bytes]] = {}
         """By team and its files."""
         self._ending: list[subprocess.Popen[bytes]] = []
@@ -163,7 +173,8 @@ class Bots:
 
     def _start(self, team: str, bot: str, files: str) -> "subprocess.Popen[bytes]":
         program = self._where.entries.path / files / "bot.py"
-        words = ["bot", str(program) if program.exists() else bot, "--connect", self._address]
+        name = str(program) if program.exists() else bot
+        words = ["bot", name, "--contest", str(self._where.file)]
         options = apart()
         options["env"] |= {"LACOC_TOKEN": self._tokens.of(team)}
         return subprocess.Popen(

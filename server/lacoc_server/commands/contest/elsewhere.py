@@ -1,0 +1,56 @@
+"""Run courts of a contest on another machine than the office's."""
+
+import time
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+import typer
+
+from lacoc_server.commands.contest.playing import Contest
+from lacoc_server.commands.contest.setting_up import FILE
+from lacoc_shared.command import screen
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+def courts(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="COURT...",
+            help="Courts to run here; by default all courts with 'elsewhere' in the contest file.",
+        ),
+    ] = None,
+    contest: Contest = FILE,
+    speed: Annotated[
+        float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=50)
+    ] = 1.0,
+) -> None:
+    """Run courts on a machine of their own, for an office on another machine.
+
+    In the contest file, 'elsewhere' of a court is the address of this machine. Both machines need
+    the same contest file. The courts stay open until Ctrl-C; a court that ends is started again.
+
+    The office copies their records while they are written. If this machine is gone for ten seconds,
+    the office runs a court itself: its match goes on where the copy ends. If this machine comes
+    back, its court ends.
+    """
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.live import venue
+
+    where = ContestFolder(contest)
+    chosen = names or [name for name, one in where.contest.courts.items() if one.elsewhere]
+    if not chosen:
+        raise UserError(say("contest.none-elsewhere", file=str(contest)))
+    for name in chosen:
+        if not where.contest.court(name)[1].elsewhere:
+            raise UserError(say("contest.not-elsewhere", court=name))
+    with ExitStack() as stack:
+        logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-courts-")))
+        for name in chosen:
+            opened = venue.court(where, name, logs / name, speed, here=False)
+            screen.show(say("contest.court-runs", court=name, at=stack.enter_context(opened)))
+        while True:
+            time.sleep(1)

@@ -1,0 +1,42 @@
+"""The list of courts that have left their machine, and are run on the office's since.
+
+An organiser who wants a court back on its own machine removes its line while it has no match.
+"""
+
+from pathlib import Path
+
+from lacoc_server.contest.publish import write
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+def stand_ins(path: Path) -> list[str]:
+    """Return the names of these courts.
+
+    Args:
+        path: the list; a name stands on each line.
+
+    Raises:
+        UserError: if it can't be read.
+    """
+    try:
+        return path.read_text(encoding="utf-8").split()
+    except FileNotFoundError:
+        return []
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        raise UserError(say("command.cannot-read", path=str(path), why=why)) from None
+
+
+def stand_in(path: Path, court: str) -> None:
+    """Add a court to the list.
+
+    Raises:
+        UserError: if the list can't be read or written.
+    """
+    names = dict.fromkeys([*stand_ins(path), court])
+    try:
+        write(path, "".join(f"{name}\n" for name in names).encode())
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=str(path), why=why)) from None

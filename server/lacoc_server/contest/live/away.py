@@ -1,0 +1,190 @@
+"""Courts on other machines: the office keeps a copy of their records, and can stand in for them.
+
+While a court plays elsewhere, its record is copied here. If the court is not heard for some
+seconds while it has a game, its machine may be gone: the office opens the court here, and the game
+goes on from the copy. From then on the court stays here, also when the office is started again. If
+its machine comes back, the court there is told to end, so that there is one court of this name.
+"""
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import AbstractContextManager, ExitStack
+from typing import Self
+
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.stand_ins import stand_in, stand_ins
+from lacoc_server.contest.league.facts import Played
+from lacoc_server.contest.live import venue
+from lacoc_server.contest.live.court_link import CourtLink
+from lacoc_server.contest.live.office import Office
+from lacoc_server.contest.live.record_copy import RecordCopy
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import open_client
+from lacoc_shared.words import Phrase, say
+
+GONE_S = 10.0
+"""A court that was not heard for this long goes on here. Before, its own machine may start it
+again."""
+_AGAIN_S = 2.0
+"""Time between two attempts to connect, to open a court here, or to end one elsewhere."""
+
+
+class Pause:
+    """The time between two attempts to do something."""
+
+    def __init__(self) -> None:
+        self._next_s = 0.0
+
+    def over(self) -> bool:
+        """Return whether it is time for the next attempt; if so, begin the next pause."""
+        now_s = time.monotonic()
+        if now_s < self._next_s:
+            return False
+        self._next_s = now_s + _AGAIN_S
+        return True
+
+
+class AwayCourt:
+    """A court of another machine, as the office sees it; used as a context manager.
+
+    Args:
+        where: the contest.
+        name: the court's name.
+        open_here: returns a context manager that runs the court on this machine, and gives its
+            address.
+        tell: told what becomes of the court.
+        gone_s: time without a sign of the court after which it goes on here.
+    """
+
+    def __init__(
+        self,
+        where: ContestFolder,
+        name: str,
+        open_here: Callable[[str], AbstractContextManager[str]],
+        tell: Callable[[Phrase], None],
+        gone_s: float = GONE_S,
+    ) -> None:
+        assert where.contest.office is not None, "only a contest with an office has such courts"
+        self.name = name
+        self._where = where
+        self._entry = where.contest.courts[name]
+        self._token = where.contest.office.token
+        self._open_here = open_here
+        self._tell = tell
+        self._gone_s = gone_s
+        self._copy = RecordCopy(where.records, name)
+        self._there: CourtLink | None = None
+        """The connection to the other machine; None until the first one."""
+        self._heard_s = time.monotonic()
+        self._is_here = name in stand_ins(where.stand_ins)
+        self._is_open_here = False
+        self._may_connect, self._may_open, self._may_close = Pause(), Pause(), Pause()
+        self._aside = ThreadPoolExecutor(2, f"court {name}")
+        self._connecting: Future[CourtLink] | None = None
+        self._opening: Future[tuple[str, CourtLink]] | None = None
+        self._opened = ExitStack()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._aside.shutdown(cancel_futures=True)
+        self._opened.close()
+
+    @property
+    def is_copied(self) -> bool:
+        """Whether nothing of this court's records is missing here, as far as is known."""
+        return self._is_here or self._copy.is_whole
+
+    def step(self, office: Office, *, closing: bool = False) -> None:
+        """Look at the court once, and do what follows; never waits.
+
+        Args:
+            office: the office.
+            closing: whether the contest is over, so that the court shall close its last match.
+
+        Raises:
+            UserError: if a part of a record can't be written.
+        """
+        if self._there is None:
+            self._connect(office)
+        if self._is_here:
+            if not self._is_open_here:
+                self._go_on_here(office)
+            self._end_elsewhere()
+            return
+        if self._there is not None and self._there.is_there:
+            self._heard_s = time.monotonic()
+            self._look(self._there, closing)
+        if self._there is not None:
+            self._copy.step(self._there)
+        is_gone = time.monotonic() - self._heard_s > self._gone_s
+        if is_gone and any(call.court == self.name for call in office.contest.running):
+            stand_in(self._where.stand_ins, self.name)
+            self._is_here = True
+            self._tell(say("away.goes-on-here", court=self.name, at=self._entry.elsewhere))
+
+    def _connect(self, office: Office) -> None:
+        """Connect to the other machine, again and again until it answers."""
+        if self._connecting is None:
+            if self._may_connect.over():
+                self._connecting = self._aside.submit(self._connected)
+            return
+        if not self._connecting.done():
+            return
+        connecting, self._connecting = self._connecting, None
+        try:
+            self._there = link = connecting.result()
+        except UserError:  # it is not there yet
+            return
+        if not self._is_here:
+            for record in (fact.record for fact in office.facts if isinstance(fact, Played)):
+                self._copy.want(record.removesuffix(".mcap"))
+            office.connect(self.name, link, self._entry.elsewhere)
+
+    def _connected(self) -> CourtLink:
+        session = self._opened.enter_context(open_client([self._entry.elsewhere]))
+        return CourtLink(session, self.name, self._token)
+
+    def _look(self, link: CourtLink, closing: bool) -> None:
+        """Have the record of the court's match copied."""
+        sheet = link.sheet
+        if sheet is None or not sheet.call:
+            return
+        self._copy.want(sheet.match_id)
+        if closing and self._may_close.over():
+            link.withdraw(sheet.call, official=True)
+
+    def _go_on_here(self, office: Office) -> None:
+        """Open the court on this machine; if that fails, try again."""
+        office.expect(self.name)
+        if self._opening is None:
+            if self._may_open.over():
+                self._opening = self._aside.submit(self._open)
+            return
+        if not self._opening.done():
+            return
+        opening, self._opening = self._opening, None
+        try:
+            address, link = opening.result()
+        except UserError as error:
+            self._tell(say("away.can-not-open", court=self.name, why=error.phrase))
+            return
+        self._is_open_here = True
+        office.connect(self.name, link, venue.told_address(self._entry, address))
+
+    def _open(self) -> tuple[str, CourtLink]:
+        with ExitStack() as stack:
+            address = stack.enter_context(self._open_here(self.name))
+            session = stack.enter_context(open_client([address]))
+            self._opened.push(stack.pop_all())
+        return address, CourtLink(session, self.name, self._token)
+
+    def _end_elsewhere(self) -> None:
+        """End the court on the other machine, if it comes back."""
+        if self._there is None:
+            return
+        self._there.poll()
+        if self._there.is_there and self._may_close.over():
+            self._there.retire()

@@ -1,0 +1,132 @@
+"""Copies of the records that a court on another machine writes, in the contest's own folder.
+
+A copy grows while the match is played. It is always the beginning of a record, as a killed court
+leaves one, so any court can go on from it.
+"""
+
+import os
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_shared.messages.office import Copied
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files
+from lacoc_shared.record.matches import MatchName
+from lacoc_shared.words import say
+
+_AGAIN_S = 0.1
+"""Time between two questions for more of a record that is still written."""
+
+
+class RecordCopy:
+    """Copies records of one court; `step` is called again and again, and never waits for the court.
+
+    Args:
+        folder: folder of the contest's records.
+        court: the court's name.
+    """
+
+    def __init__(self, folder: Path, court: str) -> None:
+        self._folder = folder
+        self._court = court
+        self._wanted: list[str] = []
+        """Ids of matches whose copies are not whole, in the order in which they are copied."""
+        self._asked: tuple[str, Asked[Copied]] | None = None
+        """A match, and the question for its next part."""
+        self._next_s = 0.0
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing that this object was told to copy is missing."""
+        return not self._wanted
+
+    def want(self, match_id: str) -> None:
+        """Copy a match, unless its whole record is here."""
+        name = MatchName.parse(match_id)
+        if name is None or name.court != self._court or match_id in self._wanted:
+            return
+        if not files.packed_path(self._folder, match_id).exists():
+            self._wanted.append(match_id)
+
+    def step(self, link: CourtLink) -> None:
+        """Take in the part that has come, and ask for the next one.
+
+        Raises:
+            UserError: if a part can't be written.
+        """
+        if self._asked is not None:
+            match_id, asked = self._asked
+            if (answer := asked.take()) is None:
+                return
+            self._asked = None
+            if isinstance(answer, Copied):
+                self._take(match_id, answer)
+        now_s = time.monotonic()
+        if self._wanted and link.is_there and now_s >= self._next_s:
+            self._next_s = now_s + _AGAIN_S
+            match_id = self._wanted[0]
+            self._asked = match_id, link.copy(match_id, self._have(match_id))
+
+    def _have(self, match_id: str) -> dict[str, int]:
+        packed = files.packed_path(self._folder, match_id)
+        paths = [*files.segment_paths(self._folder, match_id), _unfinished(packed)]
+        sizes = {path.name: path.stat().st_size for path in paths if path.exists()}
+        if (size := sizes.pop(_unfinished(packed).name, None)) is not None:
+            sizes[packed.name] = size
+        return sizes
+
+    def _take(self, match_id: str, part: Copied) -> None:
+        packed = files.packed_path(self._folder, match_id)
+        if part.is_whole:
+            self._finish(match_id, packed)
+        elif not part.file:
+            self._wanted.append(self._wanted.pop(0))  # the other matches, then this one again
+        elif continues(match_id, self._have(match_id), part):
+            path = self._folder / part.file
+            self._append(_unfinished(packed) if path == packed else path, part)
+            self._next_s = 0.0
+
+    def _append(self, path: Path, part: Copied) -> None:
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            with path.open("ab") as file:
+                file.write(part.data)
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise UserError(say("command.cannot-write", path=str(path), why=why)) from None
+
+    def _finish(self, match_id: str, packed: Path) -> None:
+        """Give the whole packed record its name; its segments are not needed any more."""
+        self._wanted.remove(match_id)
+        unfinished = _unfinished(packed)
+        if not unfinished.exists():
+            return
+        with unfinished.open("rb+") as file:
+            os.fsync(file.fileno())
+        unfinished.rename(packed)
+        for segment in files.segment_paths(self._folder, match_id):
+            segment.unlink(missing_ok=True)
+        files.sync_folder(self._folder)
+
+
+def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
+    """Return whether a part belongs to a match's record, and begins where what is here ends.
+
+    A court that is not what it seems must write nothing else on this machine.
+
+    Args:
+        match_id: the match.
+        have: bytes that are here, by the file's name.
+        part: what came.
+    """
+    segment = files.segment_name(Path(part.file))
+    is_segment = segment is not None and segment[0] == match_id
+    is_named = is_segment or part.file == f"{match_id}.mcap"
+    return is_named and Path(part.file).name == part.file and part.offset == have.get(part.file, 0)
+
+
+def _unfinished(packed: Path) -> Path:
+    """Return the name of a packed record while parts of it are missing."""
+    return packed.with_name(f"{packed.name}.copy")

@@ -1,0 +1,127 @@
+"""A court on another machine: its records are copied, and the office stands in for it."""
+
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from lacoc_process import started
+from ports import free_port
+from waiting import until
+
+from lacoc_server.contest import organiser
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.league.facts import Called, Played, Recalled
+from lacoc_shared.command.child import NOT_AGAIN
+from lacoc_shared.record.reader import Record
+
+CONTEST = """
+[contest]
+name = "Away"
+[office]
+token = "token-of-the-office"
+[court.blue]
+arena = "othello"
+listen = ["127.0.0.1:{here}"]
+elsewhere = "tcp/127.0.0.1:{there}"
+referee.token = "token-of-the-referee"
+[stage.final]
+format = "single-knockout"
+games = 3
+settings.match = {{ duration_s = 12.0, countdown_s = 0.5, start = "ready" }}
+"""
+SPEED = "3"
+
+
+@pytest.fixture
+def processes() -> Iterator[ExitStack]:
+    """Give a stack that ends the processes of a test."""
+    with ExitStack() as stack:
+        yield stack
+
+
+def start(stack: ExitStack, *words: str) -> "subprocess.Popen[Any]":
+    """Start a command; it ends with the test."""
+    process = started(*words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def end() -> None:
+        process.terminate()
+        process.communicate(timeout=60)
+
+    stack.callback(end)
+    return process
+
+
+def lose_machine(process: "subprocess.Popen[Any]") -> None:
+    """Kill a command and all that it started, as a power cut does."""
+    children = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(signal.SIGKILL)
+    for child in children:
+        child.kill()
+
+
+@pytest.mark.long(minutes=1)
+@pytest.mark.slow
+def test_a_match_goes_on_here_if_its_machine_is_gone(tmp_path: Path, processes: ExitStack) -> None:
+    """The first game is copied whole; in the second one the court's machine is lost.
+
+    The office opens the court itself, from the copy, and the contest ends. When the other machine
+    comes back meanwhile, its court ends.
+    """
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    file = here / "contest.toml"
+    file.write_text(CONTEST.format(here=free_port(), there=free_port()))
+    for team, bot in {"Ann": "straight", "Bob": "nearest"}.items():
+        organiser.enter(file, team, None, bot, "")
+    there.mkdir()
+    shutil.copy(file, there)
+
+    office = start(processes, "contest", "run", str(file), "--speed", SPEED)
+    words = ("--contest", str(there / "contest.toml"), "--speed", SPEED)
+    machine = start(processes, "contest", "courts", *words)
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+
+        def records() -> list[str]:
+            return [fact.record for fact in store.facts() if isinstance(fact, Played)]
+
+        until(records, 240)
+        until(lambda: beats(where.records, but=records()[0]) > 150, 240)
+        lose_machine(machine)
+        until(lambda: (here / "contest.stand-ins.txt").exists(), 240)
+        again = start(processes, "serve", "--court", "blue", *words)
+        until(lambda: again.poll() is not None, 240)
+        assert again.returncode == NOT_AGAIN
+        until(lambda: office.poll() is not None, 240)
+        facts = store.facts()
+
+    assert office.returncode == 0, office.stdout and office.stdout.read()
+    assert not [fact for fact in facts if isinstance(fact, Recalled)]
+    played = [fact for fact in facts if isinstance(fact, Played)]
+    assert len([fact for fact in facts if isinstance(fact, Called)]) == len(played)
+    assert {path.name for path in where.records.iterdir()} == {one.record for one in played}
+    resumed = [len(Record.read(where.records / one.record).headers) for one in played]
+    assert resumed[:2] == [1, 2]
+    organiser.publish_to(file, tmp_path / "cup")
+    checked = run(tmp_path / "cup")
+    assert checked.returncode == 0, checked.stdout
+
+
+def beats(folder: Path, but: str) -> int:
+    """Return how many beats are recorded of a match whose record is not named `but`."""
+    found = [path for path in folder.glob("*.live.mcap") if f"{path.name[:-14]}.mcap" != but]
+    return len(Record.read(found).frames) if found else 0
+
+
+def run(folder: Path) -> "subprocess.CompletedProcess[str]":
+    """Verify a published folder."""
+    process = started("contest", "verify", str(folder), stdout=subprocess.PIPE, text=True)
+    out, _ = process.communicate(timeout=240)
+    return subprocess.CompletedProcess((), process.returncode, out)
