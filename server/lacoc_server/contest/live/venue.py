@@ -104,12 +104,15 @@ def told_address(court: Court, opened: str) -> str:
 
 
 def _at_same_place(words: list[str]) -> Callable[[dict[str, Any]], list[str]]:
-    """Return a function that gives the words of a court's later starts, at its first address."""
+    """Return a function that gives the words of the command for a court's later starts.
+
+    The words let the court listen at the address of its first start.
+    """
     return lambda opened: [*words, "--listen", opened["locators"][0]]
 
 
 def _same(words: list[str]) -> Callable[[object], list[str]]:
-    """Return a function that gives the same words for every later start."""
+    """Return a function that gives the words of the command for later starts: always `words`."""
     return lambda _: words
 
 
