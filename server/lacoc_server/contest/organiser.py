@@ -177,7 +177,7 @@ def play_headless(
         progress: told about each change.
 
     Returns:
-        The sheet at the end, and how many games were played now.
+        The sheet at the end, and how many games this call played.
 
     Raises:
         UserError: if the contest has no stage or too few teams, or something goes wrong.

@@ -141,7 +141,7 @@ def _games(sheet: ContestSheet) -> list[Sequence[object]]:
 
 
 def _csv(rows: Iterable[Sequence[object]]) -> bytes:
-    """Write rows for spreadsheets, which must not take a name for a formula."""
+    """Return rows as CSV in which a spreadsheet takes no name for a formula."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([_cell(value) for value in row] for row in rows)
     return text.getvalue().encode("utf-8-sig")  # Excel needs the mark to see UTF-8

@@ -44,7 +44,12 @@ class _Link:
         self._carried = 0
 
     def count(self, silent: bool, heard: int) -> None:
-        """Count one beat of PLAYING."""
+        """Count one beat of PLAYING.
+
+        Args:
+            silent: whether the seat is silent.
+            heard: number of valid commands that the seat's door has counted so far.
+        """
         self.silent_s += silent * BEAT_S
         self.silences += silent and not self._silent
         self._silent = silent

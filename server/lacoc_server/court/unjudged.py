@@ -41,7 +41,10 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
 
 
 def _put_back(match: Match) -> list[Input]:
-    """Put back the robots that stopped physics; otherwise physics would stop again."""
+    """Return decisions that put back the robots that stopped physics; none if it goes on.
+
+    Without them physics would stop again.
+    """
     if match.fault is None:
         return []
     return [

@@ -128,8 +128,9 @@ class Links:
         """Measure a round trip, if a command names a newer frame than all commands before it.
 
         Returns:
-            Whether the command proves that its sender is there: it names a newer frame than before,
-            or the same frame while that frame is recent. So an overheard command is soon worthless.
+            Whether the command proves that its sender is there. It does if it names a newer frame
+            than all commands before it, or the newest of their frames while that frame is recent.
+            So an overheard command is soon worthless.
         """
         link, seen = self._links[seat], (command.match, command.seen)
         if seen <= link.newest:

@@ -65,7 +65,7 @@ def frozen_join(index: int, assigned: AssignedSeat, token_hash: str) -> JoinSeat
 
 
 def _teams(assigned: Assigned | None, token: str) -> Iterator[AssignedSeat]:
-    """Yield the seats of an assigned match that a token opens."""
+    """Yield the seats that a token opens in an assigned match."""
     for seat in assigned.seats if assigned is not None else ():
         if _opening(token, seat.token_hashes) is not None:
             yield seat

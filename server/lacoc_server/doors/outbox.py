@@ -20,7 +20,7 @@ class Outbox:
         self._thread.start()
 
     def send(self, publisher: Publisher, payload: bytes) -> None:
-        """Send a message that no newer one replaces."""
+        """Send a message; newer messages do not replace it."""
         self._waiting.put((publisher, payload))
 
     def send_newest(self, publisher: Publisher, payload: bytes) -> None:

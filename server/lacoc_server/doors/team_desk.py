@@ -27,7 +27,7 @@ class TeamDesk:
         """Number of refusals by `Why`."""
 
     def tell(self, teams: Mapping[str, Whereabouts]) -> None:
-        """Take what the office tells, in place of what it told before."""
+        """Keep what the office tells about all teams, in place of what it told before."""
         self._teams = teams
         self._salts = tuple({bytes.fromhex(one.partition("$")[0]) for one in teams})
 

@@ -98,10 +98,10 @@ class Journal:
         return beat, encoded
 
     def flush(self) -> None:
-        """Write what still waits in memory to the file.
+        """Write to the file what still waits in memory.
 
         Raises:
-            UserError: if the disk refuses them.
+            UserError: if the disk refuses it.
         """
         if self.writer is not None:
             self.writer.flush()

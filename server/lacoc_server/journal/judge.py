@@ -374,7 +374,10 @@ def _frame_differences(recorded: Frame, again: Frame) -> list[str]:
 
 
 def _near(one: object, other: object) -> bool:
-    """Return whether two scenes, or parts of them, are equal, up to `_SCENE_BOUND` in a float."""
+    """Return whether two scenes, or parts of them, are equal.
+
+    A float may differ by up to `_SCENE_BOUND`.
+    """
     if isinstance(one, msgspec.Struct) and type(one) is type(other):
         return all(_near(getattr(one, f), getattr(other, f)) for f in one.__struct_fields__)
     if isinstance(one, tuple) and isinstance(other, tuple):

@@ -65,8 +65,9 @@ class Unfinished:
 def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     """Find the newest match of a court, if it was left unfinished; else None.
 
-    It skips a match whose files a running process holds, such as another court of this name. It
-    also skips a small file without a header: its court was killed while it opened the match.
+    Two kinds of matches are passed over. One is a match whose files are held by a running process,
+    such as another court of this name. The other is a match with a small file without a header: its
+    court was killed while it opened the match.
 
     Args:
         folder: folder of the records.

@@ -257,7 +257,12 @@ def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> 
 
 
 def _joined(known: Difference | None, beat: int, what: str) -> Difference:
-    """Return the first difference: a new one, or `known`, which gets `what` too if of this beat."""
+    """Add a difference to the first one known so far; later beats do not count.
+
+    Returns:
+        A new difference if none was known; `known` with `what` added if it is of this beat; else
+        `known` as it was.
+    """
     if known is None:
         return Difference(beat, (what,))
     return known if known.beat != beat else Difference(beat, (*known.what, what))

@@ -22,8 +22,8 @@ _BEFORE = frozenset({Phase.LOBBY, Phase.READY})
 def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
     """Take a seat, or come back to it.
 
-    From the countdown on, a seat keeps its files for this match, and new ones wait for the next
-    one. A join for a seat that nobody has is then refused until the match is official or void.
+    From the countdown on, a seat keeps its files for this match, and new files wait for the next
+    match. A join for a seat that nobody has is then refused until the match is official or void.
     """
     seat = match.seats[item.seat]
     if not _is_assigned(match, seat, item):

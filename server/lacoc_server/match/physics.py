@@ -61,7 +61,7 @@ class Physics(Protocol):
     def save(self) -> bytes:
         """Return the whole present state; a `World` can go on from it bit for bit.
 
-        A record gives the snapshot of this beat, or b"" if it has none.
+        The physics of a record returns the recorded snapshot of this beat, or b"" if there is none.
         """
 
     def poses(self) -> bytes:

@@ -77,7 +77,8 @@ class Staging:
         """Observe a tick for the rules.
 
         Returns:
-            The observation, and the part of it that is not in the poses; None: all of it is there.
+            The observation; and its touches and new places, which the poses do not show, or None
+            if it has none.
         """
         touched, placed = self.physics.touched(), self._placed
         if not (any(touched) or any(placed)):

@@ -13,7 +13,10 @@ Bounds = tuple[float | None, float | None]
 
 
 def facts(robot: RobotSpec) -> dict[str, Any]:
-    """List a robot's numbers by name; for what each leg has, the lowest and the highest number."""
+    """List a robot's numbers by name.
+
+    For a number that each leg has, give two: the lowest and the highest of all legs.
+    """
     low, high = robot.bounds((0.0,) * robot.joints)
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     legs = robot.legs

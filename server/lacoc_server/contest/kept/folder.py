@@ -41,7 +41,7 @@ class ContestFolder:
 
     @property
     def games(self) -> list[Arena]:
-        """The arenas of all stages; one for stages with the same arena and the same open levels."""
+        """The arenas of all stages; stages with the same arena and open levels share one."""
         found: dict[tuple[str, tuple[Level, ...]], Arena] = {}
         for plan in self.plans:
             arena = game(plan)

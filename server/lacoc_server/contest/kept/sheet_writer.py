@@ -37,7 +37,12 @@ class SheetWriter:
         self._next_s = 0.0
 
     def __call__(self, contest: Contest) -> None:
-        """Look at the contest as it is now; called again and again, also without a change.
+        """Report progress if the contest has changed; write its sheet if that is due.
+
+        Call it again and again, also without a change: a change may have to wait for its sheet.
+
+        Args:
+            contest: the contest as it is now; the same object as before if nothing has changed.
 
         Raises:
             UserError: if the sheet can't be written.

@@ -76,7 +76,7 @@ class TeamTokens:
             self._write({name: one for name, one in self._tokens.items() if name != team})
 
     def _refresh(self, again: bool = False) -> None:
-        """Read the file if another program has written it since; with `again`, in any case."""
+        """Read the file if it has changed since it was last read; with `again`, in any case."""
         try:
             now = _state(self._path)
             if again or now != self._read_at:

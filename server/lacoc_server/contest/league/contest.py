@@ -275,7 +275,10 @@ def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
 
 
 def _ended(facts: Sequence[AnyFact]) -> dict[str, tuple[str, int]]:
-    """Find the end of each team's newest game."""
+    """Return for each team its newest game that has ended.
+
+    The value of a team is the id of the game's pairing, and when the game ended [ms].
+    """
     ended: dict[str, tuple[str, int]] = {}
     for fact in facts:
         if isinstance(fact, Played):

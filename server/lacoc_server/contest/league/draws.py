@@ -33,7 +33,7 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def gone(self) -> bool:
-        """Whether it plays no more."""
+        """Whether the team plays no more."""
         return self.withdrawn or self.disqualified
 
 
@@ -77,7 +77,10 @@ def drawn_stages(
     formats: Mapping[str, Format],
     unused: dict[str, Phrase],
 ) -> tuple[list[tuple[Planned, Stage]], list[Planned]]:
-    """Return the drawn stages, in the order of the draws, and the plans of the other stages."""
+    """Return the drawn stages, each with its plan, and then the plans of all other stages.
+
+    The drawn stages are in the order of their draws.
+    """
     plans: dict[str, Planned] = {}
     stages: dict[str, tuple[Planned, Stage]] = {}
     for fact in facts:

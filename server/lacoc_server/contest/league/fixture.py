@@ -43,7 +43,7 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
 
 
 def _winners(view: StageView, match: Match, stage: str | None, number: int) -> Phrase:
-    """Say what a match of the winners' bracket is."""
+    """Name a match of the winners' bracket: "Final", "Semi-final 1", or by round and number."""
     pairing = match.pairing
     double = any(one.pairing.section == "l" for one in view.matches)
     there = sum(

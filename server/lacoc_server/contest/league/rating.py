@@ -81,10 +81,10 @@ def ratings(games: Iterable[Rated]) -> Ratings:
 
 
 def _draws(games: Sequence[Rated]) -> dict[str, float]:
-    """Return what is assumed about draws where the games can't tell how often they happen.
+    """Return arguments for the model: what to assume about draws if the games can't tell.
 
     If no game was drawn, draws never happen. If all were, half of all games are draws. Otherwise
-    nothing is assumed: the games tell.
+    nothing is assumed: the games tell how often draws happen.
     """
     if all(game.winner for game in games):
         return {"pinned_draw": 0.0}

@@ -101,7 +101,7 @@ class _Tally:
         return sum(strength * points for strength, (_, points, _) in pairs)
 
     def direct(self, team: str, tied: Collection[str]) -> int:
-        """Return a team's points from matches against tied teams; 0 unless all these have met."""
+        """Return a team's points against tied teams; 0 unless all tied teams have met."""
         for one in tied:
             if not {other for other, _, _ in self.matches[one]} >= {*tied} - {one}:
                 return 0

@@ -207,7 +207,7 @@ class CourtLink:
 
     @property
     def sheet(self) -> Sheet | None:
-        """The court's sheet; None while the court is away or a newer one is under way."""
+        """The court's sheet; None while the court is away or a newer sheet is under way."""
         if self.health is None or not self.is_there or self.health.sheet != self._sheet.hash:
             return None
         return self._sheet.value
@@ -250,7 +250,10 @@ class CourtLink:
 
     @property
     def _has_events(self) -> bool:
-        """Whether the list of events here is as new as the newest health."""
+        """Whether the newest event that the court's health names has arrived here.
+
+        True also if the health names none.
+        """
         health, events = self.health, self._events.value or ()
         if health is None or health.events == 0:
             return True

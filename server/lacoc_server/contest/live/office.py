@@ -102,7 +102,7 @@ class Office:
         self._heard_ms[court] = time.time_ns() // 1_000_000
 
     def step(self) -> None:
-        """Look at the courts once, and do what follows.
+        """Look at the courts once; then note results, draw, take games back and call others.
 
         Raises:
             UserError: if the facts can't be read or written, or a frozen file has changed.
@@ -146,7 +146,12 @@ class Office:
         return Seen(self._heard_ms[name], link.call or "", link.phase in _BEGUN, ended)
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
-        """Append the facts that follow from the contest and from facts of other programs."""
+        """Append the facts that `follows` returns for the newest contest.
+
+        First `follows` is asked about the contest known here. If it returns any facts, it is asked
+        again about the contest that follows from all facts, also those of other programs. Only the
+        facts that it returns then are appended.
+        """
         if [*follows(self.contest)]:
             self._store.decide(lambda facts: follows(compute(facts, FORMATS)))
             self.contest = self._compute()

@@ -121,7 +121,7 @@ def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], l
 
 
 def _same(words: list[str]) -> Callable[[object], list[str]]:
-    """Return a function that gives the same words for every later start."""
+    """Return a function that gives the words of the command for later starts: always `words`."""
     return lambda _: words
 
 

@@ -110,7 +110,7 @@ def _verdict(record: Record) -> Verdict:
 
 
 def _differences(folder: Path, game: Game, plan: Planned, record: Record) -> Iterator[Phrase]:
-    """Yield what in a record is not what the facts say about the game.
+    """Yield each difference between a record and what the facts say about its game.
 
     Raises:
         UserError: if the arena of the plan is not installed, or its settings are wrong.

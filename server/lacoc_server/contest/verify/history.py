@@ -87,8 +87,9 @@ def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
 def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ...]:
     """Return the hashes of the files with which a team may have played a game.
 
-    These are the newest files before the result of the game. If entries were closed when these were
-    handed in, the files before them count too: a game goes on with the files with which it began.
+    These are the newest files before the result of the game. If the team handed them in after
+    entries were closed, the files before them count too: a game goes on with the files with which
+    it began.
     """
     hashes: list[str] = []
     closed = False
@@ -123,7 +124,7 @@ def _entries(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
 
 
 def _draws(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Draw again: each draw must be what was due after the facts before it."""
+    """Draw again; yield each draw that is not the one that was due after the facts before it."""
     for at, fact in enumerate(facts):
         if isinstance(fact, Drawn | RoundDrawn):
             again = due(compute(facts[:at], FORMATS), FORMATS)

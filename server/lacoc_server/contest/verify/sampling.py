@@ -28,10 +28,11 @@ def missed(games: int, forged: int, checked: int) -> float:
 
 
 def least_forged(games: int, checked: int) -> int:
-    """Return the number of forged games of which a sample has one with probability `CONFIDENCE`.
+    """Return the least number of forged games of which a sample most likely has one.
 
-    With fewer forged games it is less likely. If nothing is checked, no number is enough; the
-    result is then one more than the number of games.
+    Most likely: with probability `CONFIDENCE` or more. With fewer forged games it is less likely.
+    If nothing is checked, no number is enough; the result is then one more than the number of
+    games. Arguments are as in `missed`.
     """
     enough = (n for n in range(1, games + 1) if missed(games, n, checked) <= 1 - CONFIDENCE)
     return next(enough, games + 1)

@@ -270,7 +270,10 @@ class History:
 def _note(
     observation: Observation, events: tuple[GameEvent, ...] = (), numbers: tuple[int, ...] = ()
 ) -> Note:
-    """Return the note of an observation; `_PLAIN` if nothing but its numbers has to be kept."""
+    """Return the note of an observation; `_PLAIN` if the observation is only where robots are.
+
+    It is more than that if a robot was put at a place or touched a marker, or if events came of it.
+    """
     placed = touched = False
     for view in observation:
         placed = placed or view.placed is not None
@@ -296,7 +299,14 @@ def _observation(packed: memoryview, views: int, note: Note) -> Observation:
 
 
 def _strike(note: Note, number: int) -> Note:
-    """Return a step's note with its change, or its event with this number, marked as taken back."""
+    """Return a step's note in which an event is marked as taken back.
+
+    If the step is a change of a marker, the change is marked.
+
+    Args:
+        note: note of the step.
+        number: number of the event, or of the decision that changed the marker.
+    """
     if note.changed is not None:
         return replace(note, changed=replace(note.changed, struck=True))
     event = note.events[note.numbers.index(number)]

@@ -131,7 +131,11 @@ def _made_of(match: MatchState) -> bytes:
 
 
 def _entry(match: MatchState, seat: Seat, saved: _SavedSeat) -> Entry | None:
-    """Return the robot and gait of a saved seat; the present ones if the files are the same."""
+    """Return the robot and gait of a saved seat; None if nobody had the seat.
+
+    If the saved join is the present join of `seat`, these are the present robot and gait. Otherwise
+    they are made from the saved files.
+    """
     join: Any = saved.join
     if join is None:
         return None

@@ -146,7 +146,7 @@ class Court:
         return found
 
     def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
-        """Return the key that an action presses; steer the robot if actions are angles."""
+        """Return the key that an action presses; if actions are angles, steer and return None."""
         if self.actions == "keys":
             return press(episode.frame, seat, self.digits[seat][action])
         middle, half = self._ranges_rad[seat]

@@ -179,7 +179,10 @@ class Episode:
         self.frame = self.match.close_beat(fault).frame
 
     def outcome(self, seat: int) -> dict[str, Any]:
-        """Say how the match ended for a seat."""
+        """Return how the match ended: "scores", "winner", and whether the seat has "won".
+
+        The winner is "void" if the match has not ended by its rules.
+        """
         match = self.match
         winner = match.winner() if self.ended else "void"
         return {"scores": match.scores(), "winner": winner, "won": winner == match.seats[seat].id}

@@ -156,16 +156,20 @@ class Line:
         return item.seat not in self._change.players
 
     def _free_beat(self) -> int:
-        """Return the first beat of the fork without recorded inputs.
+        """Return the first beat of the fork without recorded inputs: the beat for a take-back.
 
-        A halt refuses the keys of its beat. In this beat there are none, so the robots go the same
-        ways as in the record.
+        A take-back comes with a halt, and a halt refuses the keys of its beat. This beat has no
+        keys, so none is refused, and the robots go the same ways as in the record. If there is no
+        such beat soon, return the fork's first beat.
         """
         beats = range(self._first, self._first + _SEARCH_BEATS)
         return next((beat for beat in beats if beat not in self._recorded), self._first)
 
     def _decisions(self) -> Sequence[Input]:
-        """Return the decisions of the change, and note how much later everything else comes."""
+        """Return the decisions of the change.
+
+        If they halt the match, all recorded inputs come later: note by how many beats.
+        """
         match, change = self.match, self._change
         decisions: list[Decision] = []
         halts = change.take_back is not None and match.phase in _IN_PLAY
@@ -236,7 +240,10 @@ class _BotPress:
         return key
 
     def _draw(self, most: int) -> int:
-        """Return the next number from 0 to `most` of this variant and seat; 0 for variant 0."""
+        """Return the next pseudo-random number from 0 to `most`; for variant 0 always 0.
+
+        Each variant of each seat has numbers of its own.
+        """
         if not self._variant:
             return 0
         self._drawn += 1

@@ -118,7 +118,7 @@ def swings(moments: Sequence[Moment]) -> list[Swing]:
 
 
 def grid(playing: Sequence[int], step: int) -> list[int]:
-    """Return the moments with which a curve begins.
+    """Return the first moments of a curve, at equal distances in play.
 
     Args:
         playing: all beats in which play went on, in order.

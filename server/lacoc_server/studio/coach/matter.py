@@ -22,7 +22,7 @@ class Matter(NamedTuple):
 
     @property
     def size(self) -> float:
-        """The larger of the two changes, without its sign; the numbers are ranked by this."""
+        """The larger of `up` and `down`, both without sign; the numbers are ranked by this."""
         return max(abs(self.up), abs(self.down))
 
 

@@ -101,7 +101,7 @@ def grid_of(robot: RobotSpec, own: Figures) -> Grid:
 
 
 def _whole(size_mm_s: float, step_mm_s: int) -> float:
-    """Round to a multiple of a step, at least one."""
+    """Round a size to whole steps, at least to one step [mm/s]."""
     return float(max(1, round(size_mm_s / step_mm_s)) * step_mm_s)
 
 

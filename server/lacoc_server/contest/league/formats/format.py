@@ -25,7 +25,7 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
     """The rounds that were drawn, in a format that draws rounds one by one."""
 
     def id(self, section: str, round_number: int, number: int) -> str:
-        """Name a pairing of the stage."""
+        """Return the id of a pairing of the stage."""
         return f"{self.name}:{section}{round_number}.{number}"
 
 

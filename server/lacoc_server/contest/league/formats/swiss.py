@@ -91,7 +91,10 @@ class Swiss:
 
 
 def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
-    """Return what the drawn rounds mean for each team, by seeding."""
+    """Return the teams, each with its points, opponents, sides and byes in the drawn rounds.
+
+    They are in the order of the seeding.
+    """
     players = {
         team: Player(team=team, number=number) for number, team in enumerate(stage.entries, 1)
     }
@@ -111,7 +114,10 @@ def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
 
 
 def _add(player: Player, side: int, others: Sequence[str], match: Match) -> None:
-    """Add a past match to what is known of a team. Only a match with a game counts for a side."""
+    """Add a past match to what is known of a player: opponents, sides, points, byes.
+
+    A match without a game adds no side.
+    """
     player.met.update(others)
     if match.games:
         player.sides.append(side)
@@ -207,8 +213,8 @@ def _colours(player: Player) -> list[str]:
     """Say which side a team should get next, as a history of colours for the engine.
 
     The engine must change a team's colour only after the same colour twice. Here a team must change
-    sides as soon as it sat on one side once more than on the other. So the engine is told that it
-    had this side's colour twice.
+    sides as soon as it sat on one side once more than on the other. So the engine is told that the
+    team had the colour of this side twice.
     """
     if not player.sides:
         return []
@@ -266,7 +272,9 @@ def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
 
 
 def _cost(pair: Sequence[Player], apart: int, fold: int, many: int) -> int:
-    """Weigh a pair so that one greater fault weighs more than any number of lesser ones.
+    """Return the cost of a pair: one graver fault costs more than any number of lesser ones.
+
+    The gravest are those that `faults` counts, in its order. Then comes `apart`, then `fold`.
 
     Args:
         pair: the pair.
