@@ -137,7 +137,10 @@ def _walks(figures: Figures, least_mm_s: float) -> bool:
 
 
 def _appearance(styles: Styles, variant: Variant) -> Floats:
-    """Return how a gait looks when it walks: its ways, its period and its speed, in steps."""
+    """Return how a gait looks when a robot walks with it, as a vector.
+
+    The vector has the numbers of `Styles.look`, then the period and the speed, all in steps.
+    """
     figures = variant.figures
     period = np.log(figures.cycle_s or 1.0) / np.log(_PERIOD)
     speed = np.log(max(5.0, figures.speed_mm_s)) / np.log(_SPEED)
