@@ -118,7 +118,7 @@ def vary(
 def _child(
     styles: Styles, parents: Sequence[Angles], steps: float, rng: np.random.Generator
 ) -> Angles:
-    """Mix the parents, and turn the table in one to three ways."""
+    """Mix the parents, and change the resulting table in one to three ways (`Way`)."""
     table = parents[0]
     if len(parents) > 1:
         table = styles.between(table, parents[1], float(rng.uniform(-0.25, 1.25)))
