@@ -29,9 +29,9 @@ def read_name(text: str) -> str:
 
 
 def same_name(name: str) -> str:
-    """Return the form by which names are compared.
+    """Return the form of a name that is compared with the forms of other names.
 
-    It is equal for names that differ only in capitals, widths or what can't be seen.
+    Two names have equal forms if they differ only in capitals, widths or signs that can't be seen.
     """
     seen = unicodedata.normalize("NFKC", _UNSEEN.sub("", name))
     return " ".join(seen.casefold().split())

@@ -152,7 +152,10 @@ def failure(facts: TrialFacts) -> Phrase | None:
 
 
 def foot_runs(trial: TrialReply) -> tuple[tuple[tuple[float, float], ...], ...]:
-    """Return for each leg when its foot was down, as shares of the measured time."""
+    """Return for each leg the times in which its foot was down, each with its begin and end.
+
+    Begin and end are parts of the measured time, from 0 to 1.
+    """
     legs = len(trial.figures["duty"])
     down = np.frombuffer(trial.down, np.uint8)[trial.first : trial.end]
     return tuple(_runs((down >> leg) & 1) for leg in range(legs))

@@ -163,7 +163,7 @@ class Classroom:
         self._tell_card(student)
 
     def sample(self) -> FileContent:
-        """Read the sample postures of the robot, which may have none; may block."""
+        """Read the robot's sample postures; empty if the robot has no sample. May block."""
         return sample_postures(self._robot_name)
 
     # What the teacher does
@@ -345,7 +345,11 @@ class Classroom:
             viewer.send(message)
 
     def _public(self) -> tuple[Any, ...]:
-        """Return the trouble with the class file and the state of the studios, for the teacher."""
+        """Return three things that the teacher's page shows.
+
+        They are what is wrong with the class file, how many studios there are, and why there is
+        none.
+        """
         return (self._keeper.trouble, self.studios.present, self.studios.why)
 
     def _class_message(self, cards: Iterable[Any] | None = None) -> bytes:

@@ -52,7 +52,11 @@ class TeacherPage:
             self._answers.stop()
 
     async def _take(self, asked: requests.Asked) -> bool:
-        """Answer a request of a page that has shown the page key; close any other page."""
+        """Answer a request of a page that has shown the page key; close any other page.
+
+        Returns:
+            False if the page was closed, else True.
+        """
         if isinstance(asked, requests.Hello):
             key = asked.key.encode("utf-8", "surrogatepass")
             self._viewer.can_act = hmac.compare_digest(key, self._class.state.key.encode())

@@ -154,7 +154,11 @@ class Tournament:
             self._change(state="done" if is_done else "stopped", trouble=trouble)
 
     async def _simulate(self, teams: "Mapping[str, _Team]", words: list[str]) -> Phrase | None:
-        """Run `lacoc simulate`; return why it ended early, or None if it did not."""
+        """Run `lacoc simulate` with these teams and further words of the command line.
+
+        Returns:
+            Why the command ended early; None if it did not.
+        """
         jobs = max(1, (os.cpu_count() or 1) - 1)  # one core is left for the class
         words += ["--jobs", str(jobs), "--record", str(self.recordings), "--leave-out"]
         self._simulation = await Simulation.start([*teams, *words])

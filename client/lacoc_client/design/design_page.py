@@ -61,7 +61,10 @@ class DesignPage:
                 task.cancel()
 
     async def _take(self, asked: requests.Asked) -> bool:
-        """Answer a request of a page that was let in; close a page that sends no hello first."""
+        """Answer a request, or close the page; return False if the page was closed.
+
+        A page that is not let in may only send a hello or a ping.
+        """
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
         elif isinstance(asked, requests.Ping):  # also while somebody types the class code
@@ -161,7 +164,10 @@ class DesignPage:
         return (await self._studio.trial(sample))[0]
 
     async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
-        """Take a table without mistakes to a court.
+        """Check a table, and take its files to a court.
+
+        Returns:
+            `url`: the address of the page at that court.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
@@ -173,7 +179,10 @@ class DesignPage:
         return {"url": await asyncio.to_thread(self._host.playing.open, files)}
 
     async def _hand_on(self, asked: requests.HandOnAsk, learner: Learner) -> dict[str, Any]:
-        """Make the files of a table without mistakes, with which a team enters a contest.
+        """Check a table, and make the files with which a team enters a contest.
+
+        Returns:
+            The files, by the names of the fields of `SeatFiles`.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.

@@ -128,7 +128,7 @@ class Designer:
 
 
 def sample_postures(robot: str) -> FileContent:
-    """Read the sample postures of a robot, which may have none; may block."""
+    """Read a robot's sample postures; empty if the robot has no sample. May block."""
     postures = sample_gait_files(robot).postures
     return FileContent() if postures is None else read_file(postures.name, postures.data)
 

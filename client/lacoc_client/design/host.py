@@ -50,7 +50,7 @@ class Host(Protocol):
         """
 
     def sample(self) -> FileContent:
-        """Read the sample postures of the robot, which may have none; may block."""
+        """Read the robot's sample postures; empty if the robot has no sample. May block."""
 
 
 class Entered(NamedTuple):

@@ -72,8 +72,9 @@ class Director:
             courts: every court that can be shown; a court that is missing has vanished.
 
         Returns:
-            What is on air. Courts are shown as they were `ahead_s` ago, and in the first `ahead_s`
-            seconds as they were at the first look. None: up to that time no court was there.
+            What is on air. Courts are shown late, as they were `ahead_s` ago. In the first
+            `ahead_s` seconds they are shown as they were at the first look. None: no court was
+            there up to the shown time.
         """
         self._see(now_s, courts)
         shown_s = now_s - self._ahead_s

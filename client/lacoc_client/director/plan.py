@@ -54,9 +54,10 @@ class Prices:
         self._costs = [_NEARLY * self._rank(share) ** 2 for share in _RANKS]
 
     def value(self, moment: Moment) -> float:
-        """Return what a moment is worth on air; 0 for all but the best.
+        """Return what a moment is worth on air; all but the best moments are worth 0.
 
-        It is the square of its points: one swing of ten is worth more than two of five.
+        The worth is the square of the moment's points, so that one swing of ten points is worth
+        more than two swings of five.
         """
         return moment.points * moment.points if moment.points >= self._least else 0.0
 
@@ -95,7 +96,10 @@ def is_worth_it(
     ahead = sorted(one for one in best if prices.value(one))
 
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
-        """Return the largest worth, less the costs of cuts, of the moments from an index on."""
+        """Return the largest gain from `ahead[index]` on, with `court` on air after these cuts.
+
+        The gain is the worth of all moments that are on air, less the costs of the cuts to them.
+        """
         if index == len(ahead):
             return 0.0
         one = ahead[index]

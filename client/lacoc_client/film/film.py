@@ -141,5 +141,12 @@ def _add(film: Movie, one: Part, look: Look, fps: int, browsers: int, progress: 
 
 
 def _way(beat: int, first: int) -> list[Picture]:
-    """Return the pictures of a shot that leads to a beat, so that the automatic camera can move."""
+    """Return the pictures of the time just before a beat, and of the beat itself.
+
+    During this time the automatic camera moves to where it must be at the beat.
+
+    Args:
+        beat: the beat.
+        first: beat at which the replay begins; no picture is from before it.
+    """
     return plan.pictures([Shot(max(first, beat - plan.RUN_UP_BEATS), beat)], BEATS_PER_S)

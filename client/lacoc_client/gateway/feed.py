@@ -261,7 +261,12 @@ class CourtFeed:
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """Hide the court until the next sheet if this one has another version of the protocol."""
+        """Hide the court if its newest sheet has another version of the protocol than ours.
+
+        Args:
+            before: the other version that was known before this sheet; None: none was known. If it
+                has not changed, the court is hidden already.
+        """
         if self._other_version not in (None, before):
             self._connected = False
             self.log(render(self._wrong_version or ""), "link", connected=False)

@@ -117,7 +117,7 @@ class CourtPicture:
         return played if played.match == frame.match else None  # else a newer one is on its way
 
     def take_frame(self, payload: bytes) -> bytes:
-        """Take a frame in."""
+        """Take a frame in; return the bytes for pages."""
         frame = decode(payload, _Frame, MAX_BYTES)
         self.view.see_frame(frame.scene)
         self.phase = frame.phase
@@ -126,20 +126,32 @@ class CourtPicture:
         return framed
 
     def take_event(self, payload: bytes) -> bytes | None:
-        """Take an event in."""
+        """Take an event in; return the bytes for pages, or None if it is not new."""
         is_new = self.view.add_event(decode(payload, Event, MAX_BYTES), payload)
         return wire.message(Kind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
-        """Take a scene in; it goes to pages if it belongs to the newest frame."""
+        """Take a scene in.
+
+        Returns:
+            The bytes for pages; None if the scene is not new, or not the newest frame's scene.
+        """
         return _scene(payload) if self.view.take_scene(payload) else None
 
     def take_sheet(self, payload: bytes) -> bytes | None:
-        """Take a sheet in; it goes to pages if it has this version of the protocol."""
+        """Take a sheet in.
+
+        Returns:
+            The bytes for pages; None if the sheet is not new, or has another protocol version.
+        """
         return wire.message(Kind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
-        """Take health in; it goes to pages if the court has this version of the protocol."""
+        """Take health in.
+
+        Returns:
+            The bytes for pages; None if the court has another version of the protocol.
+        """
         self.view.see_health(decode(payload, Told, MAX_BYTES))
         if self.view.other_version is not None:
             return None

@@ -16,7 +16,7 @@ _BELLY = 0.05
 
 
 def own_cells(cells: int) -> Different:
-    """Ask for a number of different cells that the student changed without the coach or a paste."""
+    """Make the rule that the student changed `cells` different cells without coach or paste."""
     return Different(_cells, cells, lambda left: say("phases.more-cells", left=left))
 
 
@@ -69,7 +69,7 @@ IS_UPRIGHT = Bound(
 
 
 def acts(*bounds: Bound, lacks: Phrase) -> Predicate:
-    """Ask for a trial of a key of level B in which the robot stays on its feet.
+    """Make the rule that the robot stays on its feet in a trial of a key of level B.
 
     Args:
         *bounds: further limits that the same trial must keep.
@@ -87,5 +87,12 @@ def within(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> Bound:
-    """Ask that a number of a trial is from `least` to `most`; `lacks` says what is missing."""
+    """Make the limit that a number of a trial is from `least` to `most`.
+
+    Args:
+        number: takes a trial's facts; returns the number.
+        lacks: sentence that says what is missing if the number lies outside.
+        least: smallest number allowed.
+        most: largest number allowed.
+    """
     return Bound(number, lambda _: lacks, least, most)

@@ -99,7 +99,7 @@ class LastOf:
     """Takes how many right answers the best row still lacks."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Among all rows of `last` answers, find the row with the most right ones."""
+        """Find the `last` answers in a row of which the most are right; return their outcome."""
         answers = [right for one in evidence if (right := self.answer(one)) is not None]
         runs = (answers[start : start + self.last] for start in range(len(answers)))
         return _counted(max(map(sum, runs), default=0), self.right, self.lacks)

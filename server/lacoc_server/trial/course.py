@@ -87,9 +87,9 @@ class Course:
         Args:
             gait: the robot's gait.
             presses: at least one key, in the order of their ticks; the last key is measured.
-            seconds: time from the last press to the end [s]; None: whole cycles after the first,
-                or `NO_CYCLE_S` if the key's sequence never leaves its first posture. No trial is
-                longer than `LONGEST_TICKS`.
+            seconds: time from the last press to the end [s]. None: the trial ends after the last
+                key's first cycle and `cycles` further ones, or after `NO_CYCLE_S` if the key's
+                sequence never leaves its first posture. No trial is longer than `LONGEST_TICKS`.
             cycles: number of whole cycles to measure if `seconds` is None.
         """
         robot = self.robot

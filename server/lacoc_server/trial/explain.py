@@ -190,7 +190,10 @@ def _legs(seen: Seen) -> Iterator[Finding]:
 
 
 def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
-    """Find a leg that is lifted alone, if none of the other `legs` is lifted alone."""
+    """Find the one leg of `legs` that is lifted at another time than all others.
+
+    Nothing is found if several legs are lifted alone.
+    """
     if len(seen.sequence) < 3 or len(legs) < 4:
         return
     phases = steps.phase

@@ -18,10 +18,11 @@ _LONGEST_S = 60.0
 
 
 def forward_key(gait: Gait) -> tuple[Level, int]:
-    """Return the key to try if the person names none.
+    """Return the level and the digit of the key to try if the person names none.
 
-    If the gait has level B, this is `FORWARD` if its postures differ, else the first key whose
-    postures differ, else the last key. Without level B it is the last key of level A.
+    A gait without level B is tried with the last key of level A. A gait with level B is tried with
+    `FORWARD` if the postures of this key differ; else with the first key of level B whose postures
+    differ; else with the last key of level B.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]
@@ -72,7 +73,9 @@ def _seconds(text: str | None) -> float | None:
 
 
 def _level(letter: str, digit: int, gait: Gait) -> Level:
-    """Return the level that a key's letter names; without a letter, B if it has the key, else A.
+    """Return the level that a key's letter names.
+
+    Without a letter it is level B if level B has the key, else level A.
 
     Raises:
         UserError: if the gait has no such key.

@@ -42,16 +42,16 @@ class WorldBatch:
             self.row(index, world, start)
 
     def row(self, index: int, world: World, saved: bytes) -> "Row":
-        """Return a row for one of the worlds, in a saved state; it replaces that world's last row.
+        """Make a row for a world of the batch, in a saved state; from now on `step` uses this row.
 
         Args:
-            index: index of the world.
-            world: a world of the row's model. It tests touches for the row, and so its own state
-                changes; several rows can share it.
-            saved: the state (`World.save`).
+            index: index of the world in the batch.
+            world: a single world of the row's model. The row tests touches in the single world and
+                thereby changes its state. Several rows can share a single world.
+            saved: the saved state (`World.save`).
 
         Raises:
-            ValueError: if its model has another size.
+            ValueError: if the saved state has another length than the states of the batch.
         """
         data = SimpleNamespace(**{name: array[index] for name, array in self._arrays.items()})
         row = Row(self, index, world, data)
@@ -59,7 +59,7 @@ class WorldBatch:
         return row
 
     def take(self, row: "Row") -> None:
-        """Let `step` use this row for its index."""
+        """Let `step` use a row from now on, in place of an earlier row with the same index."""
         if self._models[row.index] is not row.model:
             self._models[row.index] = row.model
             self._batch.set_models(self._models)
@@ -145,7 +145,7 @@ class Row:
         return self._batch.step([self.index], [angles])[0]
 
     def repeat(self, angles: Sequence[Posture]) -> Fault | None:
-        """Let the single world do the row's next tick, to learn which fault it has."""
+        """Do the row's next tick in the single world instead; return the fault of this tick."""
         self._single.load(self.save())
         return self._single.step(angles)
 

@@ -54,7 +54,7 @@ class Robot:
 
     @property
     def pose_qpos(self) -> list[int]:
-        """Indices in `qpos` of its numbers in `Frame.poses`, in their order."""
+        """Indices in `qpos` of the numbers that `Frame.poses` has of this robot, in that order."""
         return [*range(self.root_qpos, self.root_qpos + 7), *self.joint_qpos.tolist()]
 
     def put(self, data: Any, place: Place) -> None:

@@ -91,7 +91,10 @@ def _seat(name: str, seats: Sequence[str]) -> int:
 
 
 def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
-    """Return the seat of a geom's robot if the geom has the colour of the robot's body; else -1."""
+    """Return the index of the seat to which a geom belongs; -1 if its colour is not the robot's.
+
+    The colour of a robot is the colour of its body's first geom.
+    """
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     plain = model.geom_rgba[model.body_geomadr[root]]

@@ -75,7 +75,7 @@ class TouchTest:
         """The answer when no robot touches anything."""
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
-        """Return for each seat the markers that it touches, in ascending order.
+        """Return for each seat the indices of the markers that its robot touches, ascending.
 
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
@@ -228,7 +228,7 @@ def _limbs(model: Any, geoms: Sequence[int]) -> list[_Limb]:
 
 
 def _limb_of(model: Any, geom: int) -> int:
-    """Return the id of the first body of the leg that has a geom; else that of the main body."""
+    """Return the id of the body that a geom's limb begins with: a leg's first, or the main body."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     while body != root and model.body_parentid[body] != root:

@@ -148,7 +148,7 @@ class World:
     def touched_in(self, state: npt.NDArray[np.float64]) -> Sequence[tuple[int, ...]]:
         """Return which markers are touched in a given state of this model, as `touched` does.
 
-        That changes the state of the world itself: call `load` before it goes on.
+        This call changes the state of the world itself: call `load` before the next `step`.
         """
         if not self._touch.can_touch:
             return self._touch.none
@@ -158,7 +158,7 @@ class World:
     # Snapshots
 
     def save(self) -> bytes:
-        """Return digest and state; after `load`, a world of the same model goes on bit for bit."""
+        """Return digest and state; a world of this model that loads them goes on bit for bit."""
         return self.digest + self._state.tobytes()
 
     def load(self, saved: bytes) -> None:

@@ -208,7 +208,10 @@ def _robot(robot: SentFile | None) -> RobotSpec:
 
 
 def _foot_ways(edit: Edited, before: Rows, spec: RobotSpec) -> tuple[str, ...]:
-    """Return where an edit moved the foot of the first leg that it changed; () if unknown."""
+    """Return the directions in which an edit moved a foot, as `foot_ways` does; () if unknown.
+
+    It is the foot of the first leg that the edit changed.
+    """
     leg = edit.legs[0]
     old = before.get((leg.key, leg.posture))
     if old is None or len(old) != 3 * len(spec.legs):

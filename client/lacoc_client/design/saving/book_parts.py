@@ -89,7 +89,10 @@ class BookParts:
         return [target for _, target in self._relations(part, kind)]
 
     def _relations(self, part: str, kind: str) -> list[tuple[str, str]]:
-        """Return a part's relations of one kind, as id and target part; part "": the whole file."""
+        """Return the id and the target part of each relation of one kind that a part has.
+
+        The part "" stands for the whole file.
+        """
         name = _relations_name(part)
         if name not in self._parts:
             return []
@@ -130,6 +133,6 @@ def _calculated(book: str) -> str:
 
 
 def _without(xml: bytes, element: bytes, ending: bytes) -> bytes:
-    """Return XML without each element of this name in which an attribute ends with `ending`."""
+    """Remove from XML each `element` with an attribute that ends with `ending`; return the rest."""
     pattern = rb"<(?:\w+:)?" + element + rb"\b[^>]*" + re.escape(ending) + rb"\"[^>]*/>"
     return re.sub(pattern, b"", xml)

@@ -110,7 +110,10 @@ def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
 
 
 def _set(robot: Any, place: _Place, value: float) -> None:
-    """Put the number into a parsed file: into its table, and into legs that have this entry too."""
+    """Put a number into its place in a parsed robot file.
+
+    A number of the table [link] is also put into each leg that has an entry of the same name.
+    """
     if place.table not in robot:
         robot[place.table] = {}
     tables = [robot[place.table]]

@@ -112,7 +112,9 @@ def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -
 
 
 def _disorder(place_of: Mapping[int, int], key: int, row: int) -> int:
-    """Count the placed postures on the wrong side of a new one: larger key above, or smaller below.
+    """Count the placed postures that would be in the wrong order with a new one.
+
+    These are the postures above the new one with a larger key, and below it with a smaller key.
 
     Args:
         place_of: row of each placed posture, by key.

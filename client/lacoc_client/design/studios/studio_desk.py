@@ -160,7 +160,10 @@ class StudioDesk:
             await asyncio.shield(asyncio.to_thread(listening.close))
 
     async def cancel(self, job: str) -> dict[str, Any]:
-        """End a search of this page early; its own reply has the best so far."""
+        """End a search of this page early, and return an empty reply.
+
+        The reply to the search itself has the best result so far.
+        """
         await self._cancel(self._job(job))
         return {}
 

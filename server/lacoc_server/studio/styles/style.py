@@ -77,10 +77,11 @@ class Styles:
         self._sway = np.cos(turns - math.pi / len(table.order))
 
     def look(self, angles_deg: Angles) -> Floats:
-        """Measure how a table looks.
+        """Measure how a table looks in each way of `WAYS`, such as how high the body is.
 
         Returns:
-            (ways,): a number for each way of `WAYS`, in the steps of that way.
+            An array (ways,) with one measure for each way, in the order of `WAYS`. Its unit is one
+            step of this way, as in `turned`.
         """
         tips_m = self._tips_m(self._rows_of(angles_deg))
         x, y, z = np.moveaxis(tips_m, 2, 0)
@@ -105,14 +106,14 @@ class Styles:
         )
 
     def turned(self, angles_deg: Angles, steps: Sequence[float] | Floats) -> Angles:
-        """Turn a table by some steps of each way, as far as the joints can.
+        """Change a table by some steps in each way of `WAYS`, as far as the joints can move.
 
         Args:
             angles_deg: the table.
-            steps: (ways,) number of steps, in the order of `WAYS`; 0 keeps what there is.
+            steps: (ways,) number of steps in each way, in the order of `WAYS`; 0: no step.
 
         Returns:
-            The new table; angles that change by less than half a degree stay.
+            The new table; an angle that would change by less than half a degree stays.
         """
         height, lift, stride, width, lean, limp, bob, sway = (float(step) for step in steps)
         rows = self._rows_of(angles_deg)

@@ -118,7 +118,7 @@ def vary(
 def _child(
     styles: Styles, parents: Sequence[Angles], steps: float, rng: np.random.Generator
 ) -> Angles:
-    """Mix the parents, and turn the table in one to three ways."""
+    """Mix the parents, and change the resulting table in one to three ways (`Way`)."""
     table = parents[0]
     if len(parents) > 1:
         table = styles.between(table, parents[1], float(rng.uniform(-0.25, 1.25)))
@@ -137,7 +137,10 @@ def _walks(figures: Figures, least_mm_s: float) -> bool:
 
 
 def _appearance(styles: Styles, variant: Variant) -> Floats:
-    """Return how a gait looks when it walks: its ways, its period and its speed, in steps."""
+    """Return how a gait looks when a robot walks with it, as a vector.
+
+    The vector has the numbers of `Styles.look`, then the period and the speed, all in steps.
+    """
     figures = variant.figures
     period = np.log(figures.cycle_s or 1.0) / np.log(_PERIOD)
     speed = np.log(max(5.0, figures.speed_mm_s)) / np.log(_SPEED)
