@@ -63,7 +63,7 @@ def test_what_is_no_question_is_refused(desk: TeamDesk, payload: bytes) -> None:
 
 
 def test_before_the_office_has_told_anything() -> None:
-    """Before the office has told anything, a question is refused with `again`."""
+    """Before the office has told anything, a refusal says that the question may be asked again."""
     found = ask(TeamDesk(), TOKENS["Ants"])
     assert isinstance(found, Refusal)
     assert (found.why, found.again) == (say("refused.office-is-silent"), True)
