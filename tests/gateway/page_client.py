@@ -233,6 +233,12 @@ class SleepyPage:
 
 
 def x_of(frame: Frame, robot: int, bytes_a_robot: int) -> float:
-    """Return a robot's x coordinate in a frame [m]; `robot` is its seat's index."""
+    """Return a robot's x coordinate [m] in a frame.
+
+    Args:
+        frame: the frame.
+        robot: index of the robot's seat.
+        bytes_a_robot: size of one robot's part of the frame's poses.
+    """
     (x_m,) = struct.unpack_from("<f", frame.poses, robot * bytes_a_robot)
     return float(x_m)
