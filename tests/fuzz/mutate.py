@@ -148,7 +148,7 @@ class Mutator:
         return pack(tree)
 
     def _changed(self, node: Any) -> Any:
-        """Return the tree with one node changed."""
+        """Return the tree below `node` with one of its nodes changed."""
         chance = self._chance
         if isinstance(node, list) and node and chance.random() < 0.85:
             copy = type(node)(node)
@@ -323,7 +323,7 @@ class Mutator:
         return b"".join([*made, data[-8:]])
 
     def _chunk(self, content: bytes) -> bytes:
-        """Return a chunk with changed records inside, and with sizes that may be false."""
+        """Return the content of an MCAP chunk with changed records and perhaps with false sizes."""
         chance = self._chance
         if len(content) < 40:
             return self._bytes(content)

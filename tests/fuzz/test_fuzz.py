@@ -33,7 +33,7 @@ def hangs_are_seen() -> Iterator[None]:
 @pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.long)])
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None:
-    """Seeds and hostile bytes cause no crash, no hang and no change that is not allowed."""
+    """Each input is accepted or refused, without a crash, a hang or a forbidden change."""
     inputs = times * SLOW.get(target.name, INPUTS)
     *_, figures = feed(target, len(target.seeds) + inputs, seed=times)
     assert not figures.findings, "\n".join(figures.findings)
@@ -48,9 +48,9 @@ def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
 
 
 def test_good_packets_get_in() -> None:
-    """Committed commands and requests are as today's code makes them, and a court accepts messages.
+    """The committed requests and commands are the ones that today's code makes.
 
-    It accepts at least one request, one join and one decision.
+    Of the packets that a court is fed, it accepts at least one request, one join and one decision.
     """
     for folder, seeds in (("requests", request_seeds()), ("commands", command_seeds())):
         kept = [path.read_bytes() for path in sorted((CORPUS / folder).iterdir())]
@@ -62,7 +62,7 @@ def test_good_packets_get_in() -> None:
 
 
 def test_a_change_of_state_would_be_seen() -> None:
-    """The doors' check notices a command that takes effect although no controller sent it."""
+    """`Doors` raises StateChanged if a command takes effect although no controller sent it."""
     court = Doors()
     court.beat()
     forged = command(0, 99, 1, 9)  # rightly sealed, but not sent by the seat's controller

@@ -41,7 +41,7 @@ def folder(tmp_path, workshop, legs) -> Path:
 
 
 def test_check_says_what_each_key_does(lacoc, folder):
-    """`check` tells each key's number of postures and which feet it lifts."""
+    """For each key, `check` prints how many postures it has and which feet it lifts."""
     code, out, err = lacoc("gait", "check", *sorted(folder.iterdir()))
     assert (code, err) == (0, "")
     assert "Loco-data.txt: no mistakes. Level A, postures, 6 legs." in out

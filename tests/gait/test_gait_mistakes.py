@@ -26,12 +26,12 @@ def refused(data: bytes | str, **robot) -> list[Mistake]:
 
 
 def places(mistakes: list[Mistake]) -> list[tuple[object, ...]]:
-    """Return mistakes as rows of a table."""
+    """Return each mistake as a tuple: row, column, joint, leg, found, expected."""
     return [(m.row, m.column, m.joint, m.leg, m.found, m.expected) for m in mistakes]
 
 
 def loco(rows: list[str], announced: object = None) -> str:
-    """Return a Loco-data text with these rows below its header."""
+    """Return a Loco-data text with these rows; `announced` replaces their number in the header."""
     return f"Num of Posture\t{len(rows) if announced is None else announced}\n" + "\n".join(rows)
 
 

@@ -110,7 +110,7 @@ def test_a_written_workbook_reads_back(table):
 @patient
 @given(posture_tables)
 def test_postures_to_locomotion_and_back(table):
-    """A table turned into locomotion and back has the same postures."""
+    """A posture table that is turned into a locomotion table and back keeps its postures."""
     keys = tuple((digit,) for digit in table.postures)
     back = to_postures(to_locomotion(table, keys))
     assert set(back.postures.values()) == set(table.postures.values())

@@ -42,7 +42,10 @@ def saved(book: openpyxl.Workbook) -> bytes:
 
 
 def refused(data: bytes, **robot: object) -> list[tuple[object, ...]]:
-    """Return the mistakes for which a workbook is refused, as rows of a table."""
+    """Return the mistakes for which a workbook is refused.
+
+    Each mistake is a tuple: row, column, joint, leg, field, found, expected.
+    """
     with pytest.raises(FileRefused) as refusal:
         read_workbook(data, "x.xlsx", **robot)
     assert {m.file for m in refusal.value.mistakes} == {"x.xlsx"}
@@ -275,7 +278,7 @@ def test_more_xml_than_a_table_has_is_refused(sample, content):
 
 
 def test_a_row_far_below_costs_nothing(sample):
-    """A sheet that claims the largest possible size is read, without the cell in its last row."""
+    """A sheet that claims the largest possible size is read, but a cell in its last row is not."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     sheet = parts["xl/worksheets/sheet1.xml"]

@@ -81,7 +81,7 @@ class PageClient:
 
     @property
     def waits_why(self) -> str:
-        """Return the code of the phrase that says why the gateway has no court, or ""."""
+        """Return the code of the phrase that says why there is no court, or "" without a phrase."""
         return (self.link.get("why") or {"code": ""})["code"]
 
     def ask(self, do: str, **fields: Any) -> Any:
@@ -103,7 +103,7 @@ class PageClient:
         return reply["value"]
 
     def waits_for(self, number: int) -> bool:
-        """Return whether the reply to a request has not arrived; call this only before `reply`."""
+        """Return whether a request still waits for its reply; call this only before `reply`."""
         return number not in self._replies
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
@@ -233,6 +233,12 @@ class SleepyPage:
 
 
 def x_of(frame: Frame, robot: int, bytes_a_robot: int) -> float:
-    """Return a robot's x coordinate in a frame [m]; `robot` is its seat's index."""
+    """Return a robot's x coordinate [m] in a frame.
+
+    Args:
+        frame: the frame.
+        robot: index of the robot's seat.
+        bytes_a_robot: size of one robot's part of the frame's poses.
+    """
     (x_m,) = struct.unpack_from("<f", frame.poses, robot * bytes_a_robot)
     return float(x_m)

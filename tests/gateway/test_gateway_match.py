@@ -100,7 +100,10 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Return the left seat's silences after `before`; a busy machine may cause earlier ones."""
+        """Return the left seat's silences after the beat `before`.
+
+        A busy machine may cause earlier silences, which do not count.
+        """
         return [
             event
             for event in referee.events
@@ -317,7 +320,7 @@ def test_a_page_gets_as_many_frames_as_it_asks_for(
 
 
 def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
-    """A page that reads nothing for 8 s then gets new frames, after less than 4 s of old ones."""
+    """After reading nothing for 8 s, a page gets less than 4 s of old frames, and then new ones."""
     with PageClient(open_venue.url, hz=50) as quick, SleepyPage(open_venue.url) as sleepy:
         sleepy.watch(hz=50)
         quick.wait(lambda: quick.frame is not None)

@@ -176,7 +176,7 @@ def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
 
 
 def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A page gets no more messages from the thread of its former seat."""
+    """After a page joins again, it gets no more messages from the thread of its earlier join."""
     tells: list[Any] = []
 
     class Thread:
@@ -230,7 +230,10 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from a court's report if their events up to the time of the report differ."""
+    """`differs` notices if a log lacks an event of the court, or has one that the court lacks.
+
+    An event that is newer than the court's report is no difference.
+    """
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -268,7 +271,7 @@ def test_the_newest_of_a_very_long_log_are_kept() -> None:
 
 
 def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
-    """Events that a court no longer lists, as in a practice of days, do not count as missing."""
+    """Events that are so old that a court no longer lists them do not count as missing."""
     log: EventLog[str] = EventLog()
     log.add(event(90, "a"), "live 90")
     assert log.restore([(event(n, "a"), f"listed {n}") for n in range(50, 91)])

@@ -34,7 +34,7 @@ class Written:
 
 
 def link(log: int, *, connected: bool = True) -> bytes:
-    """Make a link message of a court."""
+    """Make a message about the link to a court; `log` is the number of the court's log."""
     return wire.map_message(Kind.LINK, {"court": "east", "connected": connected, "log": log})
 
 
@@ -46,7 +46,7 @@ def test_messages_open_as_they_were_made() -> None:
 
 
 def test_a_page_sees_a_court_as_it_was() -> None:
-    """Pages get all messages of a court late and in order; a new page gets the court as it was."""
+    """Pages get a court's messages in order after a delay; a new page gets the delayed state."""
     threads = Threads(1)
     feed = CourtFeed(Access(court="east", connect="tcp/127.0.0.1:1"), threads)
     late = LateFeed(feed, BEHIND_S)

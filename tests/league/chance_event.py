@@ -154,7 +154,7 @@ class Event:
                     )
 
     def _earlier(self) -> Match | None:
-        """Choose a match with games; return None if there is none, or while a court has a game."""
+        """Choose a match with a played game; None if no match has one, or if a court has a game."""
         if self.ends:
             return None
         played = [match for view in self.contest.stages for match in view.matches if match.games]

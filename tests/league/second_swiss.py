@@ -20,11 +20,14 @@ FLOATS = {"down": Float.DOWN, "up": Float.UP, "none": Float.NONE}
 
 
 def pairs(players: Sequence[Player], round_number: int) -> set[frozenset[int]] | None:
-    """Pair by the Dutch system; a team that sat once more on one side must sit on the other now.
+    """Pair a round by the Dutch system.
+
+    A team that has sat more often on one side must now sit on the other side.
 
     Returns:
-        The pairs by number; None where a bracket had to collapse. There py4swiss follows rules that
-        ended in January 2026, and our engine follows the rules after them.
+        Each pair as the set of both teams' numbers, and a bye as a set of one number. None if a
+        bracket had to collapse: there py4swiss follows rules that ended in January 2026, and our
+        engine follows the later rules.
     """
     numbers = {player.team: player.number for player in players}
     theirs = sorted((_their(player, numbers) for player in players), reverse=True)

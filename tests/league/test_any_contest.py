@@ -139,7 +139,7 @@ def test_200_entries(how: str) -> None:
 
 
 def test_groups_then_knockout() -> None:
-    """The winners of groups lead their ranking; its first eight teams can play a knockout."""
+    """Group winners lead the ranking, and the first eight of the ranking can play a knockout."""
     event = Event(12, 3, Random(5), 0.1)
     event.begin("groups", "round-robin", event.names, groups=3)
     for contest, given_out in event.play("groups"):

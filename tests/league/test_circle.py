@@ -34,7 +34,7 @@ def test_everybody_plays_equally_often(players: int, rounds: int) -> None:
 
 @given(PLAYERS, ROUNDS)
 def test_all_players_meet_before_any_meet_again(players: int, rounds: int) -> None:
-    """All pairs of players meet equally often, or some of them once more."""
+    """All pairs of players meet equally often, or some pairs meet once more than the others."""
     met = Counter(frozenset(pair) for pair in pairings(players, rounds))
     counts = [met[frozenset(pair)] for pair in combinations(range(players), 2)]
     assert max(counts) - min(counts) <= 1
@@ -52,7 +52,7 @@ def test_sides_are_even(players: int, rounds: int) -> None:
 
 @given(PLAYERS, ROUNDS)
 def test_pairs_that_meet_twice_swap_seats(players: int, rounds: int) -> None:
-    """If two players meet several times, they sit left equally often, or one of them once more."""
+    """When two players meet several times, their numbers of left seats differ by at most one."""
     seated = Counter(pairings(players, rounds))
     assert all(abs(seated[a, b] - seated[b, a]) <= 1 for a, b in seated)
 

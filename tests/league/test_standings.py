@@ -47,7 +47,7 @@ CIRCLE = [won("a", "b", 3), won("b", "c", 2), won("c", "a", 4), *(won(one, "d") 
     ],
 )
 def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str) -> None:
-    """Each code orders the teams that the earlier codes left equal; the seeding orders the rest."""
+    """Each tie-break orders the teams that earlier ones left equal; the seeding orders the rest."""
     found = standings(ABCD, matches, order)
 
     assert "".join(row.team for row in found.rows) == ranked
@@ -57,7 +57,7 @@ def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str) -> N
 
 
 def test_bye_counts_as_a_win_and_own_points_as_opponent() -> None:
-    """A bye is a win of two points; Buchholz uses the team's own points as its opponent's."""
+    """A bye gives two points; Buchholz counts it as an opponent with as many points as the team."""
     bye = Counted(("a",), (0,), 0, played=False)
 
     row = standings(ABCD, [bye, won("b", "a")], ("points", "buchholz")).rows[0]

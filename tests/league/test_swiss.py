@@ -21,7 +21,7 @@ from lacoc_server.contest.league.formats.swiss import (
 
 
 def rounds(random: Random, teams: int, number: int, leaving: float = 0.0) -> Iterator[list[Player]]:
-    """Yield the players before each round; the results come from `random`."""
+    """Yield the players before each round; `random` decides the results and which teams leave."""
     players = [Player(team=f"t{place}", number=place) for place in range(1, teams + 1)]
     for round_number in range(1, number + 1):
         yield players
@@ -98,9 +98,10 @@ def test_every_round_is_legal(teams: int, number: int, leaving: float, seed: int
 
 
 def test_a_round_that_needs_a_fault_is_paired_at_once() -> None:
-    """Since two teams have gone, 12 teams must sit right and 10 left; one pair breaks a rule.
+    """A round that can't avoid a fault is paired at once, and with only one fault.
 
-    Here the engine alone would try pairings for minutes.
+    Two of 24 teams have gone: 12 teams must sit right but only 10 left, so one pair must break a
+    rule. The engine alone would try pairings for minutes.
     """
     players = [
         Player(team=f"t{number}", number=number, sides=[1 if number <= 12 else -1], floats=["none"])
@@ -135,7 +136,12 @@ def test_large_stages(teams: int) -> None:
 
 
 def brute_force(players: Sequence[Player]) -> tuple[int, ...]:
-    """Return the fewest faults of all possible pairings."""
+    """Return the faults of the best of all possible pairings.
+
+    Returns:
+        The number of pairs that met before, of second byes, and of pairs in which both teams are
+        due the same side.
+    """
 
     def pairings(left: tuple[Player, ...]) -> Iterator[tuple[tuple[Player, ...], ...]]:
         if len(left) < 2:
@@ -189,9 +195,10 @@ def test_py4swiss_makes_the_same_pairs(least_rounds: int) -> None:
 def same_bye(
     players: Sequence[Player], found: set[frozenset[int]], theirs: set[frozenset[int]]
 ) -> bool:
-    """Return whether both engines give one team the bye; if not, check that ours has fewer points.
+    """Return whether both engines give the bye to the same team, or both give none.
 
-    The rules have required the fewest points since February 2026; py4swiss has older rules.
+    If they choose two teams, check that the one chosen by our engine has fewer points. The rules
+    have required the fewest points since February 2026; py4swiss has older rules.
     """
     points = {player.number: player.points for player in players}
     ours, others = ({*pair} for pair in (alone(found), alone(theirs)))

@@ -148,7 +148,7 @@ def _run(area: Area, folder: Path, jobs: int) -> None:
 
 
 def _outcomes(area: Area, folder: Path) -> dict[str, dict[str, str]]:
-    """Return the mutants of each module with their outcomes."""
+    """Return, for each module, a dict from the names of its mutants to their outcomes."""
     return {
         module: {
             mutant: status_by_exit_code[code]

@@ -54,6 +54,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Count as called by each test also the functions that its module called at import."""
+    """Count the functions that a module called at import as called by each of its tests."""
     for collector in item.listchain()[:-1]:
         state()._stats.update(collector.stash.get(_CALLED, ()))

@@ -100,7 +100,7 @@ def play(
     warm_s: float = 12.0,
     seconds: float = 60.0,
 ) -> Played:
-    """Play a match between the two controllers, at a court in another process.
+    """Play a match of two controllers, one with a slow link, at a court in another process.
 
     Args:
         folder: for contest file and record.

@@ -64,7 +64,7 @@ def test_a_request_is_refused_with_its_reason(
 
 
 def test_the_refusal_of_a_wrong_decision_lists_all_decisions() -> None:
-    """A decision that is sent under another's name is refused with a list of all decisions."""
+    """If a request's name and content are different decisions, the refusal lists all decisions."""
     refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
     assert isinstance(refusal, Refusal)
     words = render(refusal.why)

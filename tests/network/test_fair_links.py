@@ -14,7 +14,7 @@ FAR = (0.1, 0.025)
 
 @pytest.mark.long
 def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) -> None:
-    """If links are made equal, keys that answer one frame share a beat, unless one is late."""
+    """With equal links, keys that answer one frame take effect in one beat, unless one is late."""
     played = play(tmp_path, "equal", *FAR, warm_s=6, seconds=10)
     fast, slow = played.health.seats
     assert fast.round_trip_p50_ms is not None

@@ -13,7 +13,10 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.slow
 @pytest.mark.long(minutes=3)
 def test_nothing_forged_is_accepted() -> None:
-    """No forgery is accepted with all protection, with seals alone, or with access rules alone."""
+    """A court accepts no forgery.
+
+    This holds with all protection, with seals alone, and with access rules alone.
+    """
     command = [sys.executable, "-m", "benchmarks.forging", "--attempts", "2000"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600)
     decoder, found, text = json.JSONDecoder(), [], done.stdout.strip()

@@ -155,7 +155,10 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
 
 
 def test_a_join_is_weighed_in_with_what_the_seat_has() -> None:
-    """The check of files gets the seat's present join; the check's notes precede the match's."""
+    """The check of a join's files is also given the join that the seat has now.
+
+    The notes of this check come before the notes of the match.
+    """
     inbox = make()
     mine = SentFile("mine.toml", b"a robot of our own")
     inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None], has_begun=False)
@@ -223,7 +226,7 @@ def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
 
 
 def test_the_counts_of_refusals_are_the_teams_own() -> None:
-    """Health counts the refusals of a seat's present team; `doors` counts all of the seat."""
+    """Health counts the refusals of the team in a seat; `doors` counts all refusals of the seat."""
     inbox = make()
     take_seat(inbox)
     inbox.join(LEFT, b"nonsense")
@@ -244,7 +247,7 @@ def test_a_seat_without_a_token_is_closed() -> None:
 
 
 def test_joins_can_not_flood_the_reading_of_files() -> None:
-    """A seat may join five times at once and then once a second, even with the right token."""
+    """Even with the right token, a seat may join only five times at once, then once a second."""
     inbox = make()
     inbox.beat(10.0, [[], []])
     answers = [inbox.join(LEFT, join_bytes()) for _ in range(50)]

@@ -62,7 +62,7 @@ class Clock:
         self.links.sent(self.now_s + SENT_S)
 
     def run(self, beats: int, left: int, right: int) -> None:
-        """Let beats pass; in each, both seats name a frame that is `left` or `right` beats old."""
+        """Let beats pass; in each, the two seats name frames `left` and `right` beats old."""
         for _ in range(beats):
             self.begin()
             for seat, lag in ((LEFT, left), (RIGHT, right)):
@@ -200,7 +200,10 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """A key that names an older frame gains at most two beats by that, and counts as late."""
+    """A key that names a frame older than its seat's round trip gains at most two beats.
+
+    The key also counts as late.
+    """
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()

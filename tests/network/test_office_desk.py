@@ -69,7 +69,7 @@ class Desk(OfficeDesk[str]):
 
 
 def test_an_assignment_is_answered_when_its_match_is_open() -> None:
-    """The desk waits for the files, then for the court, and only then says that it is done."""
+    """The desk waits for the files, then for the court's match, and only then answers `Done`."""
     desk = Desk(takes=2)
     answer = desk.later("assign", assign())
     assert [answer(), answer(), desk.wanted] == [None, None, None]

@@ -39,7 +39,7 @@ def test_each_team_hears_of_itself(desk: TeamDesk) -> None:
 
 
 def test_a_guess_opens_nothing(desk: TeamDesk) -> None:
-    """10,001 guesses are refused and counted, also hashes, and tokens without their last letter."""
+    """10,001 guesses are refused and counted, even hashes of tokens and tokens cut by a letter."""
     for _ in range(9_990):
         assert isinstance(ask(desk, new_token()), Refusal)
     for token in ("", "Ants", *[seal.hash_token(token, SALT) for token in TOKENS.values()] * 2):
@@ -55,7 +55,7 @@ def test_a_guess_opens_nothing(desk: TeamDesk) -> None:
     "payload", [b"", b"\xc1", encode({"token": 7}), encode({"token": "x" * COMMAND_MAX_BYTES})]
 )
 def test_what_is_no_question_is_refused(desk: TeamDesk, payload: bytes) -> None:
-    """Bytes that are no question, or too many, are refused and counted."""
+    """Bytes that are no question, or that are too many, are refused, and the refusal is counted."""
     found = desk.where(payload)
     assert isinstance(found, Refusal)
     assert faults(found.why) == []
@@ -63,7 +63,7 @@ def test_what_is_no_question_is_refused(desk: TeamDesk, payload: bytes) -> None:
 
 
 def test_before_the_office_has_told_anything() -> None:
-    """Before the office has told anything, a question is refused with `again`."""
+    """Before the office has told anything, a refusal says that the question may be asked again."""
     found = ask(TeamDesk(), TOKENS["Ants"])
     assert isinstance(found, Refusal)
     assert (found.why, found.again) == (say("refused.office-is-silent"), True)

@@ -68,7 +68,7 @@ def test_a_court_that_comes_back_is_entered_again(tmp_path: Path) -> None:
 
 
 def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """An invitation of another contest gets a warning that the court may be false."""
+    """Whoever enters with another contest's invitation is warned that the court may be false."""
     other = contests.load(keyed_file(tmp_path))
     access = entrances.everybody(other, "main")["left"]
     why = refused(msgspec.structs.replace(access, connect=keyed.address))

@@ -100,7 +100,10 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Give True: pages draw about five pictures a second. Tests of the drawing override this."""
+    """Give True, which limits pages to about five pictures a second.
+
+    Tests of the drawing override this fixture with False.
+    """
     return True
 
 

@@ -94,7 +94,10 @@ class Contestant:
         self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')
 
     def until(self, condition: str) -> None:
-        """Wait until JavaScript gives true; the pages' policy forbids `wait_for_function`."""
+        """Wait until a JavaScript expression is true.
+
+        Playwright's `wait_for_function` does not work here: the pages' policy forbids it.
+        """
         end_s = time.monotonic() + TIMEOUT_MS / 1000
         while not self.page.evaluate(condition):
             assert time.monotonic() < end_s, condition

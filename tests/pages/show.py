@@ -38,7 +38,10 @@ class Show:
         return self.page.evaluate(f"window.__lacoc?.views?.[{index}]?.{what}")
 
     def until(self, condition: Callable[[], Any], otherwise: str) -> None:
-        """Wait until a condition is true; the pages' policy forbids `wait_for_function`."""
+        """Wait until a condition is true; after a time limit, fail with the message `otherwise`.
+
+        Playwright's `wait_for_function` does not work here: the pages' policy forbids it.
+        """
         end_s = time.monotonic() + WAIT_MS / 1000
         while not condition():
             assert time.monotonic() < end_s, otherwise

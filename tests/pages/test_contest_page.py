@@ -186,7 +186,7 @@ def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:
 def test_a_gateway_follows_the_contest(
     cup: Cup, venue: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """A gateway says that no contest is there, and shows each new sheet without a reload."""
+    """The page says that no contest is here yet; then it shows each new sheet without a reload."""
     venue.web()
     page = open_page(viewport=LAPTOP)
     console.expect(r"contest\.json")  # a browser logs each 404

@@ -291,7 +291,7 @@ def test_a_table_goes_to_the_page_on_which_teams_enter(
 def test_a_table_goes_to_practice(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """The button opens practice in a new tab; without a free tab there is a link."""
+    """The button opens practice in a new tab; if no tab can be opened, the page shows a link."""
     page = designer(open_page, address)
     page.page.click(".bar .name")
     with page.page.context.expect_page() as coming:

@@ -55,9 +55,9 @@ def play_and_abort(url: str, key: str, court: str, stack: ExitStack) -> PageClie
 def test_pages_follow_the_director(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:
-    """Two pages show a court and the result of its match, and go to another court by themselves.
+    """Two pages that follow the director show a court and the result of its match.
 
-    They do so when the shown court is killed.
+    When this court is killed, both pages go to another court without a reload.
     """
     console.expect("WebSocket")  # the gateway ends before the pages
     file = write_contest(tmp_path)

@@ -35,7 +35,12 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """Return the page's opacity at its edge and middle (0-255), and the share of opaque pixels."""
+    """Measure the opacity of a page; the page `blank` decodes the picture.
+
+    Returns:
+        The opacity (0-255) at the left edge ("corner") and in the "middle", and the share of
+        "opaque" pixels.
+    """
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found

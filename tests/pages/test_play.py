@@ -722,7 +722,16 @@ def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
 
 
 def pos_data(page: Contestant, *args: Any) -> dict[str, str]:
-    """Return Pos-data.txt as the page writes it, and the page's note about the file."""
+    """Let a page write Pos-data.txt from frames.
+
+    Args:
+        page: the page.
+        args: the seat's index, the number of joints of each robot, the frames, and optionally the
+            most rows that the page keeps.
+
+    Returns:
+        The file's "text", and the page's note about the file: "says", or "saysInPractice".
+    """
     seat, joints, frames, *most = args
     sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
     shown: dict[str, str] = page.page.evaluate(

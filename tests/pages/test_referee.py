@@ -98,7 +98,7 @@ def log_has(page: Page, text: str) -> None:
 
 
 def confirm(page: Page, chip: str | None = None, words: str = "") -> None:
-    """Type the reason into the open dialog and confirm; wait until the dialog closes."""
+    """Choose or type a reason in the open dialog and confirm; wait until the dialog closes."""
     dialog = page.get_by_role("dialog")
     if chip:
         expect(dialog.locator("[type=submit]")).to_be_disabled()
