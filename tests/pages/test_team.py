@@ -99,7 +99,10 @@ def type_wrong_token(player: Contestant, link: str) -> None:
 
 
 def play_a_match(player: Contestant, first: bool) -> str:
-    """Play the match to which the page goes by itself; return the opponent's name."""
+    """Play the match to which the page goes by itself; return the opponent's name.
+
+    If `first` is true, the page must be at the court "south".
+    """
     button = player.find("button.ready")
     expect(button).to_be_visible(timeout=WAIT_MS)
     player.stands("seated")

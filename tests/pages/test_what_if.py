@@ -63,7 +63,10 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 
 def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: OpenPage) -> None:
-    """A curve shows all odds, and numbers the odds of the beat; a highlight leads to its start."""
+    """A curve shows the odds of the whole match; two numbers show the odds at the shown beat.
+
+    A click on a highlight leads to its start.
+    """
     page = open_page(viewport={"width": 1366, "height": 768})
     show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=2&q=low")
     show.sees(".transport .chances", "90 : 10 %")
@@ -82,7 +85,10 @@ def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: O
 
 @pytest.mark.long
 def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: OpenPage) -> None:
-    """A fork is marked in the list and on its page, which can show the match at the same beat."""
+    """The list of recordings and the page of a fork say that it is a fork.
+
+    The page can show the fork and its match side by side, both at one beat.
+    """
     page = open_page(viewport={"width": 1366, "height": 768}, locale="ja-JP")
     show = Show(page, library.url, "/replay?q=low", drawn=False)
     show.sees(".recordings .fork", "もしも")

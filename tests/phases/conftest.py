@@ -32,7 +32,7 @@ def sample() -> dict[int, Posture]:
 def ask_trial() -> Asks:
     """Give a function that tries postures or sequences on the workshop's robot.
 
-    With postures, key 0 of level B stands in posture 0, and key 1 repeats the postures 1 to 4.
+    A trial of postures has two keys at level B: 0 stands in posture 0; 1 repeats postures 1 to 4.
     """
     answers: dict[bytes, TrialReply] = {}
 

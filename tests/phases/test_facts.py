@@ -29,7 +29,7 @@ def legs() -> tuple[LegSpec, ...]:
 
 
 def test_the_sample_walks_five_whole_cycles(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """The sample walks five cycles straight ahead, on the same three feet for half a cycle."""
+    """The sample walks straight for five cycles, nearly half of the time on the same three feet."""
     facts = try_gait(sample, "B1")
 
     assert (facts.keys, facts.postures, facts.cycles) == (("B1",), 4, 5)
@@ -64,7 +64,10 @@ def test_two_postures_go_forward_on_the_same_feet(
 
 
 def test_a_jump_at_the_seam_is_told_in_degrees(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """A Root joint that turns by 26 degrees a posture jumps back by 78 degrees at the end."""
+    """Facts give the largest jump of a joint from the last posture back to the first.
+
+    Here Root turns by 26 degrees from each of four postures to the next, so it jumps back by 78.
+    """
     turned = {
         key: tuple(
             math.radians(-40 + 26 * (key - 1)) if joint == 0 else angle
@@ -152,7 +155,10 @@ ANGLES = st.tuples(*[st.integers(-90, 90)] * 3)
 def test_a_foot_that_goes_back_goes_the_other_way(
     legs: tuple[LegSpec, ...], leg: int, one: tuple[int, ...], other: tuple[int, ...]
 ) -> None:
-    """The reverse of an edit has the opposite directions; no edit has two opposite directions."""
+    """An edit that is reversed moves the foot in the opposite directions.
+
+    No edit moves the foot in two directions that are opposite to each other.
+    """
     opposite = {"forward": "back", "up": "down", "out": "in", "still": "still"}
     opposite |= {there: here for here, there in opposite.items()}
     ways = foot_ways(legs[leg], one, other)

@@ -134,7 +134,7 @@ def test_every_outcome_is_whole(evidence: list[Evidence]) -> None:
 
 @given(LISTS)
 def test_progress_never_locks(evidence: list[Evidence]) -> None:
-    """The student is at the phase visited last; only phases before the farthest are skipped."""
+    """A student is at the phase visited last; each skipped phase is before the highest visited."""
     now = progress(evidence)
     visited = [one.phase for one in evidence if isinstance(one, Moved) and 1 <= one.phase <= 6]
 
@@ -166,7 +166,7 @@ HAND, VOTE = Hand(up=True), Voted(poll="x")
 
 
 def test_a_count_says_how_much_is_left() -> None:
-    """If one of two raised hands is there, the share is a half, and one is reported missing."""
+    """A rule that asks for two raised hands and sees one has share 0.5, and reports one missing."""
     assert IS_HAND.look([HAND, VOTE]) == Outcome(0.5, (lacks(1),))
     assert IS_HAND.look([HAND, VOTE, HAND]) == MET
 

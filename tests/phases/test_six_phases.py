@@ -180,7 +180,7 @@ def test_all_texts_are_in_both_languages() -> None:
 
 
 def test_evidence_that_no_task_asks_for_changes_no_task() -> None:
-    """Progress computed from the last result equals progress computed from all evidence."""
+    """Progress that is updated after each piece of evidence equals progress computed anew."""
     evidence: list[Evidence] = [Named(word="calm")]
     before = progress(evidence)
     for one in (Moved(phase=5), Hand(up=True), Voted(poll="calm"), Hand(up=False), Moved(phase=2)):

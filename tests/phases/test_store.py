@@ -61,7 +61,7 @@ def test_what_is_kept_can_be_read_again(path: Path) -> None:
 def test_a_table_is_on_the_disk_with_the_evidence_after_it(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """When evidence is acknowledged, the tables that the student kept before it are written too."""
+    """When a student's evidence is acknowledged, the student's newest table is on the disk too."""
     monkeypatch.setattr("lacoc_client.phases.store.DOCUMENT_S", 1e6)
     copy = tmp_path / "copy.sqlite"
     with ClassStore(path) as store:
@@ -112,7 +112,7 @@ def test_a_student_votes_once_and_nobody_sees_for_what(path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_killed_program_loses_nothing_that_was_acknowledged(path: Path) -> None:
-    """Kills at random moments lose no acknowledged evidence, and no table older than 2 s."""
+    """A kill loses no acknowledged evidence, and no table kept more than 2 s before the kill."""
     kills = [kill_once(path, after_s) for after_s in (0.0, 0.11, 2.6)]
 
     assert [kill.lost for kill in kills] == [0] * len(kills)

@@ -148,7 +148,10 @@ def test_every_key_expression_of_a_studio() -> None:
 
 
 def test_sizes_and_numbers() -> None:
-    """docs/protocol.md has the code's limits, phases and flags, and as many reasons of refusal."""
+    """docs/protocol.md has the code's limits, phases and flags.
+
+    It lists as many reasons of refusal as the code has.
+    """
     table = section("Key expressions")
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table

@@ -97,7 +97,7 @@ def try_both(env: Environment) -> None:
 
 
 def try_contestant(env: Environment) -> None:
-    """Try a contestant's machine: without MuJoCo, `serve` says in one line how to install it."""
+    """Try a contestant's machine: MuJoCo is missing, and `serve` says in a line what to install."""
     try_both(env)
     env.run("python", "-c", IMPORT_ALL.format(packages=["lacoc_shared", "lacoc_client"]))
     error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr

@@ -318,7 +318,7 @@ def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> No
 
 
 def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay export` without options writes all outputs; older files stay, numbered."""
+    """`lacoc replay export` without options writes all outputs and adds a number to older files."""
     path, out = write_match(tmp_path), tmp_path / "out"
     for _ in range(2):
         done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])

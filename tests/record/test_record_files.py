@@ -47,13 +47,13 @@ def words_of(record: Record) -> str:
 
 @pytest.fixture(scope="module")
 def segment(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
-    """Give the path of a match of `write_match`, as a closed segment."""
+    """Write a match with `write_match`; give the path of its closed segment."""
     return write_match(tmp_path_factory.mktemp("segment"))
 
 
 @pytest.fixture(scope="module")
 def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
-    """Give the path of a match of `write_match`, as a packed file."""
+    """Write a match with `write_match` and pack it; give the path of the packed file."""
     folder = tmp_path_factory.mktemp("packed")
     pack.pack([write_match(folder)], folder / "m.mcap")
     return folder / "m.mcap"
@@ -408,7 +408,7 @@ def test_closing_twice_is_once(tmp_path: Path, header: MakeHeader) -> None:
 
 
 def _messages(data: bytes) -> dict[str, list[bytes]]:
-    """Return a cut file's whole messages by topic, found by their lengths alone."""
+    """Map each topic to its whole messages in a cut file, found only by the lengths in the file."""
     topics = list(KINDS)
     found: dict[str, list[bytes]] = {}
     at = 8

@@ -122,7 +122,7 @@ def test_export_keeps_the_older_file(tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_export_without_mujoco(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without MuJoCo, `robot export` says in one line how to install it."""
+    """If MuJoCo is missing, `robot export` says in one line how to install MuJoCo."""
     monkeypatch.delitem(sys.modules, "lacoc_robots.model", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert lacoc("robot", "export", "hexapod", str(tmp_path / "out.xml")) == 2

@@ -162,7 +162,7 @@ def test_commands_say_the_same(leaper: Path) -> None:
 
 
 def test_a_gait_is_checked_for_a_robot(leaper: Path) -> None:
-    """`gait check --robot` uses that robot's number of legs; --legs beside it is refused."""
+    """`gait check --robot` uses the number of legs of that robot, and refuses the option --legs."""
     gait_file = str(leaper / "Loco-data.txt")
     run = CliRunner().invoke
     assert run(gait_app, ["check", gait_file, "--robot", "hexapod"]).exit_code == 0

@@ -38,7 +38,7 @@ _calls = itertools.count(1)
 
 @functools.cache
 def hash_of(team: str) -> str:
-    """Return the hash of a team's token, the same in all its matches."""
+    """Return the hash of a team's token; a team has one token for all its matches."""
     return hash_token(token(team))
 
 
@@ -47,7 +47,7 @@ def token(team: str) -> str:
 
 
 def entry(seat: str, team: str, robot: str = "hexapod", **changes: Any) -> AssignedSeat:
-    """Return a team in a seat, with the files of a sample robot; `changes` replace its fields."""
+    """Return a team in a seat, with a sample robot's files; `changes` replace the seat's fields."""
     postures, locomotion = sample_gait_files(robot)
     files: dict[str, Any] = {"robot": SentFile(*find_robot(robot))}
     files |= {"postures": postures, "locomotion": locomotion, "token_hashes": (hash_of(team),)}

@@ -161,10 +161,10 @@ def sample_task(key: int) -> Task:
 @pytest.mark.slow
 @pytest.mark.long
 def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """`lacoc coach` writes a map or six variants of a gait into a folder.
+    """`lacoc coach --map` writes a gait for each cell of the map; `--variants` writes six gaits.
 
-    It breeds new variants from the gaits that `--keep` names, and refuses options that don't
-    combine.
+    From the gaits that `--keep` names, the coach breeds new variants. It refuses options that
+    don't combine.
     """
 
     def found(*words: str) -> Any:

@@ -97,7 +97,10 @@ def test_twice_keeps_what_was_handed_out(file: Path) -> None:
 
 
 def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
-    """Each contest in a folder gets its own key folder, or an error if both names are taken."""
+    """A second contest in a folder gets a key folder of its own: "keys-two" beside "keys".
+
+    If other contests have both key folders, an error says so.
+    """
     run("keys", str(file), "--host", "one.example")
     first = contests.load(file).keys
     assert first is not None

@@ -120,7 +120,7 @@ def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
 
 
 def asks(team: str = "Ants", **files: SentFile | None) -> Join:
-    """Return a join as a controller sends it."""
+    """Return a team's join with some files, as a controller sends it."""
     return Join(protocol=PROTOCOL, token="", name=team, **files)
 
 

@@ -122,9 +122,10 @@ def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> 
 
 @pytest.mark.slow
 def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path) -> None:
-    """If the recorded bots take over, a fork ends as its record; other reaction times change that.
+    """If the recorded bots take over without a delay, a fork has the same result as its record.
 
-    Keys of a script, also [x], come at their times; the other seat keeps its recorded keys.
+    The same delays of the bots give the same result, and other delays another one. A script
+    presses its keys, also [x], at their times; the other seat keeps its recorded keys.
     """
     first = beat_of(source, "PLAYING") + 1
     beat = first + 50
@@ -170,7 +171,10 @@ def test_an_unfinished_match_goes_on(source: Source, tmp_path: Path) -> None:
 
 
 def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
-    """A fork of an assigned match has the call "fork", its own fixture and an id of no match."""
+    """A fork of an assigned match has the call "fork", and a fixture that names that match.
+
+    A fork's id, such as "fork-1-at-60-of-MATCH", can't be read as the name of a court's match.
+    """
     from lacoc_server.simulate.forks.origin import stem
     from lacoc_shared.messages.office import Assigned
 

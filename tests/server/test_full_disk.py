@@ -91,7 +91,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event with this reason has arrived; it may come later than its frame."""
+    """Return whether an event with this reason has arrived; it may come after its beat's frame."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 

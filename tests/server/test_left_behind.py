@@ -119,7 +119,7 @@ def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Pa
 
 
 def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
-    """A match whose seats have other names is refused: no token of the court would open them."""
+    """A court refuses a match with other seats than the court has: no token would open them."""
     killed(tmp_path)
     renamed = [seat | {"id": new} for seat, new in zip(OTHELLO.settings["seat"], "ab", strict=True)]
     other = arenas.load("othello", arenas.merge(QUICK, {"seat": renamed}))

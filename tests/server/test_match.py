@@ -165,7 +165,7 @@ def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
 
 
 def test_a_wide_robot_needs_more_room() -> None:
-    """[x] skips a start place nearer to the other robot than the radii of both robots together."""
+    """[x] skips a start place whose distance to the other robot is below the sum of both radii."""
     radii = {}
     for robot in ("hexapod", "long-legs"):
         stage = Stage("flag-strike", QUICK)
@@ -184,7 +184,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both seats press [x] in one tick, both get their first place, in either order."""
+    """If both seats press [x] in one tick, each gets its first place, whichever key comes first."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)
