@@ -19,11 +19,18 @@ _PING, _PONG, _BINARY = 0x9, 0xA, 0x2
 
 
 class Page(asyncio.Protocol):
-    """A page's WebSocket: asks for frames, counts them, answers pings."""
+    """A page's WebSocket: asks for frames, counts them, answers pings.
 
-    def __init__(self, host: str, hz: float) -> None:
+    Args:
+        host: host and port of the gateway.
+        hz: how many frames a second it asks for.
+        court: the court that it watches; None: the gateway's first one.
+    """
+
+    def __init__(self, host: str, hz: float, court: str | None = None) -> None:
         self._host = host
         self._hz = hz
+        self._court = court
         self._data = b""
         self._open = False
         self.frames = self.bytes = 0
@@ -47,7 +54,7 @@ class Page(asyncio.Protocol):
                 return
             assert b" 101 " in head, head
             self._open, self._data = True, rest
-            watch = {"id": 1, "do": "watch", "hz": self._hz}
+            watch = {"id": 1, "do": "watch", "hz": self._hz, "court": self._court}
             self._send(_BINARY, msgspec.msgpack.encode(watch))
         at, data = 0, self._data
         while len(data) - at >= 10 or (len(data) - at >= 2 and data[at + 1] < 126):

@@ -26,14 +26,21 @@ from lacoc_shared.words import Phrase, say
 GONE_S = 10.0
 """A court that was not heard for this long goes on here. Before, its own machine may start it
 again."""
+_CONNECT_S = 0.2
+"""Time between two attempts to connect; an attempt itself looks for the court for two seconds."""
 _AGAIN_S = 2.0
-"""Time between two attempts to connect, to open a court here, or to end one elsewhere."""
+"""Time between two attempts to open a court here, or to end one elsewhere."""
 
 
 class Pause:
-    """The time between two attempts to do something."""
+    """The time between two attempts to do something.
 
-    def __init__(self) -> None:
+    Args:
+        length_s: how long it is.
+    """
+
+    def __init__(self, length_s: float) -> None:
+        self._length_s = length_s
         self._next_s = 0.0
 
     def over(self) -> bool:
@@ -41,7 +48,7 @@ class Pause:
         now_s = time.monotonic()
         if now_s < self._next_s:
             return False
-        self._next_s = now_s + _AGAIN_S
+        self._next_s = now_s + self._length_s
         return True
 
 
@@ -79,7 +86,8 @@ class AwayCourt:
         self._heard_s = time.monotonic()
         self._is_here = name in stand_ins(where.stand_ins)
         self._is_open_here = False
-        self._may_connect, self._may_open, self._may_close = Pause(), Pause(), Pause()
+        self._may_connect = Pause(_CONNECT_S)
+        self._may_open, self._may_close = Pause(_AGAIN_S), Pause(_AGAIN_S)
         self._aside = ThreadPoolExecutor(2, f"court {name}")
         self._connecting: Future[CourtLink] | None = None
         self._opening: Future[tuple[str, CourtLink]] | None = None
