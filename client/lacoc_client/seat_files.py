@@ -151,7 +151,15 @@ def gaits_in(folder: Path) -> list[Path]:
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
-    """Warn of LocoTra workbooks, which are not read, and of sequences older than the postures."""
+    """Return warnings about the gait files in a folder.
+
+    Each LocoTra workbook gives a warning, because it is not read. So does a locomotion file that
+    is older than the posture file.
+
+    Args:
+        folder: the folder.
+        taken: the gait files that are read, as `gaits_in` returns them.
+    """
     said = [
         say("play.no-workbook", file=path.name) for path in sorted(folder.glob("LocoTra*.xlsx"))
     ]

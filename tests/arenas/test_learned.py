@@ -53,7 +53,11 @@ def test_an_exported_policy_is_the_same(
 
 
 def test_the_file_is_a_bot(tmp_path: Path) -> None:
-    """The file is a bot; the error in another game says with how many numbers the bot learned."""
+    """The text that `export` returns is a bot file.
+
+    If a game gives a bot another number of inputs than the bot learned with, the bot's error names
+    the number that it learned with.
+    """
     file = tmp_path / "my_bot.py"
     file.write_text(export(some(7, [3], (1, 2), 0)), encoding="utf-8")
     spec = importlib.util.spec_from_file_location("my_bot", file)
@@ -106,7 +110,7 @@ def test_damaged_text(text: str) -> None:
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_each_marker_has_a_partner(arena: str) -> None:
-    """Both fields stay the same when they are turned; without one marker a field does not."""
+    """`partners` finds the marker opposite each marker, or returns None if a marker is missing."""
     markers = arenas.load(arena).game.markers
     found = partners(markers)
     assert found is not None

@@ -216,7 +216,10 @@ def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
 
 
 def test_touching_discs_share_no_point() -> None:
-    """A point where two discs touch belongs to the outer disc, or on the field's axes to none."""
+    """A point where two discs touch belongs to the outer one of them.
+
+    A point where two discs touch on a middle line of the field belongs to neither.
+    """
     game = with_settings(pitch_m=0.5, disc_radius_m=0.25)
     assert game.cell_at(0.5, 0.25) == INDEX["c4r3"]
     assert game.cell_at(-0.5, -0.25) == INDEX["c1r2"]
@@ -326,7 +329,7 @@ def test_flip_in_a_row(what: str) -> None:
 
 
 def test_flip_in_row_and_column_at_once() -> None:
-    """A new disc flips runs along its row and its column, never diagonally (rules 5)."""
+    """A flip by walking also flips runs in the row and the column, never diagonally (rules 5)."""
     before = state(
         board(
             "..L..L",

@@ -56,7 +56,11 @@ def said(events: tuple[GameEvent, ...]) -> set[tuple[Any, ...]]:
 
 @st.composite
 def observations(draw: st.DrawFn, game: AnyGame) -> list[tuple[tuple[RobotView, ...], bool]]:
-    """Draw walks of both robots, and for each tick whether the referee takes back a claim."""
+    """Draw a walk of both robots.
+
+    Returns:
+        For each tick: the view of each seat's robot, and whether the referee takes back a claim.
+    """
     flags = [index for index, marker in enumerate(game.markers) if marker.kind == "flag"]
     spots = [(marker.x_m, marker.y_m) for marker in game.markers if marker.kind != "flag"]
     at = [draw(st.integers(0, len(spots) - 1)) for _ in range(2)]

@@ -140,7 +140,7 @@ def test_a_tournament_of_broken_gaits_says_who_was_left_out(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("players", [{}, {"Ada": HEXAPOD}, {"Ada": HEXAPOD, "Bo": WITHOUT}])
 def test_fewer_than_two_can_not_play(tmp_path: Path, players: Mapping[str, SeatFiles]) -> None:
-    """A tournament of fewer than two gaits that walk does not begin."""
+    """Without two gaits that walk, a tournament is refused and does not begin."""
 
     async def play() -> None:
         room = Class(tmp_path)

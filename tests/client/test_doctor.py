@@ -82,7 +82,15 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """Return doctor's findings about packages, some of which have the given metadata."""
+    """Add packages that are only metadata, and return doctor's findings about all packages.
+
+    Args:
+        folder: where to write the metadata.
+        metadata: for each package, such as "mcap-0.1", the lines of its METADATA file.
+
+    Returns:
+        For each finding: its subject, its status, what was found, and what to do.
+    """
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")

@@ -47,7 +47,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script presses at most one robot key in a tick, and a time counts from the key before."""
+    """A script presses at most one robot key in a tick; a time counts from the previous key."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 

@@ -115,7 +115,7 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 def test_a_frame_of_another_scene_is_put_into_words_too(
     changes: dict[str, bytes], empty: str
 ) -> None:
-    """In words a frame has no poses of another scene, and no poses or markers that it lacks."""
+    """In words, `poses` is empty if a frame has none or another scene; `markers` if it has none."""
     sheet = make_sheet("othello")
     poses = pose(0.0, 0.0, 0.0) * 2
     plain = frame_dict(make_frame(sheet, **({"poses": poses} | changes)), sheet)

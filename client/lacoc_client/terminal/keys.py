@@ -48,12 +48,12 @@ class Keys(Protocol):
         """True if no more keys will come."""
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
-        """Wait a little for keys: digits and letters as they are, others by name.
+        """Wait for keys; return their names, such as "2", "x", "up" or "space".
 
         Args:
             timeout_s: longest wait [s].
-            playing_s: how long the match has been played [s]; a script's clock.
-            playing: whether it is being played.
+            playing_s: how long the match has been played [s]; a script goes by this time.
+            playing: whether the match is being played.
         """
 
     def take_said(self) -> list[Phrase]:
@@ -68,7 +68,7 @@ class KeyDecoder:
         self._rest = ""
 
     def feed(self, data: bytes) -> list[str]:
-        """Decode bytes; half an escape sequence waits for its other half."""
+        """Decode bytes into names of keys; half an escape sequence waits for its other half."""
         text = self._rest + self._decoder.decode(data)
         self._rest = ""
         keys: list[str] = []

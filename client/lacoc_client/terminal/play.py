@@ -192,7 +192,9 @@ class TerminalPlay:
         self._said.append(render(what))
 
     def _check_end(self) -> None:
-        """Check whether the seat is lost, or a script and its match are over.
+        """Note whether to go on to the next match, or to leave because the script is done.
+
+        A script is done when it has no more keys and its match is over or has no time limit.
 
         Raises:
             UserError: if the seat is lost, or a script waits for a court that is gone.
@@ -238,7 +240,11 @@ class TerminalPlay:
         return Group(first, second, self._third(now_s))
 
     def _third(self, now_s: float) -> Text:
-        """Return the third line: the most urgent of link, answer to a key, seat, phase and keys."""
+        """Return the third line of the picture: the most urgent of the things to say.
+
+        From most to least urgent: a broken link, a seat that is not held, the answer to a key,
+        the state of the seat, the phase, the list of keys.
+        """
         controller, frame = self._controller, self._view.frame
         assert frame is not None
         banner = words.link(self._view.silent_s(now_s))
