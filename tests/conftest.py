@@ -28,7 +28,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Set the number of examples for each property, 40 or 200 with --long, and the environment."""
+    """Let 40 examples check each property, or 200 with --long.
+
+    Also keep the programs that tests start from writing bytecode.
+    """
     settings.load_profile("thorough" if config.getoption("long") else "quick")
     if "PYTEST_XDIST_WORKER" in os.environ or not config.getoption("numprocesses", None):
         # A process whose files may not grow would write half of its bytecode, which breaks others.
@@ -51,7 +54,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
-    """Spread the tests that take minutes over the processes: each begins the part of one process.
+    """Return the tests reordered: each process begins with its share of those that take minutes.
 
     Args:
         items: the tests, in the order of their files.

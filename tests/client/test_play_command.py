@@ -86,7 +86,10 @@ def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProces
 
 
 def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Path) -> None:
-    """Keys work at a terminal as rules 3 and workshop 4-4 say; an older Pos-data.txt is kept."""
+    """Keys work at a terminal as rules 3 and workshop 4-4 say.
+
+    When the player leaves, Pos-data.txt is written; an older file of this name gets another name.
+    """
     _, terminal = started
     (tmp_path / "Pos-data.txt").write_text("older")
     terminal.press("1")

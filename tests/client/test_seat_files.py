@@ -86,7 +86,7 @@ def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
 
 
 def test_nothing_named_leaves_all_to_the_contest() -> None:
-    """A contestant who names no robot and no gait sends no file, and plays with the court's own."""
+    """A contestant who names no files sends none, and plays with the contest's robot and gait."""
     assert gather(None, []) == SeatFiles()
 
 

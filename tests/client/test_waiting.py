@@ -40,7 +40,7 @@ def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
     ids=["a person", "the time is over", "for good"],
 )
 def test_it_does_not_wait_in_vain(wait_s: float | None, error: UserError) -> None:
-    """A service does not wait without --wait, after the time of --wait, or with a wrong token."""
+    """A service fails at once if --wait is not given, its time is over, or the token is wrong."""
     with pytest.raises(type(error), match=str(error)):
         Patience(wait_s).until(coming(error))
 

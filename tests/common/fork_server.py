@@ -34,12 +34,12 @@ def preload() -> None:
 
 
 def serve(door: socket.socket) -> int:
-    """Fork processes until the socket is closed.
+    """Fork a process for each request, until the socket is closed.
 
-    In each forked process this function runs the command and then returns as well.
+    The function also returns in each forked process, after that process has run its command.
 
     Returns:
-        The exit code of this process.
+        0 in the server, and the exit code of the command in a forked process.
     """
     ring, rung = socket.socketpair()
     rung.setblocking(False)
@@ -76,7 +76,11 @@ def serve(door: socket.socket) -> int:
 
 
 def reap(waiting: dict[int, int]) -> None:
-    """Write the wait status of each ended process to the descriptor of that process."""
+    """Report each process that has ended, and forget it.
+
+    Args:
+        waiting: process ids, each with the file descriptor to which its wait status is written.
+    """
     for pid in list(waiting):
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:

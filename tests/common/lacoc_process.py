@@ -76,7 +76,7 @@ class Lacoc(subprocess.Popen[Any]):
 
 
 def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
-    """Start a `lacoc` command, by itself or as the last words of the command line `before`."""
+    """Start a `lacoc` command; the words of `before`, if any, precede it on the command line."""
     if before:
         return subprocess.Popen([*before, *COMMAND, *words], **options)
     return Lacoc(*words, **options)

@@ -8,7 +8,7 @@ from lacoc_shared.record.reader import Record
 
 
 def verdict(record: Record, **options: Any) -> Verdict:
-    """Verify a record; check that the reported numbers of beats grow, and return the verdict."""
+    """Verify a record and return the verdict; check that the progress, in beats, always grows."""
     *beats, found = verify(record, **options)
     assert beats == sorted(set(beats))
     assert isinstance(found, Verdict)

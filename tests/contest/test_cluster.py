@@ -17,7 +17,7 @@ from lacoc_shared.mistakes import UserError
 @pytest.mark.long
 @pytest.mark.slow
 def test_a_cluster_gives_the_same_tables(tmp_path: Path) -> None:
-    """Two workers, one of which is killed, give the same tables as processes of this machine."""
+    """A cluster, one of whose workers is killed, gives the same standings as local processes."""
     here = enter(tmp_path / "here")
     sheet, games = organiser.play_headless(here, "planner", Pool(2), lambda done, there: None)
     there = enter(tmp_path / "there")

@@ -306,7 +306,7 @@ def test_a_token_of_the_command_is_known_at_once(room: Room) -> None:
 
 
 def test_roles_hold(room: Room) -> None:
-    """No role can do what only another role may do; after many guesses the desk asks to wait."""
+    """No role can do what only another role may do; after many wrong tokens one must wait."""
     room.enter("Ants", "Bees")
     token = room.tokens.of("Ants")
     before = (room.facts, room.applications.waiting)
@@ -342,7 +342,7 @@ def test_roles_hold(room: Room) -> None:
 
 
 def test_what_is_no_request_is_refused(room: Room) -> None:
-    """Bytes that are no request are refused, and nothing is drawn."""
+    """Bytes that are no request are refused, and no stage is drawn."""
     for payload in (b"", b"\xc1", b"\x80", encode({"do": "draw"}), b"x" * 200_000):
         assert said(room.desk.judge(payload)) == "desk.bad-request"
     assert not any(isinstance(fact, Drawn) for fact in room.facts)

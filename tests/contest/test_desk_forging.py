@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.parametrize("attempts", [500, pytest.param(10_000, marks=pytest.mark.long)])
 def test_no_role_does_what_is_anothers(attempts: int) -> None:
-    """No forgery is accepted, no client hears others, and the organiser still gets answers."""
+    """No forgery is accepted, no client overhears another, and the organiser still gets answers."""
     command = [sys.executable, "-m", "benchmarks.desk_forging", "--attempts", str(attempts)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -116,7 +116,7 @@ def test_a_bot_with_a_mistake_is_refused(cup: Cup, source: str, said: str) -> No
 
 
 def test_two_teams_have_the_same_files(cup: Cup) -> None:
-    """Two teams can enter the same files: the entry is frozen once."""
+    """Two teams can enter the same files; the contest keeps them only once."""
     assert cup.enter("Ann") == cup.enter(" Bob ") == "contest.entered"
     assert [fact.team for fact in cup.facts] == ["Ann", "Bob"]
     assert len([*(cup.file.parent / "entries").iterdir()]) == 1
@@ -130,7 +130,7 @@ def test_a_name_that_cannot_be_shown_is_refused(cup: Cup, team: str) -> None:
 
 
 def test_a_name_typed_with_a_combining_accent_is_the_same_team(cup: Cup) -> None:
-    """A name with an accent is the same team, also if the accent is a character of its own."""
+    """A name is the same whether its accent is part of a letter or a character of its own."""
     cup.enter("Café")
     assert cup.enter("Cafe\u0301", "nearest") == "contest.entered-again"
 

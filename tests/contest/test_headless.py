@@ -34,7 +34,7 @@ def games(played: Path) -> int:
 
 @pytest.mark.long
 def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: Path) -> None:
-    """Two worker processes give the same tables, byte for byte, as this process alone."""
+    """Two worker processes give the same CSV tables, byte for byte, as this process alone."""
     again = contest_played.enter(tmp_path / "again")
     assert contest_played.play(again, jobs=2) == games(played)
     first, second = (organiser.sheet(file) for file in (played / "contest.toml", again))

@@ -48,7 +48,7 @@ def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -
 
 
 def test_stages_with_other_levels_are_other_games(tmp_path: Path) -> None:
-    """Stages of one arena share a weigh-in, unless they open other levels of control."""
+    """Stages of one arena share a weigh-in only if they open the same levels of control."""
     stages = [
         f'[stage.{name}]\nformat = "swiss"\nsettings.match.{setting}\n'
         for name, setting in (

@@ -93,7 +93,7 @@ def test_names_of_teams_are_no_paths(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_tables_are_for_spreadsheets(played: Path) -> None:
-    """Tables are CSV with a byte order mark for Excel; a name like a formula begins with '."""
+    """Tables are CSV with a byte order mark for Excel; a name like a formula gets a ' before it."""
     rows = {}
     for name in (STANDINGS, GAMES):
         text = (played / "published" / name).read_bytes()
@@ -173,7 +173,10 @@ def test_exit_codes_and_languages(
 
 @pytest.mark.slow
 def test_a_reel_finds_the_records(played: Path) -> None:
-    """A film of the published folder, or of the contest's own, has the record of every game."""
+    """A film of a published folder takes the records of all games that are not void.
+
+    A film of the contest's own folder takes records of the same names, in the same order.
+    """
     published = film_contest.records(played / "published")
     own = film_contest.records(played)
 

@@ -49,7 +49,7 @@ def findings(folder: Path, proven: bool = False) -> list[str]:
 
 
 def numbered(*facts: AnyFact) -> tuple[AnyFact, ...]:
-    """Give facts their numbers and ids; all have happened at once."""
+    """Return the facts with numbers and ids; all get the same time."""
     return tuple(replace(one, id=f"f{n}", number=n, at_ms=9) for n, one in enumerate(facts, 1))
 
 
@@ -177,7 +177,10 @@ def test_earlier_facts_must_still_be_there() -> None:
 
 
 def test_files_count_from_when_they_were_entered() -> None:
-    """A team's newest files count; if they came after entries closed, the previous ones do too."""
+    """A team may have played a game with its newest files.
+
+    If these came after entries closed, the team may also have played with the files before them.
+    """
     game = new(Played, pairing="a", game=1, teams=("A", "B"), scores=(0, 0), outcome="draw")
     facts = numbered(
         new(Entered, team="A", files="1"),

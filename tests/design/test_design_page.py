@@ -203,7 +203,7 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -
 
 @pytest.mark.long
 def test_other_gaits_are_found(page: DesignClient) -> None:
-    """A map has at least the page's own gait; variants are bred only from tables that fit."""
+    """A map of gaits has at least the page's own; a table that lacks an angle gives no variants."""
     fields = {"table": sample(page), "sequences": [[0], [8, 7, 6, 5], [1, 2, 3, 4]]}
     found = page.ask("map", job="map", **fields, seconds=0.0)
     own = next(cell for cell in found["cells"] if [cell["speed"], cell["arousal"]] == found["own"])
@@ -217,7 +217,7 @@ def test_other_gaits_are_found(page: DesignClient) -> None:
 
 
 def test_a_page_that_goes_ends_its_search(opens: Opens) -> None:
-    """A search of two minutes whose page has gone does not keep the next one waiting."""
+    """When a page has gone, its long search ends, and the search of another page begins."""
     gone, other = opens(), opens()
     gone.send("coach", job="long", table=sample(gone), size="table", seconds=120.0)
     gone.until(lambda: gone.progress)

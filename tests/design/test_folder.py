@@ -170,7 +170,7 @@ def test_changes_are_noticed(folder: Folder) -> None:
     ],
 )
 def test_other_names_are_refused(folder: Folder, name: str) -> None:
-    """Names outside the folder, and names of other kinds of files, are refused."""
+    """Only files directly in the folder, with names of gait or robot files, are read and saved."""
     with pytest.raises(UserError, match="can't be a file here"):
         folder.read(name)
     with pytest.raises(UserError, match="can't be a file here"):

@@ -121,7 +121,10 @@ def test_two_phases_are_done_and_survive_a_kill(
 def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:
-    """A slower gait is compared with the sample; guesses, a word, a vote and a check are kept."""
+    """A slower gait gets a word from its student, and is compared with the sample.
+
+    The evidence keeps the comparison, the guesses, the vote and the check.
+    """
     gateway, page = starts()
     own = sample(page)
     halves = [

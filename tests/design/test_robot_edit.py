@@ -44,7 +44,7 @@ def numbers(value: Any) -> list[float]:
 def test_one_number_changes_and_the_rest_stays(
     text: str, entry: RobotEntry, value: float, newline: str
 ) -> None:
-    """Only numbers change in the text, all to the new value; a second edit changes nothing."""
+    """An edit changes only numbers, all to the new value; the same edit again changes nothing."""
     text = text.replace("\n", newline)
     edited = edit_robot(text, entry, value)
     assert NUMBER.sub("#", edited) == NUMBER.sub("#", text)
@@ -57,7 +57,7 @@ def test_one_number_changes_and_the_rest_stays(
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("text", [SAMPLES[0], OWN_LINK])
 def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: RobotEntry) -> None:
-    """A changed entry is changed in the robot too: the fact of the same name has the new value."""
+    """After an edit of an entry, the robot's fact with the entry's name has the new value."""
     old = facts(read_robot(text, "robot.toml"))[entry]
     value = (old[0] if isinstance(old, tuple) else old) * (1.02 if entry == "root_link_m" else 0.98)
     if entry in ("armature", "hold_s"):  # they stand at their lowest

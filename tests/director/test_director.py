@@ -38,7 +38,10 @@ Event = Callable[[float], Sequence[CourtNow]]
 
 
 def direct(event: Event, end_s: float, ahead_s: float) -> list[Shown]:
-    """Let a director watch the courts; return what was on air, with times of play."""
+    """Let a director watch the courts; return each court that was on air, from when, and why.
+
+    Each time is when the pictures were played: `ahead_s` before they were on air.
+    """
     director = Director(ahead_s)
     shown: list[Shown] = []
     for look in range(round((end_s + ahead_s) / LOOK_S)):
@@ -50,7 +53,7 @@ def direct(event: Event, end_s: float, ahead_s: float) -> list[Shown]:
 
 
 def at(event: Event, time_s: float, court: str) -> CourtNow | None:
-    """Return a court at a time; None: it is not there."""
+    """Return how a court stands at a time; None: the court is not there."""
     return next((one for one in event(max(0.0, time_s)) if one.name == court), None)
 
 
@@ -65,7 +68,7 @@ class Script(msgspec.Struct, frozen=True):
     stake: float
 
     def now(self, name: str, time_s: float) -> CourtNow | None:
-        """Return the court at a time; None: it is not there."""
+        """Return how the court stands at a time; None: the court is not there."""
         if self.gone[0] <= time_s < self.gone[1]:
             return None
         since_s = time_s - self.begins_s
@@ -99,7 +102,7 @@ AHEAD = st.sampled_from([0.0, 2.0, AHEAD_S])
 
 
 def invented(scripts: Sequence[Script]) -> Event:
-    """Return a function that gives the courts at a time, one court for each script."""
+    """Return a function that tells how the courts stand at a time; each script is one court."""
 
     def event(time_s: float) -> Sequence[CourtNow]:
         there = (one.now(f"court-{index}", time_s) for index, one in enumerate(scripts))
@@ -239,7 +242,7 @@ def halted(time_s: float) -> list[CourtNow]:
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])
 def test_a_halted_match_goes_on(ahead_s: float) -> None:
-    """The countdown after a halt allows no cut from a close end, and counts as no new match."""
+    """In the countdown after a halt, a close end stays on air; the match does not count as new."""
     shown = direct(halted, 60.0, ahead_s)
     assert [one.court for one in shown if one.at_s > 6.0] == []
     assert shown[-1].court == "final"
@@ -252,7 +255,7 @@ def test_a_halted_match_goes_on(ahead_s: float) -> None:
 
 
 def test_results_are_as_late_as_all_else() -> None:
-    """A court's newest result is shown as late as its pictures; a match in play has none."""
+    """Results are as late as their courts' pictures; if a match goes on, its result is dropped."""
 
     def result(court: str, match: str, *scores: int) -> Result:
         return Result(court, match, "Robot-Othello", None, ("A", "B"), scores, Phase.FINISHED)

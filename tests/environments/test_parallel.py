@@ -54,7 +54,7 @@ def same(one: list[Any], other: list[Any]) -> bool:
 @pytest.mark.parametrize("arena", GAMES)
 @pytest.mark.parametrize("actions", ["keys", "angles"])
 def test_the_checks_of_pettingzoo(arena: str, actions: Any) -> None:
-    """The library's own test finds no mistake and gives no warning."""
+    """PettingZoo's own test finds no mistake and gives no warning."""
     env = LacocParallelEnv(arena, settings=SHORT, actions=actions)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -63,7 +63,7 @@ def test_the_checks_of_pettingzoo(arena: str, actions: Any) -> None:
 
 @pytest.mark.long
 def test_the_checks_of_pettingzoo_over_1000_cycles() -> None:
-    """The library's own test also finds nothing in 1,000 cycles of matches of usual length."""
+    """PettingZoo's own test also finds no mistake in 1,000 cycles of matches of usual length."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for arena in GAMES:
@@ -208,7 +208,7 @@ def test_several_beats_in_a_step_are_the_same_match() -> None:
 
 
 def test_angles_move_the_joints() -> None:
-    """With `angles`, an action is a share of each joint's range; saves work, records do not."""
+    """With `angles`, actions are shares of joints' ranges; saves work, records are refused."""
     env = LacocParallelEnv(settings=SHORT, actions="angles")
     env.reset(seed=0)
     raised = np.zeros(18, np.float32)

@@ -47,7 +47,7 @@ SHORT: dict[str, Any] = {"match": {"duration_s": 0.8, "countdown_s": 0.02}}
     ],
 )
 def test_the_checks_of_gymnasium(name: str, arguments: dict[str, Any]) -> None:
-    """The library's own checks find no mistake and give no warning."""
+    """Gymnasium's own checks find no mistake and give no warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(gymnasium.make(name, **arguments).unwrapped)
@@ -77,7 +77,7 @@ def play(env: gymnasium.Env[Any, Any], actions: np.random.Generator) -> list[Any
 
 @pytest.mark.parametrize("opponent", ["straight", "planner"])
 def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
-    """An episode goes on bit for bit when another environment loads its save, and so does the bot.
+    """An environment that loads a save goes on, with its bot, bit for bit as the one that saved it.
 
     The episode's record is proven.
     """

@@ -159,7 +159,7 @@ def test_a_browser_plays_it(
 
 @pytest.mark.long
 def test_ffprobe_reads_it(alone: tuple[Path, list[np.ndarray]]) -> None:
-    """FFprobe counts the same pictures, where it is installed."""
+    """FFprobe, where it is installed, counts as many pictures as were decoded."""
     program = shutil.which("ffprobe")
     if program is None:
         pytest.skip("there is no ffprobe")

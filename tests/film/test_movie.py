@@ -66,7 +66,7 @@ def test_most_pictures_are_no_key_pictures(tmp_path: Path) -> None:
 
 
 def test_an_older_film_is_kept(tmp_path: Path) -> None:
-    """An older film of this name gets a number, but only when the new film is whole."""
+    """An older film of this name is renamed with a number, but only when the new film is whole."""
     out = tmp_path / "a.mp4"
     out.write_bytes(b"older")
     with movie(out, WIDTH, HEIGHT, 30) as film:

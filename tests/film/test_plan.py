@@ -39,7 +39,7 @@ def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> 
 def test_shots_are_in_order_and_within_the_match(
     ends: tuple[int, int], beats: list[int], opening: bool
 ) -> None:
-    """Shots lie in the match, do not touch, and show each moment; the last shot ends the match."""
+    """Shots lie in the match, do not touch, and show each moment; the last ends with the match."""
     first, last = ends
     shots = plan.highlights([Moment(beat) for beat in beats], first, last, opening=opening)
 

@@ -331,9 +331,9 @@ def seat_key(what: str) -> Callable[[bytes], str]:
 
 
 def request_key(payload: bytes) -> str:
-    """Return a request's key expression; its sequence number tells whether it is ready or leave.
+    """Return the key expression for a request; the sequence number decides: ready or leave.
 
-    A number that no seed request has counts as ready.
+    A sequence number that no seed request has counts as ready.
     """
     at = payload.find(b"seq") + 3
     asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")
