@@ -472,7 +472,7 @@ def _other_contest(copy: _Copy) -> None:
 
 
 def _record_twice(copy: _Copy) -> None:
-    """Let one record stand for two games, perhaps under another name."""
+    """Name the record of one game for a second game too, perhaps as a copy of another name."""
     one, first = copy.record()
     two, second = copy.record()
     if one == two:

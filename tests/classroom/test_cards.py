@@ -82,7 +82,7 @@ def test_three_equal_failures_in_a_row_are_flagged() -> None:
 
 
 def test_a_card_says_who_needs_help() -> None:
-    """A card names one need: a raised hand first, else equal failures, else inactivity."""
+    """A card names one need: a raised hand first, else a repeated failure, else inactivity."""
     slow = [tried(speed_mm_s=0.0)] * 3
 
     def need(evidence: list[Evidence], online: bool = True, after_s: float = 1.0) -> str:

@@ -84,7 +84,7 @@ def test_nothing_is_clamped(cell):
     "cell", ["abc", "4 5", "1.2.3", "1,234.5", "--4", "45°", "4²", "½", "0x10", "1_0", "٤٥", "–45"]
 )
 def test_what_is_no_number(cell):
-    """A cell that is not a number in a form that rules 2 allow is a mistake."""
+    """A cell must hold a number, written in an allowed form (rules 2); all else is a mistake."""
     (mistake,) = refused(loco([posture(j0=cell)]))
     assert (mistake.row, mistake.column, mistake.joint, mistake.leg) == (2, 2, 0, "R,F")
     assert mistake.found == f'"{cell}"'

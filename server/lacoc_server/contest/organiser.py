@@ -130,6 +130,8 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
 def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> list[AnyFact]:
     """Return the facts with which a team leaves; none if it has left already.
 
+    A team that has withdrawn can still be disqualified.
+
     `team`, `reason`, `disqualified` and the error are as in `take_out`.
     """
     teams = {one.name: one for one in contest.teams}

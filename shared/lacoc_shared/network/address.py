@@ -96,6 +96,15 @@ def why_not_connected(endpoints: Sequence[str], ca: str = "") -> Phrase:
     return reasons[0] if len(reasons) == 1 else say("plain.sentences", sentences=reasons)
 
 
+def is_open(one: str, timeout_s: float = 0.5) -> bool:
+    """Return whether something listens at a complete address; much faster than a failed session."""
+    try:
+        with socket.create_connection(_split(one), timeout=timeout_s):
+            return True
+    except OSError:
+        return False
+
+
 def why_not_listening(endpoints: Sequence[str], error: Exception) -> Phrase:
     """Say why it was not possible to listen on these addresses.
 

@@ -20,14 +20,15 @@ from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import is_open
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
-GONE_S = 10.0
+_GONE_S = 10.0
 """A court that was not heard for this long goes on here. Before, its own machine may start it
 again."""
 _CONNECT_S = 0.2
-"""Time between two attempts to connect; an attempt itself looks for the court for two seconds."""
+"""Time between two attempts to connect."""
 _AGAIN_S = 2.0
 """Time between two attempts to open a court here, or to end one elsewhere."""
 
@@ -61,7 +62,6 @@ class AwayCourt:
         open_here: returns a context manager that runs the court on this machine, and gives its
             address.
         tell: told what becomes of the court.
-        gone_s: time without a sign of the court after which it goes on here.
     """
 
     def __init__(
@@ -70,7 +70,6 @@ class AwayCourt:
         name: str,
         open_here: Callable[[str], AbstractContextManager[str]],
         tell: Callable[[Phrase], None],
-        gone_s: float = GONE_S,
     ) -> None:
         assert where.contest.office is not None, "only a contest with an office has such courts"
         self.name = name
@@ -79,7 +78,6 @@ class AwayCourt:
         self._token = where.contest.office.token
         self._open_here = open_here
         self._tell = tell
-        self._gone_s = gone_s
         self._copy = RecordCopy(where.records, name)
         self._there: CourtLink | None = None
         """The connection to the other machine; None until the first one."""
@@ -89,7 +87,7 @@ class AwayCourt:
         self._may_connect = Pause(_CONNECT_S)
         self._may_open, self._may_close = Pause(_AGAIN_S), Pause(_AGAIN_S)
         self._aside = ThreadPoolExecutor(2, f"court {name}")
-        self._connecting: Future[CourtLink] | None = None
+        self._connecting: Future[CourtLink | None] | None = None
         self._opening: Future[tuple[str, CourtLink]] | None = None
         self._opened = ExitStack()
 
@@ -127,7 +125,7 @@ class AwayCourt:
             self._look(self._there, closing)
         if self._there is not None:
             self._copy.step(self._there)
-        is_gone = time.monotonic() - self._heard_s > self._gone_s
+        is_gone = time.monotonic() - self._heard_s > _GONE_S
         if is_gone and any(call.court == self.name for call in office.contest.running):
             stand_in(self._where.stand_ins, self.name)
             self._is_here = True
@@ -143,15 +141,21 @@ class AwayCourt:
             return
         connecting, self._connecting = self._connecting, None
         try:
-            self._there = link = connecting.result()
-        except UserError:  # it is not there yet
+            link = connecting.result()
+        except UserError:  # it has gone again
             return
+        if link is None:
+            return
+        self._there = link
         if not self._is_here:
             for record in (fact.record for fact in office.facts if isinstance(fact, Played)):
                 self._copy.want(record.removesuffix(".mcap"))
             office.connect(self.name, link, self._entry.elsewhere)
 
-    def _connected(self) -> CourtLink:
+    def _connected(self) -> CourtLink | None:
+        """Return a connection to the other machine; None: the court is not there."""
+        if not is_open(self._entry.elsewhere):
+            return None
         session = self._opened.enter_context(open_client([self._entry.elsewhere]))
         return CourtLink(session, self.name, self._token)
 

@@ -262,10 +262,6 @@ class CourtLink:
             newest is not None and newest.match == health.match and newest.number >= health.events
         )
 
-    def close(self) -> None:
-        """Close the connection."""
-        self._session.close()
-
     def _ask(self, what: str, request: msgspec.Struct, kind: type[T]) -> Asked[T]:
         key = self._keys.office(what)
         return Asked(self._session.question(key, encode(request), ANSWER_S), kind)
