@@ -3,7 +3,7 @@
 import shutil
 import signal
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,7 @@ games = 3
 settings.match = {{ duration_s = 12.0, countdown_s = 0.5, start = "ready" }}
 """
 SPEED = "3"
+Run = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
@@ -64,6 +65,20 @@ def lose_machine(process: "subprocess.Popen[Any]") -> None:
     process.send_signal(signal.SIGKILL)
     for child in children:
         child.kill()
+
+
+def test_only_courts_with_an_address_elsewhere_run_elsewhere(tmp_path: Path, lacoc: Run) -> None:
+    """`lacoc contest courts` names the entry that a contest file lacks."""
+    file = tmp_path / "contest.toml"
+    text = CONTEST.format(here=free_port(), there=free_port())
+    lines = (line for line in text.splitlines() if not line.startswith("elsewhere"))
+    file.write_text("\n".join(lines))
+    code, _, told = lacoc("contest", "courts", "--contest", file)
+    assert code == 2
+    assert "No court in" in told
+    code, _, told = lacoc("contest", "courts", "blue", "--contest", file)
+    assert code == 2
+    assert 'elsewhere = "tcp/ADDRESS-OF-THIS-MACHINE:7447"' in told
 
 
 @pytest.mark.long(minutes=1)
