@@ -44,6 +44,14 @@ def playing(cup: Cup) -> dict[str, str]:
     }
 
 
+def test_nobody_is_sent_to_a_silent_court() -> None:
+    """A court that is not there yet, or not any more, is in no estimate."""
+    cup = Cup()
+    seen = {"north": Seen(0), "south": Seen(cup.now_ms)}
+    found = whereabouts(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, 0))
+    assert {there.court for there in found.values()} == {"south"}
+
+
 def test_a_team_whose_match_is_open_hears_where() -> None:
     """A team whose match is open hears its court, address, seat, call, fixture and opponent."""
     cup = Cup()

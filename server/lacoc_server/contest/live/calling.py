@@ -95,11 +95,15 @@ def calls(
         least_rest_ms: shortest time between two matches of a team.
         held: games that no court takes, by pairing and number.
     """
-    here = [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
     return [
         new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
-        for one in assign(contest, here, now_ms, least_rest_ms, held)
+        for one in assign(contest, present(seen, now_ms), now_ms, least_rest_ms, held)
     ]
+
+
+def present(seen: Mapping[str, Seen], now_ms: int) -> list[str]:
+    """Return the courts that were heard within the last `LOST_MS`, in the order of `seen`."""
+    return [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
 
 
 def wanted(contest: Contest, seen: Mapping[str, Seen]) -> Iterable[Called]:

@@ -14,7 +14,7 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Played
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import playable
-from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.live.calling import Seen, present
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import Phrase, say
 
@@ -203,10 +203,13 @@ def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
 
 
 def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[tuple[str, Start]]:
-    """Estimate when and where each open match begins; yield the id of its pairing and its start."""
+    """Estimate when and where each open match begins; yield the id of its pairing and its start.
+
+    A court that has been silent for `LOST_MS` gets no match.
+    """
     now_ms, game, rest_ms = pace
     matches = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
-    court_ms = dict.fromkeys(seen, now_ms)
+    court_ms = dict.fromkeys(present(seen, now_ms), now_ms)
     team_ms = {team: end + rest_ms for team, (_, end) in contest.ended_ms.items()}
     for call in contest.running:
         view, match = matches[call.pairing]
