@@ -12,7 +12,7 @@ from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Done, Refusal, SentFile
-from lacoc_shared.messages.office import Assign, AssignedSeat, Withdraw
+from lacoc_shared.messages.office import Assign, AssignedSeat, Copied, Copy, Retire, Withdraw
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
 
@@ -35,15 +35,15 @@ def assign(call: str = "c1", **changes: Any) -> bytes:
     return encode(Assign(**(fields | changes)))
 
 
-def withdraw(call: str = "c1", token: str = OFFICE) -> bytes:
-    return encode(Withdraw(token=token, call=call))
+def withdraw(call: str = "c1", token: str = OFFICE, official: bool = False) -> bytes:
+    return encode(Withdraw(token=token, call=call, official=official))
 
 
 class Desk(OfficeDesk[str]):
     """A desk whose matches take as many beats to prepare as `takes` says."""
 
     def __init__(self, takes: int = 1, refusal: Refusal | None = None) -> None:
-        super().__init__(HASH, SEATS, self._begin)
+        super().__init__(HASH, SEATS, self._begin, lambda copy: lambda: Copied(file=copy.match_id))
         self.takes = takes
         self.prepared: list[str] = []
         self.hold("", Phase.LOBBY)
@@ -54,10 +54,10 @@ class Desk(OfficeDesk[str]):
         left = iter(range(self.takes))
         return lambda: self._refusal or assign.call if next(left, None) is None else None
 
-    def later(self, what: str, payload: bytes) -> Callable[[], Done | Refusal | None]:
+    def later(self, what: str, payload: bytes) -> Callable[[], Done | Copied | Refusal | None]:
         """Judge a request that gets no answer at once; return the function that gives one later."""
         answer = self.judge(what, payload)
-        assert not isinstance(answer, Done | Refusal)
+        assert not isinstance(answer, Done | Copied | Refusal)
         return answer
 
     def refusal(self, what: str, payload: bytes) -> Phrase:
@@ -183,7 +183,31 @@ def test_a_wrong_token_withdraws_nothing() -> None:
     assert desk.wanted is None
 
 
-@given(st.sampled_from(["assign", "withdraw", "x"]), st.binary(max_size=300))
+def test_an_official_match_is_closed_if_the_office_says_so() -> None:
+    """The office that has the result closes the match, so that its record ends."""
+    desk = Desk()
+    desk.hold("c1", Phase.OFFICIAL)
+    answer = desk.later("withdraw", withdraw(official=True))
+    assert (answer(), desk.wanted) == (None, Wanted(None))
+    desk.hold("", Phase.LOBBY)
+    assert answer() == Done()
+
+
+def test_only_the_office_copies_and_retires() -> None:
+    """Parts of records, and the request to end, need the office's token."""
+    desk = Desk()
+    for what, request in (
+        ("copy", Copy(token="a guess", match_id="m")),
+        ("retire", Retire(token="x")),
+    ):
+        assert desk.refusal(what, encode(request)) == say("refused.no-office-token")
+    assert not desk.retired
+    assert desk.later("copy", encode(Copy(token=OFFICE, match_id="m")))() == Copied(file="m")
+    assert desk.judge("retire", encode(Retire(token=OFFICE))) == Done()
+    assert desk.retired
+
+
+@given(st.sampled_from(["assign", "withdraw", "copy", "retire", "x"]), st.binary(max_size=300))
 def test_no_bytes_ever_raise(what: str, payload: bytes) -> None:
     """No bytes make the desk raise an exception; it answers with a refusal."""
     assert isinstance(Desk().judge(what, payload), Refusal)
