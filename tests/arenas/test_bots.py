@@ -185,12 +185,10 @@ def test_ladder(name: str, weak: str, strong: str) -> None:
     assert wins >= 4
 
 
+@pytest.mark.long
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
-@pytest.mark.parametrize(
-    ("weak", "strong"),
-    [("straight", "nearest"), pytest.param("nearest", "planner", marks=pytest.mark.long)],
-)
+@pytest.mark.parametrize("name", ["flag-strike", "othello"])
+@pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
 def test_ladder_with_physics(name: str, weak: str, strong: str) -> None:
     """The stronger bot also wins with physics, where walking hexapods hinder each other."""
     simulate = pytest.importorskip("lacoc_server.simulate")

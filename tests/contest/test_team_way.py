@@ -44,6 +44,7 @@ settings.match.start = "ready"
     return file
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
     """With one token each, people and bots play all their matches, wherever they are called.

@@ -187,6 +187,7 @@ def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
     assert watch.ended() == 0
 
 
+@pytest.mark.long
 def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
     """`lacoc demo` first prints its page's address, and ends after the official result."""
     words = ("demo", "--seconds", "2", "--speed", "4")

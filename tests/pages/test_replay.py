@@ -174,6 +174,7 @@ def test_what_is_shown_is_what_was_played(
     assert sockets == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slow_screen", [False])  # the test depends on drawing
 def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: OpenPage) -> None:
     """Keys and buttons play, pause, seek, step and change the speed of a recording."""
