@@ -19,7 +19,7 @@ def courts(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="COURT...",
+            metavar="COURT",
             help="Courts to run here; by default all courts with 'elsewhere' in the contest file.",
         ),
     ] = None,
