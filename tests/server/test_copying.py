@@ -12,9 +12,8 @@ from lacoc_server.court.copying import next_part
 from lacoc_shared.keyspace import COPY_PART_BYTES
 from lacoc_shared.messages.office import Copied
 from lacoc_shared.record.files import packed_path, segment_path
-from lacoc_shared.record.matches import MatchName
 
-MATCH = MatchName("20260501-100000", 2, "blue")
+MATCH = "20260501-100000-blue-002"
 
 
 @given(
@@ -39,12 +38,12 @@ def test_parts_make_the_files(grown: list[list[int]], pattern: bytes, data: st.D
             assert len(part.data) <= COPY_PART_BYTES
             if part.file:
                 assert part.offset == have.get(part.file, 0)
-                assert continues(str(MATCH), have, part)
+                assert continues(MATCH, have, part)
                 copies[part.file] = copies.get(part.file, b"") + part.data
             return bool(part.file)
 
         for number, growths in enumerate(grown):
-            path = segment_path(Path(folder), str(MATCH), number)
+            path = segment_path(Path(folder), MATCH, number)
             path.touch()
             for growth in growths:
                 with path.open("ab") as file:
@@ -60,9 +59,9 @@ def test_parts_make_the_files(grown: list[list[int]], pattern: bytes, data: st.D
 
 def test_a_packed_record_is_whole(tmp_path: Path) -> None:
     """As soon as a record is packed, only the packed file counts."""
-    packed = packed_path(tmp_path, str(MATCH))
+    packed = packed_path(tmp_path, MATCH)
     packed.write_bytes(b"packed")
-    segment_path(tmp_path, str(MATCH), 0).write_bytes(b"a segment that will be removed")
+    segment_path(tmp_path, MATCH, 0).write_bytes(b"a segment that will be removed")
     assert next_part(tmp_path, MATCH, {}).data == b"packed"
     assert next_part(tmp_path, MATCH, {packed.name: 6}) == Copied(is_whole=True)
 
@@ -83,4 +82,4 @@ def test_a_packed_record_is_whole(tmp_path: Path) -> None:
 def test_what_does_not_continue_the_record_is_not_written(file: str, offset: int) -> None:
     """A part of another record, of another file, from another folder, or with a gap is dropped."""
     have = {"20260501-100000-blue-002.000.live.mcap": 3}
-    assert not continues(str(MATCH), have, Copied(file=file, offset=offset, data=b"x"))
+    assert not continues(MATCH, have, Copied(file=file, offset=offset, data=b"x"))

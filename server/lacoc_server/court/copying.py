@@ -11,8 +11,8 @@ from pathlib import Path
 from lacoc_shared.keyspace import COPY_PART_BYTES
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.office import Copied, Copy
-from lacoc_shared.record.files import packed_path
-from lacoc_shared.record.matches import MatchName, court_matches
+from lacoc_shared.record.files import packed_path, segment_paths
+from lacoc_shared.record.matches import MatchName
 from lacoc_shared.words import say
 
 Part = Copied | Refusal
@@ -44,31 +44,30 @@ class Copying:
         if name is None or name.court != self._court:
             return Refusal(say("refused.other-record", match=request.match_id[:80]))
         try:
-            return next_part(self._folder, name, request.have)
+            return next_part(self._folder, request.match_id, request.have)
         except OSError as error:  # packing has just removed a segment, or the disk fails
             why = error.strerror or str(error)
-            return Refusal(say("refused.no-part", match=str(name), why=why), again=True)
+            return Refusal(say("refused.no-part", match=request.match_id, why=why), again=True)
 
 
-def next_part(folder: Path, name: MatchName, have: dict[str, int]) -> Copied:
+def next_part(folder: Path, match_id: str, have: dict[str, int]) -> Copied:
     """Read the first part of a match's record that somebody does not have yet.
 
     Args:
         folder: folder of the records.
-        name: the match.
+        match_id: the match.
         have: bytes that the other one has, by name of the file.
 
     Raises:
         OSError: if a file can't be read.
     """
-    packed = packed_path(folder, str(name))
-    segments = court_matches(folder, name.court).get(name, {})
+    packed = packed_path(folder, match_id)
     is_packed = packed.exists()
-    for path in [packed] if is_packed else segments.values():
+    for path in [packed] if is_packed else segment_paths(folder, match_id):
         size, offset = path.stat().st_size, have.get(path.name, 0)
         if offset < size:
             with path.open("rb") as file:
                 file.seek(offset)
                 data = file.read(min(COPY_PART_BYTES, size - offset))
-            return Copied(file=path.name, offset=offset, data=data, size=size)
+            return Copied(file=path.name, offset=offset, data=data)
     return Copied(is_whole=is_packed)

@@ -127,8 +127,6 @@ class Copied(msgspec.Struct, frozen=True, kw_only=True):
     offset: int = 0
     """Where the part begins in the file [bytes]."""
     data: bytes = b""
-    size: int = 0
-    """Present size of the file [bytes]."""
     is_whole: bool = False
     """True: the match is over, and the office has all of its record."""
 

@@ -8,9 +8,9 @@ its machine comes back, the court there is told to end, so that there is one cou
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack
-from typing import Self
+from typing import Generic, Self, TypeVar
 
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.stand_ins import stand_in, stand_ins
@@ -21,8 +21,10 @@ from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import is_open
-from lacoc_shared.network.session import open_client
+from lacoc_shared.network.session import NotConnected, open_client
 from lacoc_shared.words import Phrase, say
+
+T = TypeVar("T")
 
 _GONE_S = 10.0
 """A court that was not heard for this long goes on here. Before, its own machine may start it
@@ -51,6 +53,33 @@ class Pause:
             return False
         self._next_s = now_s + self._length_s
         return True
+
+
+class Attempts(Generic[T]):
+    """Something that is tried on another thread, again and again until there is a result.
+
+    Args:
+        do: returns the result, or None if it has to be tried again.
+        pause_s: time between the beginnings of two attempts.
+        aside: runs `do`.
+    """
+
+    def __init__(self, do: Callable[[], T | None], pause_s: float, aside: Executor) -> None:
+        self._do = do
+        self._pause = Pause(pause_s)
+        self._aside = aside
+        self._running: Future[T | None] | None = None
+
+    def take(self) -> T | None:
+        """Return the result, or None if there is none yet; begin an attempt if it is time."""
+        if self._running is None:
+            if self._pause.over():
+                self._running = self._aside.submit(self._do)
+            return None
+        if not self._running.done():
+            return None
+        ended, self._running = self._running, None
+        return ended.result()
 
 
 class AwayCourt:
@@ -84,11 +113,10 @@ class AwayCourt:
         self._heard_s = time.monotonic()
         self._is_here = name in stand_ins(where.stand_ins)
         self._is_open_here = False
-        self._may_connect = Pause(_CONNECT_S)
-        self._may_open, self._may_close = Pause(_AGAIN_S), Pause(_AGAIN_S)
-        self._aside = ThreadPoolExecutor(2, f"court {name}")
-        self._connecting: Future[CourtLink | None] | None = None
-        self._opening: Future[tuple[str, CourtLink]] | None = None
+        self._may_close = Pause(_AGAIN_S)
+        self._aside = aside = ThreadPoolExecutor(2, f"court {name}")
+        self._connects = Attempts(self._connected, _CONNECT_S, aside)
+        self._opens = Attempts(self._open, _AGAIN_S, aside)
         self._opened = ExitStack()
 
     def __enter__(self) -> Self:
@@ -133,17 +161,7 @@ class AwayCourt:
 
     def _connect(self, office: Office) -> None:
         """Connect to the other machine, again and again until it answers."""
-        if self._connecting is None:
-            if self._may_connect.over():
-                self._connecting = self._aside.submit(self._connected)
-            return
-        if not self._connecting.done():
-            return
-        connecting, self._connecting = self._connecting, None
-        try:
-            link = connecting.result()
-        except UserError:  # it has gone again
-            return
+        link = self._connects.take()
         if link is None:
             return
         self._there = link
@@ -156,7 +174,10 @@ class AwayCourt:
         """Return a connection to the other machine; None: the court is not there."""
         if not is_open(self._entry.elsewhere):
             return None
-        session = self._opened.enter_context(open_client([self._entry.elsewhere]))
+        try:
+            session = self._opened.enter_context(open_client([self._entry.elsewhere]))
+        except NotConnected:  # it has gone again
+            return None
         return CourtLink(session, self.name, self._token)
 
     def _look(self, link: CourtLink, closing: bool) -> None:
@@ -171,26 +192,23 @@ class AwayCourt:
     def _go_on_here(self, office: Office) -> None:
         """Open the court on this machine; if that fails, try again."""
         office.expect(self.name)
-        if self._opening is None:
-            if self._may_open.over():
-                self._opening = self._aside.submit(self._open)
+        opened = self._opens.take()
+        if opened is None:
             return
-        if not self._opening.done():
-            return
-        opening, self._opening = self._opening, None
-        try:
-            address, link = opening.result()
-        except UserError as error:
-            self._tell(say("away.can-not-open", court=self.name, why=error.phrase))
-            return
+        address, link = opened
         self._is_open_here = True
         office.connect(self.name, link, venue.told_address(self._entry, address))
 
-    def _open(self) -> tuple[str, CourtLink]:
-        with ExitStack() as stack:
-            address = stack.enter_context(self._open_here(self.name))
-            session = stack.enter_context(open_client([address]))
-            self._opened.push(stack.pop_all())
+    def _open(self) -> tuple[str, CourtLink] | None:
+        """Return the address of the court on this machine, and a connection; None: it can't be."""
+        try:
+            with ExitStack() as stack:
+                address = stack.enter_context(self._open_here(self.name))
+                session = stack.enter_context(open_client([address]))
+                self._opened.push(stack.pop_all())
+        except UserError as error:
+            self._tell(say("away.can-not-open", court=self.name, why=error.phrase))
+            return None
         return address, CourtLink(session, self.name, self._token)
 
     def _end_elsewhere(self) -> None:

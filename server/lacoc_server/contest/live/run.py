@@ -1,5 +1,6 @@
 """A contest at its courts, with people and bots."""
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, ExitStack
@@ -121,23 +122,19 @@ def play_live(
         writer(office.contest)
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
         opened(Opened(url, addresses, f"{url}/office#organiser={key}", code))
-        over_s: float | None = None
-        while entering or not office.over:
-            over_s = (over_s or time.monotonic()) if office.over else None
+        over_s = math.inf  # when the contest was over, as far as is known
+        shown_s = _SHOWN_S if entering else _FAREWELL_S
+        while True:
             office.step()
-            shown = over_s is not None and time.monotonic() - over_s > _SHOWN_S
+            now_s = time.monotonic()
+            over_s = min(over_s, now_s) if office.over else math.inf
             for one in away:
-                one.step(office, closing=shown)
+                one.step(office, closing=now_s - over_s > shown_s)
             writer(office.contest)
             bots.follow(office.contest)
+            if not entering and _farewell_over(now_s - over_s, away):
+                return writer.write()
             time.sleep(_STEP_S)
-        begun_s = time.monotonic()
-        while not _farewell_over(time.monotonic() - begun_s, away):
-            office.step()
-            for one in away:
-                one.step(office, closing=time.monotonic() - begun_s > _FAREWELL_S)
-            time.sleep(_STEP_S)
-        return writer.write()
 
 
 def _run_here(
