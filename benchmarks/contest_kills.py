@@ -11,7 +11,6 @@ with the same command; it starts a killed court or gateway itself.
 import argparse
 import random
 import signal
-import socket
 import sys
 import tempfile
 import time
@@ -22,7 +21,7 @@ from typing import Any
 
 import psutil
 
-from benchmarks.processes import LACOC, read_line, started
+from benchmarks.processes import LACOC, free_port, read_line, started
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
@@ -70,7 +69,8 @@ def _contest(folder: Path, teams: int, courts: int) -> Path:
     text = f'[contest]\nname = "Kills"\nleast_rest_s = {_REST_S}\n'
     text += f'\n[office]\ntoken = "{new_token()}"\n'
     for number in range(1, courts + 1):
-        text += f'\n[court.court-{number}]\narena = "othello"\nlisten = ["127.0.0.1:{_port()}"]\n'
+        listen = f'listen = ["127.0.0.1:{free_port()}"]'
+        text += f'\n[court.court-{number}]\narena = "othello"\n{listen}\n'
         text += f'[court.court-{number}.referee]\ntoken = "{new_token()}"\n'
     file = folder / "contest.toml"
     file.write_text(text + _STAGES)
@@ -79,12 +79,6 @@ def _contest(folder: Path, teams: int, courts: int) -> Path:
     for number in range(1, teams + 1):
         organiser.enter(file, f"Team {number:02d}", None, str(bot), "")
     return file
-
-
-def _port() -> int:
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return int(one.getsockname()[1])
 
 
 def _play(file: Path, kills: int, chance: random.Random, killed: Counter[str]) -> float:

@@ -14,7 +14,6 @@ newer one counts, so half of the commands are enough.
 import argparse
 import json
 import random
-import socket
 import subprocess
 import sys
 import tempfile
@@ -28,6 +27,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from benchmarks.processes import free_port
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
@@ -337,9 +337,7 @@ def _controls(
 
 
 def _contest(folder: Path, *, keys: bool) -> dict[str, Access]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     file = folder / "contest.toml"
     seats = "".join(f'seat.{seat}.token = "{new_token()}"\n' for seat in SEATS)
     file.write_text(

@@ -13,7 +13,6 @@ import json
 import os
 import random
 import signal
-import socket
 import statistics
 import subprocess
 import sys
@@ -25,6 +24,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from benchmarks.processes import free_port
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_server.journal.replay import verify
@@ -283,9 +283,7 @@ def _controllers(session: Session, name: str, court: Court) -> list[Controller]:
 
 
 def _contest() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     return f"""
 [court.main]
 arena = "othello"

@@ -12,7 +12,9 @@ from playwright.sync_api import Browser, sync_playwright
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
 
-from chromium import FLAGS, find_chromium
+from chromium import FLAGS, SLOW_SCREEN, find_chromium
+
+__all__ = ["SLOW_SCREEN", "chromium", "own_page"]
 
 
 @contextlib.contextmanager

@@ -12,6 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "common"))
+
+from ports import free_port
+
+__all__ = ["LACOC", "Opened", "ask", "court", "free_port", "hush", "read_line", "started", "used_s"]
+
 LACOC = "lacoc_shared"
 """The module that is the command `lacoc`."""
 _END_S = 30

@@ -13,7 +13,6 @@ import argparse
 import json
 import os
 import random
-import socket
 import subprocess
 import sys
 import tempfile
@@ -22,7 +21,7 @@ from collections import Counter
 from contextlib import ExitStack
 from pathlib import Path
 
-from benchmarks.processes import LACOC
+from benchmarks.processes import LACOC, free_port
 from lacoc_client.asking import NoCourt, NotNow
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
@@ -206,9 +205,7 @@ def _verify(folder: Path) -> tuple[int, list[str]]:
 
 
 def _contest() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     return f"""
 [court.main]
 arena = "othello"

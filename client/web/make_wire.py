@@ -148,7 +148,8 @@ DESK_STRUCTS = (
     desk.Effect,
     desk.Said,
     links.TeamLink,
-    links.TeamLinks,
+    links.RefereeLink,
+    links.Links,
     scores.CourtScore,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)

@@ -20,6 +20,7 @@ from lacoc_server.contest.league.schedule import due, playable
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.whereabouts import Known, Pace
 from lacoc_shared.codec import encode
+from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.messages import Refusal, SentFile
 from lacoc_shared.messages.desk import (
@@ -41,7 +42,7 @@ from lacoc_shared.messages.desk import (
     OwnEntry,
     Rule,
     TakeOut,
-    TeamTokenList,
+    TokenList,
     Tokens,
 )
 
@@ -285,12 +286,14 @@ def test_an_unchanged_view_is_not_sent_again(room: Room) -> None:
 
 
 def test_tokens_are_for_the_organiser_alone(room: Room) -> None:
-    """The organiser's key gets the tokens of all teams of people; any other secret gets none."""
+    """The organiser gets the tokens of all teams of people and of referees; others get none."""
     room.enter("Ants")
     organiser.enter(room.file, "Bots", None, "planner", "")
     answer = room.ask(Tokens(secret=KEY))
-    assert isinstance(answer, TeamTokenList)
-    assert answer.tokens == {"Ants": room.tokens.of("Ants")}
+    assert isinstance(answer, TokenList)
+    assert answer.teams == {"Ants": room.tokens.of("Ants")}
+    courts = contests.load(room.file).courts
+    assert answer.referees == {name: court.referee.token for name, court in courts.items()}
     for secret in ("", CODE, room.tokens.of("Ants")):
         assert said(room.ask(Tokens(secret=secret))) == "desk.not-organiser"
 

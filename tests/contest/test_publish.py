@@ -64,6 +64,19 @@ def test_the_folder_can_be_written_again(copied: Path) -> None:
     assert files(folder) == before
 
 
+@pytest.mark.slow
+def test_a_record_that_is_not_packed_yet_is_published(copied: Path) -> None:
+    """A court packs a record when it opens its next match; publishing does not wait for that."""
+    folder = copied.parent / "published"
+    record = next((copied.parent / "records").iterdir())
+    published = folder / "records" / record.name
+    wanted = published.read_bytes()
+    published.unlink()
+    record.rename(record.with_name(f"{record.stem}.0001.live.mcap"))
+    contest_played.publish(copied)
+    assert published.read_bytes() == wanted
+
+
 def test_files_of_teams_come_with_the_end_of_entries(tmp_path: Path) -> None:
     """The files of teams are in the published folder only when entries are closed."""
     file = contest_played.enter(tmp_path)

@@ -17,7 +17,21 @@ from lacoc_client.film.chromium import FLAGS, SHELL, on_path
 WEB = Path(__file__).parents[2] / "client" / "web"
 PAGES = WEB.parent / "lacoc_client" / "pages"
 
-__all__ = ["FLAGS", "NoBrowser", "OpenPage", "build_pages", "find_chromium"]
+__all__ = ["FLAGS", "SLOW_SCREEN", "NoBrowser", "OpenPage", "build_pages", "find_chromium"]
+
+SLOW_SCREEN = """(() => {
+  const next = window.requestAnimationFrame.bind(window);
+  const cancelled = new Set();
+  window.requestAnimationFrame = (draw) => {
+    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 180);
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => {
+    clearTimeout(id);
+    cancelled.add(id);
+  };
+})()"""
+"""Limits pages to about five pictures a second: drawing sixty would be most of a test's work."""
 
 OpenPage = Callable[..., Page]
 """A function that opens a page in its own browser context, with `Browser.new_context` options."""

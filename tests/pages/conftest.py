@@ -23,24 +23,11 @@ sys.path.append(str(Path(__file__).parents[1] / "classroom"))
 sys.path.append(str(Path(__file__).parents[1] / "client"))
 sys.path.append(str(Path(__file__).parents[1] / "server"))
 
-from chromium import FLAGS, NoBrowser, OpenPage, build_pages, find_chromium
+from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_chromium
 from contestant import Contestant, Sit
 from venue import Venue
 
 WAIT_MS = 45_000
-SLOW_SCREEN = """(() => {
-  const next = window.requestAnimationFrame.bind(window);
-  const cancelled = new Set();
-  window.requestAnimationFrame = (draw) => {
-    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 180);
-    return id;
-  };
-  window.cancelAnimationFrame = (id) => {
-    clearTimeout(id);
-    cancelled.add(id);
-  };
-})()"""
-"""Limits pages to about five pictures a second: drawing sixty would be most of a test's work."""
 
 
 @pytest.fixture(scope="session")

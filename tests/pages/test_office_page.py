@@ -203,6 +203,7 @@ def papers(office: Page) -> None:
         ("results", "3:9"),
         ("certificates", "No team has its final place"),
         ("links", "/play#key="),
+        ("links", "/referee?court=main-2#key="),
     ):
         office.get_by_label("Print …").select_option(paper)
         expect(office.locator(".papers")).to_contain_text(content, timeout=WAIT_MS)

@@ -136,6 +136,16 @@ def to_playing(page: Page, venue: Venue) -> None:
     phase(page, 4)
 
 
+def test_a_referees_link_has_the_token(court: Venue, open_page: OpenPage) -> None:
+    """With the link that the organiser prints, a referee types only their name."""
+    page = open_page()
+    page.goto(f"{court.url}/referee#key={court.key}&token={REFEREE}")
+    page.locator("input[name=by]").fill("Kim")
+    page.locator(".enter button[type=submit]").click()
+    expect(page.locator(".acting.mine")).to_be_visible()
+    assert "#" not in page.url, "the token stays in the address"
+
+
 @pytest.mark.long
 def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     """If a match ran too slowly, the page advises a rematch and says why, in both languages."""

@@ -13,9 +13,9 @@ from lacoc_client.gateway.page_requests import serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Ask, Ping, Unreadable
 from lacoc_client.office.desk import DeskLine
-from lacoc_client.office.links import TeamLink, TeamLinks, qr_code, team_link
+from lacoc_client.office.links import Links, TeamLink, qr_code, referee_link, team_link
 from lacoc_shared import codec
-from lacoc_shared.messages.desk import REPLY_MAX_BYTES, Own, OwnEntry, TeamTokenList, Tokens
+from lacoc_shared.messages.desk import REPLY_MAX_BYTES, Own, OwnEntry, TokenList, Tokens
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -37,11 +37,11 @@ class LinkAsk(Ask, frozen=True, kw_only=True, tag="link"):
 
 
 class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
-    """Ask for the links of teams; the secret is the organiser's key."""
+    """Ask for the links of teams and referees; the secret is the organiser's key."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)]
     team: Annotated[str, msgspec.Meta(max_length=64)] = ""
-    """The team whose link is wanted; "": all teams."""
+    """The team whose link is wanted; "": all teams and referees."""
 
 
 Asked = DeskAsk | LinkAsk | LinksAsk | Ping
@@ -112,16 +112,24 @@ class DeskPage:
         entry = codec.decode(answer, OwnEntry, REPLY_MAX_BYTES)
         return team_link(entry.team, self._address, self._key, entry.token)
 
-    async def _links(self, secret: str, wanted: str) -> TeamLinks:
+    async def _links(self, secret: str, wanted: str) -> Links:
         answer = await self._asked(codec.encode(Tokens(secret=secret)))
-        tokens = codec.decode(answer, TeamTokenList, REPLY_MAX_BYTES).tokens
-        teams = {team: token for team, token in tokens.items() if wanted in ("", team)}
-        return await asyncio.to_thread(self._made, teams)
+        tokens = codec.decode(answer, TokenList, REPLY_MAX_BYTES)
+        return await asyncio.to_thread(self._made, tokens, wanted)
 
-    def _made(self, tokens: dict[str, str]) -> TeamLinks:
+    def _made(self, tokens: TokenList, wanted: str) -> Links:
         enter = f"{self._address}/enter"
-        links = (team_link(team, self._address, self._key, token) for team, token in tokens.items())
-        return TeamLinks(enter=enter, enter_qr=qr_code(enter), teams=tuple(links))
+        teams = tuple(
+            team_link(team, self._address, self._key, token)
+            for team, token in tokens.teams.items()
+            if wanted in ("", team)
+        )
+        referees = tuple(
+            referee_link(court, self._address, self._key, token)
+            for court, token in tokens.referees.items()
+            if not wanted
+        )
+        return Links(enter=enter, enter_qr=qr_code(enter), teams=teams, referees=referees)
 
     async def _asked(self, request: bytes) -> bytes:
         try:

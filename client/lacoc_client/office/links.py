@@ -1,4 +1,4 @@
-"""A team's link for the whole event, and its QR code; pure."""
+"""The links that an organiser hands out, each with its QR code; pure."""
 
 import io
 from functools import lru_cache
@@ -20,13 +20,23 @@ class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
     """The link as a QR code: a picture in SVG."""
 
 
-class TeamLinks(msgspec.Struct, frozen=True, kw_only=True):
-    """Links of teams, and the address at which teams enter."""
+class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
+    """The link of a court's referee."""
+
+    court: str
+    link: str
+    qr: str
+    """The link as a QR code: a picture in SVG."""
+
+
+class Links(msgspec.Struct, frozen=True, kw_only=True):
+    """Links of teams and referees, and the address at which teams enter."""
 
     enter: str
     enter_qr: str
     """That address as a QR code: a picture in SVG."""
     teams: tuple[TeamLink, ...]
+    referees: tuple[RefereeLink, ...]
 
 
 def team_link(team: str, address: str, key: str, token: str) -> TeamLink:
@@ -40,6 +50,12 @@ def team_link(team: str, address: str, key: str, token: str) -> TeamLink:
     """
     link = f"{address}/play#key={key}&token={token}"
     return TeamLink(team=team, link=link, qr=qr_code(link))
+
+
+def referee_link(court: str, address: str, key: str, token: str) -> RefereeLink:
+    """Make the link of a court's referee; arguments as in `team_link`, with the desk's token."""
+    link = f"{address}/referee?court={court}#key={key}&token={token}"
+    return RefereeLink(court=court, link=link, qr=qr_code(link))
 
 
 @lru_cache(maxsize=1024)  # one takes some milliseconds, and a large contest has hundreds

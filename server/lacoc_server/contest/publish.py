@@ -4,7 +4,7 @@ import csv
 import io
 import os
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from lacoc_server.contest import sheet as sheets
@@ -17,6 +17,8 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.command import plugins
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import pack
+from lacoc_shared.record.files import segment_paths
 from lacoc_shared.words import say
 
 FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", "games.csv"
@@ -49,7 +51,7 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
         for name in (ENTRIES, RECORDS):
             (out / name).mkdir(parents=True, exist_ok=True)
         for name, wanted in sorted(_records(facts).items()):
-            _copy(folder.records / name, out / RECORDS / name, wanted)
+            _save_record(folder.records / name, out / RECORDS / name, wanted)
         entries = EntryFolder(out / ENTRIES)
         for entry in sorted(_entries(facts)) if contest.closed else ():
             entries.save(folder.entries.load(entry))
@@ -79,9 +81,14 @@ def write(path: Path, content: bytes) -> None:
     Raises:
         OSError: if it can't be written.
     """
+    _replace(path, lambda part: part.write_bytes(content))
+
+
+def _replace(path: Path, write_part: Callable[[Path], object]) -> None:
+    """Write a file beside a path with `write_part`; it gets the path when it is whole."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        part.write_bytes(content)
+        write_part(part)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
@@ -97,6 +104,23 @@ def _entries(facts: Iterable[AnyFact]) -> set[str]:
     return {fact.files for fact in facts if isinstance(fact, Entered | FilesChanged) and fact.files}
 
 
+def _save_record(source: Path, to: Path, wanted: str) -> None:
+    """Copy a record, or pack a copy of one that the court keeps open until its next match.
+
+    Raises:
+        UserError: if it is missing, or has not the hash that the facts want.
+    """
+    segments = segment_paths(source.parent, source.stem)
+    try:
+        if segments and not source.is_file():
+            _replace(to, lambda part: pack.write(pack.read(segments), part))
+            return
+    except UserError:
+        if not source.is_file():  # else the court has packed it meanwhile
+            raise
+    _copy(source, to, wanted)
+
+
 def _copy(source: Path, to: Path, wanted: str) -> None:
     """Copy a record; one that is there already is not copied again.
 
@@ -110,12 +134,7 @@ def _copy(source: Path, to: Path, wanted: str) -> None:
         raise UserError(say("contest.record-changed", file=str(source)))
     if to.exists() and file_hash(to) == found:
         return
-    part = to.with_name(f".{to.name}.{os.getpid()}.part")
-    try:
-        shutil.copyfile(source, part)
-        part.replace(to)
-    finally:
-        part.unlink(missing_ok=True)
+    _replace(to, lambda part: shutil.copyfile(source, part))
 
 
 def _standings(sheet: ContestSheet) -> list[Sequence[object]]:

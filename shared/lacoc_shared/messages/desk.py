@@ -143,7 +143,7 @@ class Move(DeskRequest, frozen=True, kw_only=True, tag="move"):
 
 
 class Tokens(DeskRequest, frozen=True, kw_only=True, tag="tokens"):
-    """Ask for the tokens of all teams of people, to hand out their links."""
+    """Ask for the tokens of all teams of people and of all referees, to hand out their links."""
 
 
 AnyRequest = (
@@ -278,11 +278,14 @@ class Said(msgspec.Struct, frozen=True, kw_only=True):
     said: tuple[Phrase, ...]
 
 
-class TeamTokenList(msgspec.Struct, frozen=True, kw_only=True):
-    """The tokens of teams, by name."""
+class TokenList(msgspec.Struct, frozen=True, kw_only=True):
+    """The tokens that the organiser hands out."""
 
-    tokens: dict[str, str]
+    teams: dict[str, str]
+    """Tokens of the teams of people, by their names."""
+    referees: dict[str, str]
+    """Tokens of the referees, by the names of their courts."""
 
 
-Answer = EventInfo | OwnEntry | Overviewed | Effect | Said | TeamTokenList
+Answer = EventInfo | OwnEntry | Overviewed | Effect | Said | TokenList
 """Every answer of the desk; which one it is follows from the request."""

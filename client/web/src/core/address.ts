@@ -5,6 +5,7 @@ import { tab } from "./storage";
 const KEY = "lacoc-key";
 const TOKEN = "lacoc-team-token";
 const ORGANISER = "lacoc-organiser";
+const REFEREE = "lacoc-referee";
 const query = new URLSearchParams(location.search);
 
 /** The page, where its own file says it: in a published folder, which has no gateway. */
@@ -35,6 +36,16 @@ export function runKey(): string | null {
 /** The token of a team, for the whole contest. */
 export function teamToken(): string | null {
   return secret("token", TOKEN);
+}
+
+/** The token of a court's referee. */
+export function refereeToken(): string | null {
+  return secret("token", REFEREE);
+}
+
+/** Keep a referee's token for this tab; null forgets it. */
+export function keepRefereeToken(token: string | null): void {
+  tab.write(REFEREE, token);
 }
 
 /** The organiser's key, which opens the office. */

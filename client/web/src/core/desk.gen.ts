@@ -168,10 +168,17 @@ export interface TeamLink {
   qr: string;
 }
 
-export interface TeamLinks {
+export interface RefereeLink {
+  court: string;
+  link: string;
+  qr: string;
+}
+
+export interface Links {
   enter: string;
   enter_qr: string;
   teams: TeamLink[];
+  referees: RefereeLink[];
 }
 
 export interface CourtScore {

@@ -46,6 +46,11 @@ export const office = {
   "office.copy": ["Copy the link", "リンクをコピー"],
   "office.copied": ["Copied", "コピーしました"],
   "office.qrOf": ["QR code of the link of {team}", "{team} のリンクの QR コード"],
+  "office.refereeOf": ["Referee, court {court}", "審判・コート {court}"],
+  "office.refereeLink": [
+    "The link of this court's referee. Whoever has it can decide about the games on this court.",
+    "このコートの審判用リンクです。持っている人がこのコートの試合を判定できます。",
+  ],
   "office.qrEnter": ["QR code of the page on which teams enter", "登録ページの QR コード"],
   "office.takeOut": ["Take out of the contest", "大会から外す"],
   "office.leave.title": ["Take {team} out", "{team} を外す"],
@@ -91,7 +96,7 @@ export const office = {
   "office.paper.schedule": ["Schedule", "日程"],
   "office.paper.results": ["Results", "結果"],
   "office.paper.certificates": ["Certificates", "賞状"],
-  "office.paper.links": ["Links of the teams", "チームのリンク"],
+  "office.paper.links": ["Links of teams and referees", "チームと審判のリンク"],
   "office.paper.back": ["Back", "戻る"],
   "office.paper.hint": [
     "The browser can also print into a PDF file.",

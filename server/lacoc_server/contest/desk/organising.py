@@ -13,7 +13,7 @@ from lacoc_shared.messages.desk import (
     Rule,
     Said,
     TakeOut,
-    TeamTokenList,
+    TokenList,
 )
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -115,15 +115,19 @@ def move(book: Book, asked: Move) -> Said:
     return Said(said=(say("desk.moved", teams=teams, court=asked.court or None),))
 
 
-def tokens(book: Book) -> TeamTokenList:
-    """Return the tokens of all teams of people that are in or wait.
+def tokens(book: Book) -> TokenList:
+    """Return the tokens of all teams of people that are in or wait, and of all referees.
 
     Raises:
         UserError: if a new token can't be written.
     """
     people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]
     waiting = [team for team in book.applications.waiting if team not in people]
-    return TeamTokenList(tokens={team: book.tokens.of(team) for team in (*people, *waiting)})
+    courts = book.where.contest.courts
+    return TokenList(
+        teams={team: book.tokens.of(team) for team in (*people, *waiting)},
+        referees={name: court.referee.token for name, court in courts.items()},
+    )
 
 
 def _decided(book: Book, facts: Iterable[AnyFact], really: bool) -> Effect:

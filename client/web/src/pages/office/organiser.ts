@@ -8,10 +8,10 @@ import {
   type AnyRequest,
   Desk,
   type Effect,
+  type Links,
   type OfficeView,
   type Overviewed,
   type Said,
-  type TeamLinks,
   type TeamRow,
 } from "../../core/desk";
 import type { Phrase } from "../../core/phrase";
@@ -43,7 +43,7 @@ export class Organiser {
   readonly desk = new Desk();
   readonly feed = new Feed();
   readonly view = signal<OfficeView | null>(null);
-  readonly links = signal<TeamLinks | null>(null);
+  readonly links = signal<Links | null>(null);
   readonly over = signal<Over | null>(null);
   /** Why the last request for the overview failed; null: it did not. */
   readonly trouble = signal<Phrase | null>(null);
@@ -95,7 +95,7 @@ export class Organiser {
     this.links.value = null;
     try {
       const wanted = { secret: this.key, team };
-      this.links.value = await this.desk.connection.ask<TeamLinks>("links", wanted);
+      this.links.value = await this.desk.connection.ask<Links>("links", wanted);
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
       toast(sentence(error.why), "no");

@@ -1,5 +1,6 @@
 /** What the organiser prints; the browser can also print it into a PDF. */
 
+import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
 import { places } from "../../core/contest/places";
 import type { ContestSheet } from "../../core/contest/sheet";
@@ -123,34 +124,53 @@ function Certificates({ sheet }: { sheet: ContestSheet }) {
   );
 }
 
-/** A card with the link of each team, and one with the address of /enter while entries are open. */
+/** Cards: the link of each team and of each referee, and the address of /enter while entries are open. */
 function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) {
   const links = organiser.links.value;
   if (!links) return <p class="muted">{t("contest.loading")}</p>;
   return (
     <div class="cards">
       {view.event.open && (
-        <section class="card-of-paper">
-          <img src={pictureUrl(links.enter_qr)} alt={t("office.qrEnter")} />
-          <div>
-            <h2>{t("office.enterAt")}</h2>
-            <p class="address">{links.enter}</p>
-            <p>
-              {t("office.code")}: <b class="code">{view.code}</b>
-            </p>
-          </div>
-        </section>
+        <Card qr={links.enter_qr} alt={t("office.qrEnter")} title={t("office.enterAt")}>
+          <p class="address">{links.enter}</p>
+          <p>
+            {t("office.code")}: <b class="code">{view.code}</b>
+          </p>
+        </Card>
       )}
       {links.teams.map(({ team, link, qr }) => (
-        <section key={team} class="card-of-paper">
-          <img src={pictureUrl(qr)} alt={t("office.qrOf", { team })} />
-          <div>
-            <h2>{team}</h2>
-            <p>{t("office.link")}</p>
-            <p class="address">{link}</p>
-          </div>
-        </section>
+        <Card key={team} qr={qr} title={team}>
+          <p>{t("office.link")}</p>
+          <p class="address">{link}</p>
+        </Card>
+      ))}
+      {links.referees.map(({ court, link, qr }) => (
+        <Card key={`court ${court}`} qr={qr} title={t("office.refereeOf", { court })}>
+          <p>{t("office.refereeLink")}</p>
+          <p class="address">{link}</p>
+        </Card>
       ))}
     </div>
+  );
+}
+
+interface CardProps {
+  /** A QR code, as SVG. */
+  qr: string;
+  title: string;
+  alt?: string;
+  children: ComponentChildren;
+}
+
+/** A card to cut out and hand out. */
+function Card({ qr, title, alt = t("office.qrOf", { team: title }), children }: CardProps) {
+  return (
+    <section class="card-of-paper">
+      <img src={pictureUrl(qr)} alt={alt} />
+      <div>
+        <h2>{title}</h2>
+        {children}
+      </div>
+    </section>
   );
 }

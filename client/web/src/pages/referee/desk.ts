@@ -1,12 +1,12 @@
 /** The referee's desk: the acting referee, the legal decisions, and their answers. */
 
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
+import { keepRefereeToken, refereeToken } from "../../core/address";
 import { Refused, Unanswered } from "../../core/connection";
 import type { Court } from "../../core/court";
 import { part, phaseOf } from "../../core/match";
 import type { Phrase } from "../../core/phrase";
 import { remembered } from "../../core/settings";
-import { tab } from "../../core/storage";
 import {
   type Decision,
   type DecisionName,
@@ -18,7 +18,6 @@ import { said, sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 import type { Draft } from "./drafts";
 
-const TOKEN = "lacoc-referee";
 const RETRY_MS = 1500;
 
 /** The court's newest answer to a decision: done, refused, or no answer. */
@@ -97,7 +96,7 @@ export class Desk {
     });
     // A new connection, also after a reload, sits down again with the tab's token.
     effect(() => {
-      const token = tab.read(TOKEN);
+      const token = refereeToken();
       const known = court.welcome.value?.can_act && court.referee.value;
       const away = !this.entered.peek() && !this.busy.peek();
       if (known && token && this.by.peek() && away) this.again(token);
@@ -111,11 +110,11 @@ export class Desk {
     this.by.value = by;
     try {
       await this.court.ask("enter", { token, by });
-      tab.write(TOKEN, token);
+      keepRefereeToken(token);
       this.entered.value = true;
     } catch (error) {
       this.refused.value = reasonOf(error);
-      if (error instanceof Refused && error.tokenRefused) tab.write(TOKEN, null);
+      if (error instanceof Refused && error.tokenRefused) keepRefereeToken(null);
     } finally {
       this.busy.value = false;
     }
@@ -123,7 +122,7 @@ export class Desk {
 
   /** Leave the desk: the token is forgotten. */
   leave(): void {
-    tab.write(TOKEN, null);
+    keepRefereeToken(null);
     location.reload();
   }
 
@@ -216,7 +215,7 @@ export class Desk {
 
   private async again(token: string): Promise<void> {
     await this.enter(token, this.by.peek());
-    if (this.entered.peek() || tab.read(TOKEN) !== token) return;
+    if (this.entered.peek() || refereeToken() !== token) return;
     setTimeout(() => {
       const open = this.court.connection.state.peek().open;
       if (open && !this.entered.peek() && !this.busy.peek()) this.again(token);

@@ -1,13 +1,14 @@
 /** Sitting down at the desk, and who sits there. */
 
 import { useSignal } from "@preact/signals";
+import { refereeToken } from "../../core/address";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import type { Desk } from "./desk";
 
 /** Asks for name and token; nothing once the court has taken them. */
 export function EnterCard({ desk }: { desk: Desk }) {
-  const token = useSignal("");
+  const token = useSignal(refereeToken() ?? ""); // a referee's link has it
   const name = useSignal(desk.by.value);
   const welcome = desk.court.welcome.value;
   if (!welcome || desk.entered.value) return null;
