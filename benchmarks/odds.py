@@ -5,9 +5,9 @@ random moments of each match, forks with the same bots give the odds. Of all mom
 had a chance of 70 %, about 70 % must have been won in the match itself. A moment is counted for
 each seat, because the chance of the other seat is the rest; a draw is half a win.
 
-Highlights (`--highlights`): of the first matches, the odds at every second of play give the five
-largest swings. The highlights, which look closely only where the odds change, must contain at least
-80 % of these.
+Highlights (`--highlights`): in the first matches, every second of play has a moment with many
+forks. The highlights come from the first forks of each moment, the five largest swings between two
+moments from all the others. The highlights must contain at least 80 % of these.
 
 Rows are appended to a file, so a benchmark that was stopped goes on where it was.
 """
@@ -23,10 +23,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from msgspec.structs import replace
+
 from lacoc_arenas import arena as arenas
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks import odds
-from lacoc_server.simulate.forks.chances import ChanceJob, Course, Wish, compute, margins
+from lacoc_server.simulate.forks.chances import ChanceJob, Course, Odds, Wish, compute, margins
+from lacoc_server.simulate.forks.odds import Moment, Swing
 from lacoc_server.simulate.forks.origin import Source, read_source
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.record.schema import Setup
@@ -44,6 +47,8 @@ _GAMES: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 _BIN = 0.05
 _LARGEST = 5
+_OTHERS = 5
+"""Forks of each moment that give the largest swings."""
 _LEAST = 0.01
 """Smaller changes of a chance are no swing here; `lacoc replay highlights` leaves out more."""
 
@@ -100,25 +105,33 @@ def _odds(moments: int, forks: int, seconds: float, number: int) -> dict[str, An
 
 
 def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
-    """Play a match; return the odds at every second, and the highlights."""
+    """Play a match; return its largest swings by some forks, and the highlights by others."""
     with tempfile.TemporaryDirectory() as folder:
         source, bots, _ = _match(Path(folder), number, seconds)
         file = str(Path(folder, f"{source.match_id}.mcap"))
-        near, far = (
-            Wish(file=file, bots=bots, forks=forks, step_s=step_s, closer=closer)
-            for step_s, closer in ((1.0, 0), (4.0, 6))
-        )
-        curve, looked = (
-            [*compute(wish, _Here(), None, lambda done, of: None)][-1] for wish in (near, far)
-        )
-        chosen = odds.highlights(looked.moments, least=_LEAST)
-        largest = odds.swings(curve.moments)[:_LARGEST]
+        wish = Wish(file=file, bots=bots, forks=forks + _OTHERS, step_s=1.0)
+        *_, curve = compute(wish, _Here(), None, lambda done, of: None)
+        chosen = odds.highlights(_from_forks(curve, slice(forks)), least=_LEAST)
+        largest = odds.steps(_from_forks(curve, slice(forks, None)))
+        largest.sort(key=lambda step: -abs(step.change))
         return {
             "number": number,
-            "largest": [(one.before.beat, one.after.beat, one.change) for one in largest],
-            "highlights": [(one.before.beat, one.after.beat, one.change) for one in chosen],
-            "moments": (len(curve.moments), len(looked.moments)),
+            "largest": [_stretch(one) for one in largest[:_LARGEST]],
+            "highlights": [_stretch(one) for one in chosen],
+            "moments": len(curve.moments),
+            "playing": len(Course(source).playing),
         }
+
+
+def _from_forks(curve: Odds, which: slice) -> tuple[Moment, ...]:
+    """Return the moments of a curve with the odds that follow from some of its forks."""
+    return odds.pooled(
+        replace(one, margins=one.margins[which]) if one.key else one for one in curve.moments
+    )
+
+
+def _stretch(swing: Swing) -> tuple[int, int, float]:
+    return swing.before.beat, swing.after.beat, swing.change
 
 
 class _Here:
@@ -173,16 +186,17 @@ def _tell_odds(rows: list[dict[str, Any]]) -> int:
 
 def _tell_swings(rows: list[dict[str, Any]]) -> int:
     found = of = 0
+    parts = []
     for row in rows:
+        parts.append(sum(last - first for first, last, _ in row["highlights"]) / row["playing"])
         for first, last, change in row["largest"]:
             if abs(change) < _LEAST:
                 continue
             of += 1
             found += any(a < last and first < b for a, b, _ in row["highlights"])
-    asked = [sum(row["moments"][one] for row in rows) for one in range(2)]
     print(
         f"{len(rows)} matches: highlights contain {found} of {of} of the largest swings "
-        f"({100 * found / of:.0f} %), from {asked[1]} moments in place of {asked[0]}"
+        f"({100 * found / of:.0f} %) in {100 * sum(parts) / len(parts):.0f} % of the playing time"
     )
     return int(found < 0.8 * of)
 

@@ -56,52 +56,40 @@ def moment(beat: int, chance: float) -> Moment:
     return Moment(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
 
 
-def test_swings_and_where_to_look() -> None:
-    """`swings` begins with the largest swing; `between` finds the next beat to try in a swing.
-
-    This beat comes just after the event nearest to the middle of the swing. Without an event it is
-    the middle.
-    """
-    found = [moment(0, 0.5), moment(100, 0.55), moment(300, 0.95), moment(400, 0.6)]
+def test_swings() -> None:
+    """In a swing the odds only grow or only fall; its slow ends are left out."""
+    chances = (0.5, 0.52, 0.7, 0.95, 0.93, 0.6, 0.6, 0.65)
+    found = [moment(100 * number, chance) for number, chance in enumerate(chances)]
     first, second, third = odds.swings(found)
-    assert [one.before.beat for one in (first, second, third)] == [100, 300, 0]
+    assert [(one.before.beat, one.after.beat) for one in (first, second, third)] == [
+        (100, 300),
+        (400, 500),
+        (600, 700),
+    ]
+    assert first.change == pytest.approx(0.43)
     assert [*odds.highlights(found, 2)] == [first, second]
-    assert odds.highlights(found, least=0.39) == [first]
-    playing = range(400)
-    assert odds.between(playing, [], first, 10) == 200
-    assert odds.between(playing, [130, 210, 299], first, 10) == 211
-    assert odds.between(playing, [], moment_pair(100, 110), 10) is None
+    assert odds.highlights(found, least=0.4) == [first]
+    assert odds.swings(found[:1]) == []
 
 
-def test_jumps_stand_around_the_largest_changes_of_the_lead() -> None:
-    """`jumps` finds beats around the largest changes of the lead; near changes count as one."""
-    playing = range(1000, 1400)
-    leads = [0.0] * 400
-    for index, change in ((50, 1.0), (55, 3.0), (200, 2.0), (300, -1.0), (395, -8.0)):
-        leads[index:] = [lead + change for lead in leads[index:]]
-    assert odds.jumps(playing, leads, 20, 2) == [1050, 1070, 1395, 1399]
-    assert odds.jumps(playing, leads, 20, 9) == [1050, 1070, 1200, 1220, 1300, 1320, 1395, 1399]
-    assert odds.jumps(playing, [5.0] * 400, 20, 3) == []
-    assert odds.jumps([], [], 20, 3) == []
-
-
-def test_near_moments_share_their_forks() -> None:
-    """Forks up to a second away count for a moment's odds, but not for the odds at the end."""
-    margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 101: (1.0, 1.0)}
+def test_neighbours_share_their_forks() -> None:
+    """Forks of the moments before and after count, but not far ones, and not at the end."""
+    margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 100: (1.0, 1.0), 400: (7.0, 7.0)}
     found = [
         Moment(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
         for beat, some in margins.items()
     ]
-    end = Moment(beat=110, clock_s=2.2, margins=(9.0,), chance=0.5)
+    end = Moment(beat=410, clock_s=8.2, margins=(9.0,), chance=0.5)
     pooled = odds.pooled([end, *found])
-    assert [one.beat for one in pooled] == [0, 50, 101, 110]
-    both = odds.chance([3.0, 1.0, -2.0, -4.0])
-    assert [one.chance for one in pooled] == [both, both, odds.chance([1.0, 1.0]), 0.5]
+    assert [one.beat for one in pooled] == [0, 50, 100, 400, 410]
+    assert [one.chance for one in pooled] == [
+        odds.chance([3.0, 1.0, -2.0, -4.0]),
+        odds.chance([3.0, 1.0, -2.0, -4.0, 1.0, 1.0]),
+        odds.chance([-2.0, -4.0, 1.0, 1.0]),
+        odds.chance([7.0, 7.0]),
+        0.5,
+    ]
     assert [one.margins for one in pooled[:-1]] == [*margins.values()]
-
-
-def moment_pair(first: int, last: int) -> odds.Swing:
-    return odds.Swing(moment(first, 0.5), moment(last, 0.6))
 
 
 class Counting:
@@ -126,11 +114,11 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
     players = [player(arena, 0, "planner"), player(arena, 1, "straight")]
     result = simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
     file = tmp_path / f"{MATCH}.mcap"
-    wish = Wish(file=str(file), bots=("planner", "nearest"), forks=2, step_s=2.0, closer=1)
+    wish = Wish(file=str(file), bots=("planner", "nearest"), forks=2, step_s=2.0)
     engine, told = Counting(), []
     *_, found = compute(wish, engine, None, lambda done, of: told.append((done, of)))
     assert engine.forks == 2 * (len(found.moments) - 1)
-    assert told[-1][0] == told[-1][1] == len(found.moments) == 4
+    assert told[-1][0] == told[-1][1] == len(found.moments) == 3
     assert found.moments[-1].margins == (margin(result, ("left", "right")),)
     assert found.moments[-1].chance in (0.0, 0.5, 1.0)
     assert found.record_hash == read_source(file).hash
@@ -146,7 +134,7 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
         known = next((old for old in found.moments if old.beat == one.beat), None)
         assert known is None or one.margins[:2] == known.margins
     other = Counting()
-    wished = replace(wish, bots=("straight", "nearest"), closer=0)
+    wished = replace(wish, bots=("straight", "nearest"))
     assert [*compute(wished, other, read_odds(path), lambda done, of: None)]
     assert other.forks == 4
 

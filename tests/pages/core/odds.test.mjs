@@ -43,6 +43,7 @@ test("highlights are the largest changes, the largest first", () => {
     found.map(({ before }) => before.beat),
     [100, 200],
   );
+  assert.deepEqual([found[0].after.beat, found[1].after.beat], [200, 400]);
   assert.ok(found[0].change > 0 && found[1].change < 0);
   assert.equal(highlights(readOdds(file, "m"), 1).length, 1);
 });

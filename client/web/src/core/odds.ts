@@ -14,7 +14,7 @@ export interface Odds {
   moments: readonly Moment[];
 }
 
-/** Two moments, one after the other, between which the odds changed. */
+/** Two moments between which the odds only grew or only fell. */
 export interface Swing {
   before: Moment;
   after: Moment;
@@ -23,6 +23,8 @@ export interface Swing {
 }
 
 const FORMAT = 1;
+/** Where less than this part of a swing happens in a stretch at its end, the swing ends before. */
+const SLOW = 0.1;
 
 /** Read the odds of a match; null: another form, another match, or fewer than two moments. */
 export function readOdds(data: unknown, matchId: string): Odds | null {
@@ -44,21 +46,36 @@ export function chanceAt({ moments }: Odds, beat: number): number {
 }
 
 /**
- * The moments between which the odds changed most, the largest change first.
+ * The stretches in which the odds changed most, the largest change first. In each of them the odds
+ * only grew or only fell; its slow beginning and end are left out.
  *
  * @param most Most of them that are returned.
  * @param least Smallest change of the chance that counts.
  */
 export function highlights({ moments }: Odds, most = 8, least = 0.05): Swing[] {
-  return moments
-    .slice(1)
-    .map((after, index) => {
-      const before = moments[index]!;
-      return { before, after, change: after.chance - before.chance };
-    })
+  const runs: Swing[][] = [];
+  moments.slice(1).forEach((after, index) => {
+    const step = swing(moments[index]!, after);
+    const run = runs.at(-1);
+    if (run && step.change > 0 === run[0]!.change > 0) run.push(step);
+    else runs.push([step]);
+  });
+  return runs
+    .map(withoutSlowEnds)
     .filter(({ change }) => Math.abs(change) >= least)
     .sort((a, b) => Math.abs(b.change) - Math.abs(a.change) || a.before.beat - b.before.beat)
     .slice(0, most);
+}
+
+function swing(before: Moment, after: Moment): Swing {
+  return { before, after, change: after.chance - before.chance };
+}
+
+function withoutSlowEnds(run: readonly Swing[]): Swing {
+  const least = SLOW * Math.abs(swing(run[0]!.before, run.at(-1)!.after).change);
+  const fast = run.filter(({ change }) => Math.abs(change) >= least);
+  const kept = fast.length ? fast : run;
+  return swing(kept[0]!.before, kept.at(-1)!.after);
 }
 
 function isMoment(value: unknown): value is Moment {

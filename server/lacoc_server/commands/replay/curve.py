@@ -18,8 +18,6 @@ from lacoc_shared.words import render, say
 
 _LONGEST_S = 86_400.0
 """Longest time that the forks of a moment may take [s]."""
-CLOSER = 8
-"""Number of moments that are added where the odds change most."""
 
 File = Annotated[Path, typer.Argument(help="The record: a .mcap file.")]
 Players = Annotated[
@@ -71,7 +69,6 @@ def odds_of(
         bots=_bots(source, players, arena),
         forks=times,
         step_s=every_s,
-        closer=CLOSER,
         arena=None if arena is None else str(arena),
     )
     out = odds_path(path, source.match_id)

@@ -21,8 +21,8 @@ def highlights_command(
         int, typer.Option(metavar="N", help="Largest number of moments to list.", min=1)
     ] = 8,
     players: Players = None,
-    times: Times = 6,
-    every: Every = 15.0,
+    times: Times = 4,
+    every: Every = 4.0,
     arena: ArenaFolder = None,
     jobs: options.Jobs = None,
     json: options.Json = False,

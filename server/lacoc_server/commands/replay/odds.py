@@ -13,8 +13,8 @@ app = typer.Typer()
 def odds_command(
     file: File,
     players: Players = None,
-    times: Times = 6,
-    every: Every = 15.0,
+    times: Times = 4,
+    every: Every = 4.0,
     arena: ArenaFolder = None,
     jobs: options.Jobs = None,
     json: options.Json = False,
@@ -22,7 +22,7 @@ def odds_command(
     """Print how the chance to win changes during a match, computed from forks that bots play.
 
     The chance is that of two bots that take over at a moment. So it tells what the position is
-    worth, not who plays better. It is computed at more moments where it changes most.
+    worth, not who plays better.
 
     The odds are kept beside the record, as MATCH.odds.json; /replay shows them as a curve. Forks
     that were played are not played again.

@@ -8,7 +8,6 @@ import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from functools import lru_cache
-from itertools import islice
 from pathlib import Path
 from typing import Protocol
 
@@ -33,10 +32,6 @@ from lacoc_shared.words import Phrase, say
 
 FORMAT = 1
 """Version of the layout of a file of odds."""
-_AT_ONCE = 4
-"""Moments that are added at a time, before swings are looked for again."""
-_LEAST_BEATS = BEATS_PER_S
-"""Beats of play between a moment that is added and its neighbours, at least."""
 
 
 class Odds(msgspec.Struct, frozen=True, kw_only=True):
@@ -82,9 +77,6 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     """Forks of each moment."""
     step_s: float
     """Seconds of play between two moments."""
-    closer: int = 0
-    """Moments that are added where the lead or the odds change most; fewer if these stretches are
-    short."""
     arena: str | None = None
 
 
@@ -125,26 +117,21 @@ def compute(
         )
 
     wanted = odds.grid(course.playing, round(wish.step_s * BEATS_PER_S))
-    count = len(wanted) + wish.closer + len(moments)
-    around = odds.jumps(course.playing, course.leads, _LEAST_BEATS, wish.closer // 2)
-    wanted = sorted({*wanted, *around})
-    while wanted:
-        jobs = {beat: _job(wish, beat, kept) for beat in wanted}
-        futures = {beat: engine.submit(margins, job) for beat, job in jobs.items() if job.variants}
-        for beat in wanted:
-            before = kept[beat].margins if beat in kept else ()
-            found = futures[beat].result() if beat in futures else ()
-            if isinstance(found, Phrase):
-                raise UserError(found)
-            moments[beat] = _moment(source, wish, course, beat, (*before, *found))
-            progress(len(moments), count)
-        so_far = result()
-        yield so_far
-        wanted = _closer(course, so_far.moments, count)
+    count = len(wanted) + len(moments)
+    jobs = {beat: _job(wish, beat, kept) for beat in wanted}
+    futures = {beat: engine.submit(margins, job) for beat, job in jobs.items() if job.variants}
+    for beat in wanted:
+        before = kept[beat].margins if beat in kept else ()
+        found = futures[beat].result() if beat in futures else ()
+        if isinstance(found, Phrase):
+            raise UserError(found)
+        moments[beat] = _moment(source, wish, course, beat, (*before, *found))
+        progress(len(moments), count)
+        yield result()
 
 
 class Course:
-    """The course of a recorded match: its beats of play, and those with an event of the game.
+    """The course of a recorded match: its beats of play, their clock, and its end.
 
     Args:
         source: the record.
@@ -162,11 +149,6 @@ class Course:
         self.playing = sorted(clocks)
         if not self.playing:
             raise UserError(say("odds.no-play", match=source.match_id))
-        leads = {one.beat: one.seats[0].score - one.seats[-1].score for one in frames}
-        self.leads = [float(leads[beat]) for beat in self.playing]
-        """Points of the first seat less those of the last one, at the end of each beat of play."""
-        self.told = [event.beat for event in record.events if "marker" in event.data]
-        """Beats with an event of the game."""
         self.end = _end(record.result, source, self.playing[-1] + 1)
         """The end of the match; None: it has no result."""
 
@@ -283,16 +265,6 @@ def _moment(
         chance=odds.chance(ended),
         key=key(source, beat, wish.bots, wish.arena),
     )
-
-
-def _closer(course: Course, moments: Sequence[Moment], count: int) -> list[int]:
-    """Return the moments to add next: one in each of the largest swings that are long enough."""
-    room = min(_AT_ONCE, count - len(moments))
-    found = (
-        odds.between(course.playing, course.told, swing, _LEAST_BEATS)
-        for swing in odds.swings(moments)
-    )
-    return list(islice((beat for beat in found if beat is not None), max(0, room)))
 
 
 def _end(result: Result | None, source: Source, beat: int) -> Moment | None:
