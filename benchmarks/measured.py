@@ -1,6 +1,6 @@
 """A court that times its own beats, for `benchmarks.flood` and `benchmarks.watched`.
 
-    python -m benchmarks.measured
+    python -m benchmarks.measured [NAME]
 
 opens such a court and prints its address as a line of JSON. It answers each line "count" on
 standard input with the times of the beats since the last one, and ends at a line "stop".
@@ -77,11 +77,11 @@ class Measured:
 
 
 @contextmanager
-def measured_court() -> Iterator[Measured]:
+def measured_court(name: str = NAME) -> Iterator[Measured]:
     """Open a court of Robot-Othello, whose matches last an hour; the caller runs the court."""
     loaded = arenas.load("othello", {"match": {"duration_s": 3600.0, "countdown_s": 0.02}})
     tokens, referee = {seat.id: new_token() for seat in loaded.seats}, new_token()
-    keys = Keys(NAME)
+    keys = Keys(name)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), loaded.match.open_levels)
     hashes = {seat: hash_token(token) for seat, token in tokens.items()}
@@ -91,14 +91,15 @@ def measured_court() -> Iterator[Measured]:
         tempfile.TemporaryDirectory() as folder,
         CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, desk) as network,
     ):
-        court = MeasuredCourt(CourtSettings(NAME, loaded, {}, Path(folder)), network)
+        court = MeasuredCourt(CourtSettings(name, loaded, {}, Path(folder)), network)
         yield Measured(court, inbox, network.locators[0], tokens, referee)
 
 
 def main() -> None:
     """Run a court until a line "stop" on standard input."""
-    with measured_court() as opened:
-        where = {"name": NAME, "address": opened.address}
+    name = sys.argv[1] if len(sys.argv) > 1 else NAME
+    with measured_court(name) as opened:
+        where = {"name": name, "address": opened.address}
         print(json.dumps(where | {"tokens": opened.tokens, "referee": opened.referee}), flush=True)
         os.set_blocking(sys.stdin.fileno(), False)
 

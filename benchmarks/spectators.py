@@ -10,6 +10,7 @@ import json
 import os
 import sys
 import time
+from functools import partial
 from urllib.parse import urlsplit
 
 import msgspec
@@ -85,13 +86,15 @@ async def main() -> None:
     parser.add_argument("url")
     parser.add_argument("pages", type=int)
     parser.add_argument("hz", type=float)
+    parser.add_argument("courts", nargs="*", default=[None], help="watched in turns")
     options = parser.parse_args()
     parts = urlsplit(options.url)
     loop = asyncio.get_running_loop()
     pages: list[Page] = []
-    for _ in range(options.pages):
+    for number in range(options.pages):
+        court = options.courts[number % len(options.courts)]
         _, page = await loop.create_connection(
-            lambda: Page(parts.netloc, options.hz), parts.hostname, parts.port
+            partial(Page, parts.netloc, options.hz, court), parts.hostname, parts.port
         )
         pages.append(page)
     while any(not page.frames for page in pages):
