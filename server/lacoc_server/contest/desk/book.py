@@ -7,7 +7,7 @@ from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
-from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -41,8 +41,7 @@ class Book:
         self.tokens = tokens
         self.refused: dict[str, tuple[Mistake, ...]] = {}
         """Mistakes in the newest files of teams whose files were refused; not kept on the disk."""
-        self._facts: tuple[AnyFact, ...] = ()
-        self._contest: Contest | None = None
+        self._newest = Newest(FORMATS)
 
     @property
     def facts(self) -> tuple[AnyFact, ...]:
@@ -60,10 +59,7 @@ class Book:
         Raises:
             UserError: if they can't be read.
         """
-        facts = self.facts
-        if self._contest is None or len(facts) != len(self._facts):
-            self._facts, self._contest = facts, compute(facts, FORMATS)
-        return self._contest
+        return self._newest.of(self.facts)
 
     @property
     def event(self) -> EventInfo:

@@ -19,7 +19,7 @@ from lacoc_server.contest.headless.pool import Ended, Job, ended, first_done
 from lacoc_server.contest.kept.entries import Entry
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.contest import Contest, StageView, compute
+from lacoc_server.contest.league.contest import Contest, Newest, StageView, compute
 from lacoc_server.contest.league.facts import AnyFact, Outcome, Played, Replaced, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
@@ -93,9 +93,10 @@ def play(
     deaths: Counter[str] = Counter()
     entry = cache(folder.entries.load)
     played: set[str] = set()
+    newest = Newest(FORMATS)
     while True:
         facts = store.facts()
-        contest = compute(facts, FORMATS)
+        contest = newest.of(facts)
         changed(contest)
         if due(contest, FORMATS) is not None:
             store.decide(_due)
@@ -109,7 +110,7 @@ def play(
                 assert game.job.match_id not in played, "a game that was played has a record"
                 playing[engine.submit(game.job)] = game
         if known:
-            store.decide(partial(_still_due, known))
+            store.decide(partial(_still_due, newest, known))
             continue
         if not playing:
             break
@@ -132,14 +133,16 @@ def play(
     return len(played)
 
 
-def _still_due(known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+def _still_due(
+    newest: Newest, known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]
+) -> Iterator[AnyFact]:
     """Yield the results in `known` of games that, by the facts, are still to be played.
 
     Another program may just have appended another result of such a game, or a fact after which the
     game is not played.
     """
-    contest = compute(facts, FORMATS)
-    due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in playable(contest)}
+    ready = playable(newest.of(facts))
+    due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in ready}
     yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)
 
 

@@ -191,6 +191,26 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
     )
 
 
+class Newest:
+    """Computes a contest whose facts grow: again only if the facts are others than last time.
+
+    Args:
+        formats: the known formats by name.
+    """
+
+    def __init__(self, formats: Mapping[str, Format]) -> None:
+        self._formats = formats
+        self._facts: tuple[AnyFact, ...] = ()
+        self._contest: Contest | None = None
+
+    def of(self, facts: tuple[AnyFact, ...]) -> Contest:
+        """Return the contest that follows from facts; errors as with `compute`."""
+        if self._contest is None or facts != self._facts:
+            self._contest = compute(facts, self._formats)
+            self._facts = facts
+        return self._contest
+
+
 def next_round(contest: Contest, name: str, formats: Mapping[str, Format]) -> tuple[Pair, ...]:
     """Pair the next round of a stage.
 

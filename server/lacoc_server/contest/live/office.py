@@ -12,7 +12,7 @@ from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import lasting_hash
-from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -58,6 +58,7 @@ class Office:
         draw_from_ms: int | None = 0,
     ) -> None:
         self._store = store
+        self._newest = Newest(FORMATS)
         self._entry = cache(entries.load)
         self._hash_of = cache(lambda team: lasting_hash(token_of(team)))
         self._links = dict(links)
@@ -109,8 +110,7 @@ class Office:
         """
         now_ms = time.time_ns() // 1_000_000
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
-        if len(self._store.facts()) != len(self._facts):  # another program has appended some
-            self.contest = self._compute()
+        self.contest = self._compute()  # another program may have appended facts
         refused = self._answers()
         self._append(lambda contest: [*refused, *results(contest, seen)])
         while self._may_draw(now_ms) and due(self.contest, FORMATS) is not None:
@@ -153,12 +153,12 @@ class Office:
         facts that it returns then are appended.
         """
         if [*follows(self.contest)]:
-            self._store.decide(lambda facts: follows(compute(facts, FORMATS)))
+            self._store.decide(lambda facts: follows(self._newest.of(facts)))
             self.contest = self._compute()
 
     def _compute(self) -> Contest:
         self._facts = self._store.facts()
-        return compute(self._facts, FORMATS)
+        return self._newest.of(self._facts)
 
     def _answers(self) -> list[AnyFact]:
         """Take the courts' answers; return a fact for each game that a court refused for good."""
