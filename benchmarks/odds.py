@@ -49,8 +49,8 @@ _BIN = 0.05
 _LARGEST = 5
 _OTHERS = 5
 """Forks of each moment that give the largest swings."""
-_LEAST = 0.01
-"""Smaller changes of a chance are no swing here; `lacoc replay highlights` leaves out more."""
+_LEAST = 0.05
+"""Smaller changes of a chance are no swing, as in `lacoc replay highlights`."""
 
 
 def main() -> int:
@@ -188,12 +188,12 @@ def _tell_swings(rows: list[dict[str, Any]]) -> int:
     found = of = 0
     parts = []
     for row in rows:
-        parts.append(sum(last - first for first, last, _ in row["highlights"]) / row["playing"])
+        chosen = [one for one in row["highlights"] if abs(one[2]) >= _LEAST]
+        parts.append(sum(last - first for first, last, _ in chosen) / row["playing"])
         for first, last, change in row["largest"]:
-            if abs(change) < _LEAST:
-                continue
-            of += 1
-            found += any(a < last and first < b for a, b, _ in row["highlights"])
+            if abs(change) >= _LEAST:
+                of += 1
+                found += any(a < last and first < b for a, b, _ in chosen)
     print(
         f"{len(rows)} matches: highlights contain {found} of {of} of the largest swings "
         f"({100 * found / of:.0f} %) in {100 * sum(parts) / len(parts):.0f} % of the playing time"

@@ -13,7 +13,12 @@ from lacoc_server.contest.league.facts import Played, decode, encode
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import Assignment
 
-FORMAT_NAMES = ("round-robin", "swiss", "single-knockout", "double-knockout")
+FORMAT_NAMES = ("round-robin", "swiss", "sequential", "single-knockout", "double-knockout")
+
+
+def most_rounds(how: str, teams: int) -> int:
+    """Return little more than a lap for a sequential stage; else 0, the format's own number."""
+    return teams + 1 if how == "sequential" else 0
 
 
 def check_step(event: Event, contest: Contest, given_out: list[Assignment]) -> None:
@@ -109,7 +114,7 @@ def test_any_contest(
 ) -> None:
     """Contests of 2 to 24 teams, also with trouble, come to their end, and each step is legal."""
     event = Event(teams, courts, Random(seed), trouble)
-    play(event, how, games=games, groups=1 + teams // 12)
+    play(event, how, games=games, groups=1 + teams // 12, rounds=most_rounds(how, teams))
 
 
 @pytest.mark.long
@@ -127,7 +132,7 @@ def test_many_contests(
 ) -> None:
     """Contests of up to 40 teams, also with trouble, come to their end, and each step is legal."""
     event = Event(teams, courts, Random(seed), trouble)
-    play(event, how, games=games, groups=1 + teams // 12)
+    play(event, how, games=games, groups=1 + teams // 12, rounds=most_rounds(how, teams))
 
 
 @pytest.mark.long
@@ -135,7 +140,7 @@ def test_many_contests(
 def test_200_entries(how: str) -> None:
     """A contest of 200 teams on 16 courts comes to its end, and each step is legal."""
     event = Event(200, 16, Random(1), 0.05)
-    play(event, how, groups=20, rounds=5 if how == "swiss" else 0)
+    play(event, how, groups=20, rounds=5 if how in ("swiss", "sequential") else 0)
 
 
 def test_groups_then_knockout() -> None:

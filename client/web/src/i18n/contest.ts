@@ -37,6 +37,7 @@ export const contest = {
   "contest.stage": ["Stage {stage}", "ステージ {stage}"],
   "contest.format.round-robin": ["Round robin", "総当たり戦"],
   "contest.format.swiss": ["Swiss", "スイス式"],
+  "contest.format.sequential": ["Until the first places are decided", "上位が決まるまで総当たり"],
   "contest.format.single-knockout": ["Single knockout", "シングルエリミネーション"],
   "contest.format.double-knockout": ["Double knockout", "ダブルエリミネーション"],
   "contest.bestOf": ["{format}, best of {games}", "{format}・最大 {games} ゲーム"],
@@ -49,6 +50,10 @@ export const contest = {
   "contest.roundsLeft": [
     "Rounds still to be drawn: {count}.",
     "組み合わせが未定のラウンド：{count}",
+  ],
+  "contest.roundsAtMost": [
+    "At most {count} more rounds, until the first places are decided.",
+    "上位が決まるまで、あと最大 {count} ラウンド。",
   ],
   "contest.table": ["Standings", "順位表"],
   "contest.group": ["Group {group}", "グループ {group}"],

@@ -93,7 +93,11 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
       <Tables view={view} />
       <Ties view={view} />
       {view.rounds_to_draw > 0 && (
-        <p class="muted">{t("contest.roundsLeft", { count: view.rounds_to_draw })}</p>
+        <p class="muted">
+          {t(view.plan.format === "sequential" ? "contest.roundsAtMost" : "contest.roundsLeft", {
+            count: view.rounds_to_draw,
+          })}
+        </p>
       )}
       <Schedule sheet={sheet} view={view} />
     </section>

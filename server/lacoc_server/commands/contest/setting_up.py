@@ -95,7 +95,7 @@ token = "{office}"
 # A stage after another one; docs/contest.md has all formats and settings. Without start = "ready"
 # a referee starts each game.
 [stage.groups]
-format = "round-robin"     # or "swiss", "single-knockout", "double-knockout"
+format = "round-robin"     # or "swiss", "sequential", "single-knockout", "double-knockout"
 groups = 2
 arena = "{arena}"
 settings = {{ match = {{ start = "ready" }} }}

@@ -33,7 +33,7 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
     matches: tuple[Match, ...]
     tables: tuple[Table, ...]
     rounds_to_draw: int
-    """Rounds that are still to be drawn."""
+    """Rounds that are still to be drawn; in some formats fewer may be enough."""
 
     @property
     def name(self) -> str:
@@ -173,7 +173,10 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         if isinstance(fact, OfMatch):
             by_pairing.setdefault(fact.pairing, []).append(fact)
     drawn, planned = drawn_stages(known, teams, formats, unused)
-    stages = [_view(plan, stage, formats[plan.format], teams, by_pairing) for plan, stage in drawn]
+    stages = [
+        _view(plan, stage, formats[plan.format], teams, by_pairing, is_last=number == len(drawn))
+        for number, (plan, stage) in enumerate(drawn, 1)
+    ]
     matches = {match.pairing.id: match for view in stages for match in view.matches}
     for pairing, about in by_pairing.items():
         _note_unused(matches.get(pairing), about, unused)
@@ -231,6 +234,8 @@ def _view(
     how: Format,
     teams: Mapping[str, Team],
     by_pairing: Mapping[str, Sequence[OfMatch]],
+    *,
+    is_last: bool,
 ) -> StageView:
     gone = {team.name for team in teams.values() if team.gone}
     out = {team.name for team in teams.values() if team.disqualified}
@@ -238,12 +243,16 @@ def _view(
         settings=stage.settings, entries=stage.entries, decisive=how.decisive, balanced=how.balanced
     )
     matches = resolve(how.pairings(stage), by_pairing, gone, rules)
+    to_draw = max(0, how.rounds(stage) - len(stage.drawn))
+    if to_draw and all(match.decided for match in matches.values()):
+        # Once another stage is drawn, a correction opens no earlier stage again.
+        to_draw *= is_last and not how.is_decided(stage, matches, gone)
     return StageView(
         plan=plan,
         stage=stage,
         matches=tuple(matches.values()),
         tables=how.tables(stage, matches, out),
-        rounds_to_draw=max(0, how.rounds(stage) - len(stage.drawn)),
+        rounds_to_draw=to_draw,
     )
 
 

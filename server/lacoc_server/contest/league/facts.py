@@ -78,7 +78,11 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     extra_games: Annotated[int, msgspec.Meta(ge=0, le=9)] = 1
     """How many extra games are played at most while a match of a knockout is level."""
     rounds: Annotated[int, msgspec.Meta(ge=0, le=999)] = 0
-    """Number of rounds; 0: the format's own number."""
+    """Number of rounds, in a sequential stage the most; 0: the format's own number."""
+    places: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
+    """How many first places must be decided before a sequential stage ends early."""
+    confidence: Annotated[float, msgspec.Meta(ge=0.5, lt=1.0)] = 0.95
+    """With which probability they must then be right."""
     groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """Number of groups of a round robin."""
     third_place: bool = False

@@ -16,6 +16,8 @@ export interface Settings {
   games?: number;
   extra_games?: number;
   rounds?: number;
+  places?: number;
+  confidence?: number;
   groups?: number;
   third_place?: boolean;
   reset?: boolean;

@@ -7,7 +7,7 @@ import msgspec
 
 from lacoc_server.contest.league.facts import Settings
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import Pairing
+from lacoc_server.contest.league.pairing import Bye, Entry, Pairing
 from lacoc_server.contest.league.standings import Table
 
 Pair = tuple[str, ...]
@@ -41,7 +41,13 @@ class Format(Protocol):
         """Return all pairings that are fixed; each comes after the pairings its sources name."""
 
     def rounds(self, stage: Stage) -> int:
-        """Return the number of rounds that are drawn one by one; 0: the draw fixes them all."""
+        """Return the most rounds that are drawn one by one; 0: the draw fixes all rounds."""
+
+    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+        """Return whether the stage ends before all its rounds are drawn.
+
+        Asked when all matches of the drawn rounds are decided.
+        """
 
     def next_round(
         self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
@@ -67,8 +73,33 @@ class DrawnAtOnce:
         """Return 0: no round is drawn later."""
         return 0
 
+    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+        """Return False: all rounds are played."""
+        return False
+
     def next_round(
         self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
     ) -> tuple[Pair, ...]:
         """Return no pairs."""
         return ()
+
+
+class DrawnByRound:
+    """Methods of those formats whose rounds are drawn one by one."""
+
+    def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
+        """Return the pairings of the rounds that are drawn."""
+        return tuple(
+            Pairing(
+                id=stage.id("r", number, order),
+                section="r",
+                round=number,
+                sources=(Entry(pair[0]), Entry(pair[1]) if len(pair) == 2 else Bye()),
+            )
+            for number, pairs in enumerate(stage.drawn, 1)
+            for order, pair in enumerate(pairs, 1)
+        )
+
+    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+        """Return False: all rounds are played."""
+        return False

@@ -14,9 +14,8 @@ import msgspec
 import networkx
 from caissify_pairings.engines.dutch import DutchEngine
 
-from lacoc_server.contest.league.formats.format import Pair, Stage
+from lacoc_server.contest.league.formats.format import DrawnByRound, Pair, Stage
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import Bye, Entry, Pairing
 from lacoc_server.contest.league.standings import DRAW, WIN, Table, counted, standings
 
 # The engine warns when it must break a rule; then the matching takes over, and nothing is wrong.
@@ -49,24 +48,11 @@ class Player(msgspec.Struct, kw_only=True):
         return sum(self.sides)
 
 
-class Swiss:
+class Swiss(DrawnByRound):
     """The format."""
 
     decisive = False
     balanced = False
-
-    def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
-        """Return the pairings of the rounds that are drawn."""
-        return tuple(
-            Pairing(
-                id=stage.id("r", number, order),
-                section="r",
-                round=number,
-                sources=(Entry(pair[0]), Entry(pair[1]) if len(pair) == 2 else Bye()),
-            )
-            for number, pairs in enumerate(stage.drawn, 1)
-            for order, pair in enumerate(pairs, 1)
-        )
 
     def rounds(self, stage: Stage) -> int:
         """Return the number of rounds: as many as a knockout has, unless the plan says more."""

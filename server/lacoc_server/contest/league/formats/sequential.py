@@ -1,0 +1,104 @@
+"""Sequential: everybody meets everybody again and again, until the first places are decided.
+
+In a lap everybody meets everybody once. After each lap a test says whether the teams at the first
+places are stronger than the next ones, with the chosen confidence. If they are, or if the most laps
+are played, the stage is over. So a clear order costs few games, and a close one many.
+"""
+
+import math
+from collections.abc import Collection, Iterable, Mapping
+from itertools import pairwise
+from statistics import NormalDist, fmean, pvariance
+
+from lacoc_server.contest.league.formats.format import DrawnByRound, Pair, Stage
+from lacoc_server.contest.league.formats.round_robin import ORDER, circle_round
+from lacoc_server.contest.league.matches import Game, Match
+from lacoc_server.contest.league.standings import Table, counted, standings
+
+_LAPS = 10
+"""Most laps, unless the plan has a number of rounds."""
+
+
+class Sequential(DrawnByRound):
+    """The format."""
+
+    decisive = False
+    balanced = False
+
+    def rounds(self, stage: Stage) -> int:
+        """Return the most rounds."""
+        return stage.settings.rounds or _LAPS * _lap(stage)
+
+    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+        """Return whether a lap is over after which the first places are decided.
+
+        Each look at the results, and each place, could be the one that is wrong. So each of them
+        may be wrong only with its part of the chance that the confidence leaves.
+        """
+        drawn, lap, places = len(stage.drawn), _lap(stage), stage.settings.places
+        if not drawn or drawn % lap:
+            return False
+        (table,) = self.tables(stage, matches, gone)
+        here = [row.team for row in table.rows if row.team not in gone][: places + 1]
+        games = [game for match in matches.values() for game in match.games]
+        looks = max(1, self.rounds(stage) // lap)
+        least = NormalDist().inv_cdf(1 - (1 - stage.settings.confidence) / (looks * places))
+        return all(lead(games, one, other) > least for one, other in pairwise(here))
+
+    def next_round(
+        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+    ) -> tuple[Pair, ...]:
+        """Pair the next round, by the circle method; opponents of a team that left have a rest."""
+        teams = stage.entries
+        pairs = [
+            (teams[left], teams[right])
+            for left, right in circle_round(len(teams), len(stage.drawn))
+        ]
+        return tuple(pair for pair in pairs if not {*pair} & {*gone})
+
+    def tables(
+        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+    ) -> tuple[Table, ...]:
+        """Rank the teams."""
+        order = ("points", *stage.settings.tie_breaks) if stage.settings.tie_breaks else ORDER
+        return (standings(stage.entries, counted(matches.values()), order, last),)
+
+
+def lead(games: Iterable[Game], one: str, other: str) -> float:
+    """Return by how much a team is ahead of another one, in standard deviations (a score test).
+
+    The lead is what the team won more, against the other one and against the same opponents. Its
+    standard deviation is what it would be if both were equally strong.
+
+    Args:
+        games: all games of the stage; those of teams that met only one of the two do not matter.
+        one: the team.
+        other: the other team.
+    """
+    direct: list[float] = []
+    against: dict[str, dict[str, list[float]]] = {}
+    for game in games:
+        for team, opponent in (game.teams, game.teams[::-1]):
+            won = 0.5 if not game.winner else float(game.winner == team)
+            if (team, opponent) == (one, other):
+                direct.append(won - 0.5)
+            elif team in (one, other):
+                against.setdefault(opponent, {one: [], other: []})[team].append(won)
+    ahead, variance = math.fsum(direct), math.fsum(won**2 for won in direct)
+    for results in against.values():
+        mine, theirs = results[one], results[other]
+        if not mine or not theirs:
+            continue
+        both = [*mine, *theirs]
+        weight = len(mine) * len(theirs) / len(both)
+        ahead += weight * (fmean(mine) - fmean(theirs))
+        variance += weight * pvariance(both)
+    return ahead / math.sqrt(variance) if variance > 0 else 0.0
+
+
+def _lap(stage: Stage) -> int:
+    """Return after how many rounds everybody has met everybody."""
+    return len(stage.entries) - 1 + len(stage.entries) % 2
+
+
+FORMAT = Sequential()
