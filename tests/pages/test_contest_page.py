@@ -1,10 +1,7 @@
 """Tests of /contest: at a gateway, and in a published folder on a server of plain files."""
 
-import functools
 import re
-import threading
 from collections.abc import Iterator
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,6 +9,7 @@ import pytest
 from chromium import OpenPage
 from playwright.sync_api import expect
 from show import WAIT_MS, violations
+from stand import served
 from venue import Venue
 
 from lacoc_robots.library import robot_folder
@@ -73,16 +71,8 @@ def cup(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     folder = root / PATH.strip("/")
     folder.mkdir(parents=True)
     organiser.publish_to(file, folder)
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(root)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield Cup(made, folder, f"http://127.0.0.1:{server.server_port}{PATH}/")
-    server.shutdown()
-    server.server_close()
-
-
-class _Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, format: str, *args: object) -> None:
-        pass
+    with served(root) as url:
+        yield Cup(made, folder, f"{url}{PATH}/")
 
 
 def test_a_published_folder_shows_the_contest_and_its_replays(

@@ -136,6 +136,17 @@ test("slides show every row of a table once, and brackets in parts that can be r
     for (const { view, cut } of cuts) assert.ok(bracket(view, cut).rows <= 9);
   }
   assert.equal(slides(finals)[0].is, "winner");
+  const courts = Array.from({ length: 8 }, (_, number) => ({ court: `court-${number + 4}` }));
+  const now = slides({ ...groups, running: courts.toReversed() }).filter(({ is }) => is === "now");
+  const shownCourts = now.map(({ running }) => running.map(({ court }) => court));
+  assert.deepEqual(
+    shownCourts.flat(),
+    courts.map(({ court }) => court),
+  );
+  assert.deepEqual(
+    shownCourts.map(({ length }) => length),
+    [6, 2],
+  );
 });
 
 test("a name that is too long for its box is cut by its width", () => {

@@ -35,13 +35,11 @@ class Cluster:
             self._client = Client(address, timeout=_CONNECT_S)
         except (OSError, ValueError) as error:
             raise UserError(say("cluster.no-answer", address=address, why=str(error))) from None
-        self._executor = self._client.get_executor(retries=_RETRIES, pure=True)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._executor.shutdown(wait=False)
         self._client.close()
 
     def submit(self, job: Job) -> "Future[Ended | Phrase]":
@@ -59,5 +57,7 @@ class Cluster:
             else:
                 ours.set_result(theirs.result())
 
-        self._executor.submit(attempt, job).add_done_callback(done)
+        # The id is a hash of all that decides the game, so Dask need not make one.
+        theirs = self._client.submit(attempt, job, key=job.match_id, retries=_RETRIES)
+        theirs.add_done_callback(done)
         return ours

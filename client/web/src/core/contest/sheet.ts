@@ -51,6 +51,11 @@ export function stateOf(sheet: ContestSheet): "waiting" | "running" | "over" {
   return !sheet.planned.length && sheet.stages.every(isOver) ? "over" : "running";
 }
 
+/** The games on the courts, in the order of the courts' names: court 2 comes before court 10. */
+export function running({ running }: ContestSheet): Called[] {
+  return running.toSorted((a, b) => a.court.localeCompare(b.court, "en", { numeric: true }));
+}
+
 /** Whoever has won the contest: first in the only table of its last stage. */
 export function champions(sheet: ContestSheet): string[] {
   const last = sheet.stages.at(-1);

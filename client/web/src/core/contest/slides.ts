@@ -3,11 +3,13 @@
 import { bracket, type Cut, feeders } from "./bracket";
 import {
   byId,
+  type Called,
   type ContestSheet,
   isDecided,
   isKnockout,
   isMatch,
   isOver,
+  running,
   type StageView,
   stateOf,
   type Table,
@@ -20,7 +22,7 @@ export interface TablePart {
 }
 
 export type Slide =
-  | { is: "now" }
+  | { is: "now"; running: Called[] }
   | { is: "winner" }
   | { is: "tables"; view: StageView; parts: TablePart[] }
   | { is: "bracket"; view: StageView; cut: Cut }
@@ -29,18 +31,28 @@ export type Slide =
 /** So many rows fit below each other, and so many of a bracket. */
 const ROWS = 12;
 const BRACKET_ROWS = 9;
+/** So many courts fit a slide. */
+const COURTS = 6;
 /** Two tables as small as this fit below each other. */
 const SMALL_ROWS = 4;
 
 /** The slides of a contest: what is played, then the stages that matter now, then the ratings. */
 export function slides(sheet: ContestSheet): Slide[] {
   const matter = sheet.stages.filter((view) => !isOver(view) || view === sheet.stages.at(-1));
-  const first: Slide = { is: stateOf(sheet) === "over" ? "winner" : "now" };
+  const first: Slide[] = stateOf(sheet) === "over" ? [{ is: "winner" }] : nowSlides(sheet);
   const found = [
-    first,
+    ...first,
     ...matter.flatMap((view) => (isKnockout(view) ? bracketSlides(view) : tableSlides(view))),
   ];
   return sheet.ratings.length ? [...found, { is: "ratings" }] : found;
+}
+
+function nowSlides(sheet: ContestSheet): Slide[] {
+  const games = running(sheet);
+  return Array.from({ length: Math.max(1, Math.ceil(games.length / COURTS)) }, (_, index) => ({
+    is: "now",
+    running: games.slice(index * COURTS, (index + 1) * COURTS),
+  }));
 }
 
 function tableSlides(view: StageView): Slide[] {

@@ -81,7 +81,7 @@ export function Big({ sheet }: { sheet: ContestSheet }) {
 function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   switch (slide.is) {
     case "now":
-      return <Now sheet={sheet} most={COMING_MOST} />;
+      return <Now sheet={sheet} games={slide.running} most={COMING_MOST} />;
     case "winner":
       return <End sheet={sheet} />;
     case "ratings":

@@ -3,7 +3,7 @@
 import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import { LiveScores } from "../../core/contest/live";
-import { type ContestSheet, found, score } from "../../core/contest/sheet";
+import { type Called, type ContestSheet, found, running, score } from "../../core/contest/sheet";
 import type { CourtScore } from "../../core/desk.gen";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
@@ -16,12 +16,14 @@ const COMING_MOST = 8;
 
 interface Props {
   sheet: ContestSheet;
+  /** The games on courts that are shown; by default all. */
+  games?: Called[];
   most?: number;
 }
 
 const live = new LiveScores();
 
-export function Now({ sheet, most = COMING_MOST }: Props) {
+export function Now({ sheet, games = running(sheet), most = COMING_MOST }: Props) {
   useEffect(() => (ownPage ? undefined : live.start()), []);
   const coming = sheet.coming.slice(0, most);
   const more = sheet.coming.length - coming.length;
@@ -36,7 +38,7 @@ export function Now({ sheet, most = COMING_MOST }: Props) {
           </p>
         )}
         <ul class="courts">
-          {sheet.running.map(({ id, pairing, game, teams, court }) => (
+          {games.map(({ id, pairing, game, teams, court }) => (
             <li key={court} class="court card">
               <div class="where">
                 <b>{t("contest.court", { court })}</b>

@@ -82,7 +82,7 @@ def lead(games: Iterable[Game], one: str, other: str) -> float:
             won = 0.5 if not game.winner else float(game.winner == team)
             if (team, opponent) == (one, other):
                 direct.append(won - 0.5)
-            elif team in (one, other):
+            elif team in (one, other) and opponent not in (one, other):
                 against.setdefault(opponent, {one: [], other: []})[team].append(won)
     ahead, variance = math.fsum(direct), math.fsum(won**2 for won in direct)
     for results in against.values():
