@@ -10,6 +10,7 @@ another entry for one team.
 
 import argparse
 import json
+import multiprocessing
 import os
 import random
 import statistics
@@ -19,6 +20,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -146,8 +148,22 @@ def _play(file: Path, engine: Engines) -> tuple[int, float, object]:
 
 @contextmanager
 def _cluster(workers: int) -> Iterator[str]:
+    """Run a cluster whose scheduler has a process of its own, as in docs/cluster.md."""
+    spawn = multiprocessing.get_context("spawn")
+    ours, theirs = spawn.Pipe()
+    process = spawn.Process(target=_serve, args=(workers, theirs))
+    process.start()
+    try:
+        yield ours.recv()
+    finally:
+        ours.send("end")
+        process.join()
+
+
+def _serve(workers: int, pipe: Connection) -> None:
     with LocalCluster(workers, threads_per_worker=1, dashboard_address=None) as cluster:
-        yield cluster.scheduler_address
+        pipe.send(cluster.scheduler_address)
+        pipe.recv()
 
 
 def _kill(cluster: LocalCluster, kills: int, stop: threading.Event) -> None:

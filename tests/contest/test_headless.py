@@ -22,6 +22,7 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
 from lacoc_server.contest.publish import tables
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import pack
 from lacoc_shared.record.summary import Summary, summary
 
 pytestmark = pytest.mark.slow
@@ -49,7 +50,7 @@ def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: P
 
 
 def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied: Path) -> None:
-    """A game with a whole record is not played again, not even in a new contest that has it."""
+    """A game whose record has a result is not played again, not even in a new contest."""
     assert contest_played.play(copied) == 0
     again = contest_played.enter(tmp_path / "new")
     shutil.copytree(played / "records", again.parent / "records")
@@ -57,10 +58,14 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     assert tables(organiser.sheet(again)) == tables(organiser.sheet(copied))
     shutil.rmtree(again.parent / "records")
     shutil.copytree(played / "records", again.parent / "records")
-    (next((again.parent / "records").iterdir())).write_bytes(b"damaged")
+    damaged, endless, *_ = (again.parent / "records").iterdir()
+    damaged.write_bytes(b"damaged")
+    messages = [one for one in pack.read([endless]) if one[0] != "/lacoc/result"]
+    endless.unlink()
+    pack.write(messages, endless)
     again.with_suffix(".db").unlink()
     contest_played.enter(again.parent)
-    assert contest_played.play(again) == 1
+    assert contest_played.play(again) == 2
 
 
 def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Container, Iterator, Sequence
 from concurrent.futures import Future
 from functools import cache, partial
+from pathlib import Path
 from typing import NamedTuple, Protocol
 
 import msgspec
@@ -29,7 +30,7 @@ from lacoc_server.simulate.software import software
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
-from lacoc_shared.record.summary import summary
+from lacoc_shared.record.summary import Summary, summary
 from lacoc_shared.words import Phrase, say
 
 LATE_TICKS = 7
@@ -237,7 +238,7 @@ def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
             file.write(record)
             file.flush()
             os.fsync(file.fileno())
-        if summary(path) is None:
+        if _ended(path) is None:
             part.replace(path)
     except OSError as error:
         why = error.strerror or str(error)
@@ -246,13 +247,19 @@ def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
         part.unlink(missing_ok=True)
 
 
+def _ended(path: Path) -> Summary | None:
+    """Return what the record of a game says; None: there is none with a result."""
+    found = summary(path)
+    return found if found is not None and found.scores else None
+
+
 def _result(
     game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]
 ) -> Played | Replaced | None:
     """Return what the record of a game says; None: there is no record of it."""
     path = packed_path(folder.records, game.job.match_id)
-    found = summary(path)
-    if found is None or not found.scores:
+    found = _ended(path)
+    if found is None:
         return None
     pairing, number = game.name
     voids = sum(fact.outcome == "void" for fact in _tries(game.match, facts))
