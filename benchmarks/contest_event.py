@@ -250,11 +250,9 @@ class Event:
 
 
 def _is_over(file: Path) -> bool:
-    """Return whether each match of each stage is decided."""
+    """Return whether all stages are played to their end."""
     sheet = organiser.sheet(file)
-    decided = (match.state in ("decided", "off") for one in sheet.stages for match in one.matches)
-    drawn = bool(sheet.stages) and not any(one.rounds_to_draw for one in sheet.stages)
-    return drawn and not sheet.planned and all(decided)
+    return bool(sheet.stages) and not sheet.planned and all(view.over for view in sheet.stages)
 
 
 def _lacoc(folder: Path, *words: str) -> str:

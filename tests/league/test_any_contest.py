@@ -118,6 +118,7 @@ def test_any_contest(
 
 
 @pytest.mark.long
+# A sequential stage has many more matches; the shorter tests have it.
 @pytest.mark.parametrize("how", [name for name in FORMAT_NAMES if name != "sequential"])
 @settings(max_examples=40, deadline=None)
 @given(

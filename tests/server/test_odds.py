@@ -23,6 +23,7 @@ from lacoc_server.simulate.forks.kept import read_odds, write_odds
 from lacoc_server.simulate.forks.odds import Moment
 from lacoc_server.simulate.forks.origin import read_source
 from lacoc_shared.record.files import odds_path
+from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase
 
 MARGINS = st.lists(st.integers(-36, 36), min_size=1, max_size=12)
@@ -70,6 +71,16 @@ def test_swings() -> None:
     assert [*odds.highlights(found, 2)] == [first, second]
     assert odds.highlights(found, least=0.4) == [first]
     assert odds.swings(found[:1]) == []
+
+
+def test_five_seconds_are_near() -> None:
+    """Moments five seconds apart share their forks, wherever they are in the match."""
+    for beat in range(0, 4000, 7):
+        pair = [
+            Moment(beat=at, clock_s=at * BEAT_S, margins=(margin,), chance=0.0, key="k")
+            for at, margin in ((beat, 1.0), (beat + round(odds.NEAR_S / BEAT_S), -1.0))
+        ]
+        assert [one.chance for one in odds.pooled(pair)] == [0.5, 0.5]
 
 
 def test_neighbours_share_their_forks() -> None:

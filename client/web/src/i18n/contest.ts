@@ -51,7 +51,7 @@ export const contest = {
     "Rounds still to be drawn: {count}.",
     "組み合わせが未定のラウンド：{count}",
   ],
-  "contest.roundsAtMost": [
+  "contest.roundsLeft.sequential": [
     "At most {count} more rounds, until the first places are decided.",
     "上位が決まるまで、あと最大 {count} ラウンド。",
   ],

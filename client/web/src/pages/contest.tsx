@@ -20,7 +20,7 @@ import { addressed } from "./contest/parts";
 import { Schedule } from "./contest/schedule";
 import { Tables, Ties } from "./contest/standings";
 import { TeamDialog, Teams } from "./contest/teams";
-import { format, stageTitle } from "./contest/words";
+import { format, roundsLeft, stageTitle } from "./contest/words";
 import "./contest/contest.css";
 
 const feed = new Feed();
@@ -92,13 +92,7 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
       )}
       <Tables view={view} />
       <Ties view={view} />
-      {view.rounds_to_draw > 0 && (
-        <p class="muted">
-          {t(view.plan.format === "sequential" ? "contest.roundsAtMost" : "contest.roundsLeft", {
-            count: view.rounds_to_draw,
-          })}
-        </p>
-      )}
+      {view.rounds_to_draw > 0 && <p class="muted">{roundsLeft(view)}</p>}
       <Schedule sheet={sheet} view={view} />
     </section>
   );

@@ -20,7 +20,7 @@ from lacoc_server.contest.headless.pool import Ended, Job, ended, first_done
 from lacoc_server.contest.kept.entries import Entry
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.contest import Contest, Newest, StageView, compute
+from lacoc_server.contest.league.contest import Contest, Newest, StageView
 from lacoc_server.contest.league.facts import AnyFact, Outcome, Played, Replaced, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
@@ -100,7 +100,7 @@ def play(
         contest = newest.of(facts)
         changed(contest)
         if due(contest, FORMATS) is not None:
-            store.decide(_due)
+            store.decide(partial(_due, newest))
             continue
         known: list[Played | Replaced] = []
         busy = {game.name for game in playing.values()} | {*failed}
@@ -147,8 +147,8 @@ def _still_due(
     yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)
 
 
-def _due(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
-    if (draw := due(compute(facts, FORMATS), FORMATS)) is not None:
+def _due(newest: Newest, facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+    if (draw := due(newest.of(facts), FORMATS)) is not None:
         yield draw
 
 

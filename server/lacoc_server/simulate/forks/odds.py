@@ -19,6 +19,7 @@ PRIOR_WEIGHT = 2
 """Number of forks that weigh as much as this assumption."""
 NEAR_S = 5.0
 """Neighbouring moments that are at most this far apart on the clock share their forks [s]."""
+_SPARE_S = 0.001  # differences of times are not exact
 _SLOW = 0.1
 """Where less than this part of a swing happens in a stretch at its end, the swing ends before."""
 
@@ -75,12 +76,13 @@ def pooled(moments: Iterable[Moment]) -> tuple[Moment, ...]:
         moments: moments of a match, with the forks of each.
     """
     ordered = sorted(moments, key=lambda moment: moment.beat)
+    near_s = NEAR_S + _SPARE_S
 
     def of(index: int, moment: Moment) -> Moment:
         if not moment.key:
             return moment
         neighbours = ordered[max(0, index - 1) : index + 2]
-        near = [one for one in neighbours if abs(one.clock_s - moment.clock_s) <= NEAR_S]
+        near = [one for one in neighbours if abs(one.clock_s - moment.clock_s) <= near_s]
         found = chance([margin for one in near if one.key for margin in one.margins])
         return msgspec.structs.replace(moment, chance=found)
 

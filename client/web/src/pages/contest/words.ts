@@ -21,6 +21,12 @@ export function format(name: string, games = 1): string {
   return games > 1 ? t("contest.bestOf", { format: words, games }) : words;
 }
 
+/** How many rounds are still to be drawn; a format may have its own words for that. */
+export function roundsLeft({ plan, rounds_to_draw: count }: StageView): string {
+  const own = `contest.roundsLeft.${plan.format}`;
+  return t(own in catalogue ? (own as MessageName) : "contest.roundsLeft", { count });
+}
+
 /** A stage as a title; its name is the organiser's own. */
 export function stageTitle(name: string): string {
   return name.charAt(0).toUpperCase() + name.slice(1);

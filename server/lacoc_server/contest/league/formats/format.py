@@ -8,7 +8,7 @@ import msgspec
 from lacoc_server.contest.league.facts import Settings
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.pairing import Bye, Entry, Pairing
-from lacoc_server.contest.league.standings import Table
+from lacoc_server.contest.league.standings import Table, counted, standings
 
 Pair = tuple[str, ...]
 """The left team and the right team of a pairing that is drawn; a team alone has a bye."""
@@ -27,6 +27,10 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
     def id(self, section: str, round_number: int, number: int) -> str:
         """Return the id of a pairing of the stage."""
         return f"{self.name}:{section}{round_number}.{number}"
+
+    def order(self, usual: tuple[str, ...]) -> tuple[str, ...]:
+        """Return the codes that rank the teams: those of the plan, else the usual ones."""
+        return ("points", *self.settings.tie_breaks) if self.settings.tie_breaks else usual
 
 
 class Format(Protocol):
@@ -66,16 +70,20 @@ class Format(Protocol):
         """
 
 
-class DrawnAtOnce:
+class _AllRounds:
+    """A method of those formats in which all rounds are played."""
+
+    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+        """Return False: all rounds are played."""
+        return False
+
+
+class DrawnAtOnce(_AllRounds):
     """Methods of those formats whose draw fixes all rounds at once."""
 
     def rounds(self, stage: Stage) -> int:
         """Return 0: no round is drawn later."""
         return 0
-
-    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
-        """Return False: all rounds are played."""
-        return False
 
     def next_round(
         self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
@@ -84,8 +92,11 @@ class DrawnAtOnce:
         return ()
 
 
-class DrawnByRound:
-    """Methods of those formats whose rounds are drawn one by one."""
+class DrawnByRound(_AllRounds):
+    """Methods of those formats whose rounds are drawn one by one, in a single table."""
+
+    order: tuple[str, ...]
+    """Codes of the tie-breaks, unless the plan has others."""
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
         """Return the pairings of the rounds that are drawn."""
@@ -100,6 +111,9 @@ class DrawnByRound:
             for order, pair in enumerate(pairs, 1)
         )
 
-    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
-        """Return False: all rounds are played."""
-        return False
+    def tables(
+        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+    ) -> tuple[Table, ...]:
+        """Rank the teams."""
+        found = counted(matches.values())
+        return (standings(stage.entries, found, stage.order(self.order), last),)

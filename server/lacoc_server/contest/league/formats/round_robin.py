@@ -39,7 +39,7 @@ class RoundRobin(DrawnAtOnce):
             standings(
                 teams,
                 counted(match for match in matches.values() if match.pairing.section == section),
-                ("points", *stage.settings.tie_breaks) if stage.settings.tie_breaks else ORDER,
+                stage.order(ORDER),
                 last,
                 section,
             )

@@ -13,7 +13,6 @@ from statistics import NormalDist, fmean, pvariance
 from lacoc_server.contest.league.formats.format import DrawnByRound, Pair, Stage
 from lacoc_server.contest.league.formats.round_robin import ORDER, circle_round
 from lacoc_server.contest.league.matches import Game, Match
-from lacoc_server.contest.league.standings import Table, counted, standings
 
 _LAPS = 10
 """Most laps, unless the plan has a number of rounds."""
@@ -24,6 +23,7 @@ class Sequential(DrawnByRound):
 
     decisive = False
     balanced = False
+    order = ORDER
 
     def rounds(self, stage: Stage) -> int:
         """Return the most rounds."""
@@ -55,13 +55,6 @@ class Sequential(DrawnByRound):
             for left, right in circle_round(len(teams), len(stage.drawn))
         ]
         return tuple(pair for pair in pairs if not {*pair} & {*gone})
-
-    def tables(
-        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
-    ) -> tuple[Table, ...]:
-        """Rank the teams."""
-        order = ("points", *stage.settings.tie_breaks) if stage.settings.tie_breaks else ORDER
-        return (standings(stage.entries, counted(matches.values()), order, last),)
 
 
 def lead(games: Iterable[Game], one: str, other: str) -> float:

@@ -16,7 +16,7 @@ from caissify_pairings.engines.dutch import DutchEngine
 
 from lacoc_server.contest.league.formats.format import DrawnByRound, Pair, Stage
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.standings import DRAW, WIN, Table, counted, standings
+from lacoc_server.contest.league.standings import DRAW, WIN, counted
 
 # The engine warns when it must break a rule; then the matching takes over, and nothing is wrong.
 logging.getLogger("caissify_pairings").setLevel(logging.CRITICAL)
@@ -53,6 +53,7 @@ class Swiss(DrawnByRound):
 
     decisive = False
     balanced = False
+    order = ORDER
 
     def rounds(self, stage: Stage) -> int:
         """Return the number of rounds: as many as a knockout has, unless the plan says more."""
@@ -67,13 +68,6 @@ class Swiss(DrawnByRound):
             (pair[0].team,) if len(pair) == 1 else seated(pair[0], pair[1])
             for pair in paired(players, len(stage.drawn) + 1)
         )
-
-    def tables(
-        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
-    ) -> tuple[Table, ...]:
-        """Rank the teams."""
-        order = ("points", *stage.settings.tie_breaks) if stage.settings.tie_breaks else ORDER
-        return (standings(stage.entries, counted(matches.values()), order, last),)
 
 
 def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
