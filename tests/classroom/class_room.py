@@ -9,6 +9,7 @@ from typing import Any
 
 from lacoc_process import Lacoc
 from page_connection import PageConnection
+from waiting import LIMIT_S
 
 from lacoc_client.gateway.wire import Kind
 
@@ -49,7 +50,7 @@ class ClassRoom:
 
     def close(self) -> None:
         self.process.terminate()
-        self.process.communicate(timeout=60)
+        self.process.communicate(timeout=LIMIT_S)
 
 
 class StudentPage(PageConnection):

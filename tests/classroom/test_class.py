@@ -17,6 +17,7 @@ import pytest
 from class_room import ClassRoom, StudentPage, TeacherPage, until_kept
 from lacoc_process import run_lacoc
 from page_connection import Refused
+from waiting import LIMIT_S
 
 from lacoc_client.gateway.wire import Kind
 from lacoc_robots.library import find_robot
@@ -300,7 +301,7 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     children = psutil.Process(room.process.pid).children(recursive=True)
     os.kill(room.process.pid, signal.SIGKILL)
     room.process.communicate()
-    _, left = psutil.wait_procs(children, timeout=60)
+    _, left = psutil.wait_procs(children, LIMIT_S)
     assert left == []  # the studio has ended with it
 
     again = ClassRoom(tmp_path, room.listen)

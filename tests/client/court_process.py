@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from lacoc_process import Lacoc
+from waiting import LIMIT_S
 
 
 def environment(**changes: str) -> dict[str, str]:
@@ -66,7 +67,7 @@ class CourtProcess:
         for process in (*self._commands, self.process):
             process.terminate()
         for process in (*self._commands, self.process):
-            process.communicate(timeout=30)
+            process.communicate(timeout=LIMIT_S)
 
 
 OpenCourt = Callable[..., CourtProcess]

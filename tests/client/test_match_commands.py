@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 from court_process import CourtProcess, OpenCourt
+from waiting import LIMIT_S
 
 from lacoc_client.asking import NoAnswer
 from lacoc_client.commands.referee import _default_name, _show_reply
@@ -202,7 +203,7 @@ def test_bots_play_match_after_match(
     referee = Referee(court, capsys)
     referee.decide("start")
     referee.decide("official")
-    out, _ = watch.communicate(timeout=30)
+    out, _ = watch.communicate(timeout=LIMIT_S)
     lines = [json.loads(line) for line in out.splitlines()]
     events = [line for line in lines if line["type"] == "event"]
     frames = [line for line in lines if line["type"] == "frame"]
@@ -217,7 +218,7 @@ def test_bots_play_match_after_match(
     assert len(frames[-1]["markers"]) == 36
     played = [frame for frame in frames if frame["phase"] == "PLAYING"]
     assert played[-1]["poses"]["left"]["x_m"] > played[0]["poses"]["left"]["x_m"] + 0.1
-    shown, _ = text.communicate(timeout=30)
+    shown, _ = text.communicate(timeout=LIMIT_S)
     assert "Referee kim: the result is official" in shown.splitlines()[-3]
     assert "OFFICIAL" in shown.splitlines()[-1]
 
@@ -257,7 +258,7 @@ def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
     assert first.stdout is not None
     assert "holds the left seat" in first.stdout.readline()
     court.start("bot", "straight", *court.where("left"), stdout=subprocess.DEVNULL)
-    out, _ = first.communicate(timeout=30)
+    out, _ = first.communicate(timeout=LIMIT_S)
 
     assert first.returncode == 2
     assert "The seat is lost: another window or computer has taken it over." in out
@@ -288,7 +289,7 @@ def test_a_bot_leaves_when_it_is_asked_to_end(
     assert bot.stdout is not None
     assert "holds the left seat" in bot.stdout.readline()
     bot.terminate()
-    bot.communicate(timeout=60)
+    bot.communicate(timeout=LIMIT_S)
 
     assert bot.returncode == 0
     _, out, _ = Referee(court, capsys).run("log", "--json")

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import pytest
 from court_process import OpenCourt
 from prometheus_client.parser import text_string_to_metric_families
+from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
 from lacoc_shared.command import cli
@@ -18,12 +19,10 @@ from lacoc_shared.network.session import open_client
 
 pytestmark = pytest.mark.slow
 
-WAIT_S = 30.0
-
 
 def scrape(url: str) -> dict[tuple[str, ...], float]:
     """Read the metrics; return each sample by its name and the values of its labels."""
-    with urllib.request.urlopen(url, timeout=60) as reply:
+    with urllib.request.urlopen(url, timeout=LIMIT_S) as reply:
         text = reply.read().decode()
     return {
         (sample.name, *sample.labels.values()): sample.value
@@ -33,7 +32,7 @@ def scrape(url: str) -> dict[tuple[str, ...], float]:
 
 
 def until(true: Callable[[], bool]) -> None:
-    end_s = time.monotonic() + WAIT_S
+    end_s = time.monotonic() + LIMIT_S
     while not true():
         assert time.monotonic() < end_s, "it did not come true"
 
@@ -67,7 +66,7 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
     assert second["lacoc_slow_beats_total", "main"] >= 0
     assert second["lacoc_replay_advised", "main"] == 0
     court.process.terminate()
-    out, _ = court.process.communicate(timeout=WAIT_S)
+    out, _ = court.process.communicate(timeout=LIMIT_S)
     lines = [json.loads(line) for line in out.splitlines()]
     assert all({"timestamp", "level", "court", "kind", "text"} <= line.keys() for line in lines)
     assert {line["match_id"] for line in lines} == {match_id}

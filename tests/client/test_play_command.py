@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from court_process import CourtProcess, OpenCourt, environment
 from lacoc_process import COMMAND, run_lacoc
+from waiting import LIMIT_S
 
 from lacoc_robots.library import sample_gait_files
 
@@ -18,7 +19,6 @@ pexpect: Any = pytest.importorskip("pexpect")
 
 pytestmark = pytest.mark.slow
 
-TIMEOUT_S = 30
 SHOW_CURSOR = "\x1b[?25h"
 
 
@@ -29,7 +29,7 @@ class Terminal:
         self.child = pexpect.spawn(
             *(COMMAND[0], [*COMMAND[1:], *words]),
             cwd=str(folder),
-            timeout=TIMEOUT_S,
+            timeout=LIMIT_S,
             dimensions=(30, 110),
             encoding="utf-8",
             codec_errors="replace",  # a kill can cut a character in two
@@ -79,7 +79,7 @@ def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProces
     terminal.press("r")
     terminal.sees("Ants is ready.", "READY")
     words = ("--token", court.referee, "--wait", "20", *court.where())
-    assert court.start("referee", "start", *words).wait(TIMEOUT_S) == 0
+    assert court.start("referee", "start", *words).wait(LIMIT_S) == 0
     terminal.sees("PLAYING")
     yield court, terminal
     terminal.kill()

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from typing import Any
 
 import msgpack
+from waiting import LIMIT_S
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from lacoc_client.gateway.wire import Kind
 
-TIMEOUT_S = 60.0
 _OF_COURTS = (Kind.FRAME, Kind.EVENT, Kind.SHEET, Kind.SCENE, Kind.HEALTH)
 """Kinds of messages that a gateway passes on from a court; the connection does not keep them."""
 
@@ -73,16 +73,16 @@ class PageConnection:
 
     def until(self, condition: Callable[[], Any]) -> None:
         """Take in messages until a condition is true."""
-        deadline_s = time.monotonic() + TIMEOUT_S
+        deadline_s = time.monotonic() + LIMIT_S
         while not condition():
             assert time.monotonic() < deadline_s, "it did not become true"
-            self._take(self.socket.recv(TIMEOUT_S))
+            self._take(self.socket.recv(LIMIT_S))
 
     def code(self) -> int | None:
         """Wait until the gateway closes the connection; return its close code."""
         try:
             while True:
-                self._take(self.socket.recv(TIMEOUT_S))
+                self._take(self.socket.recv(LIMIT_S))
         except ConnectionClosed:
             return self.socket.protocol.close_code
 

@@ -3,8 +3,13 @@
 import time
 from collections.abc import Callable
 
+LIMIT_S = 240.0
+"""Longer than anything takes on a busy machine, unless it hangs [s]."""
+LIMIT_MS = 1000 * LIMIT_S
+"""The same for pages [ms]."""
 
-def until(true: Callable[[], object], timeout_s: float = 60.0) -> None:
+
+def until(true: Callable[[], object], timeout_s: float = LIMIT_S) -> None:
     """Wait until a condition is true; fail after `timeout_s`."""
     end_s = time.monotonic() + timeout_s
     while not true():

@@ -12,7 +12,7 @@ import psutil
 import pytest
 from lacoc_process import started
 from ports import free_port
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
@@ -53,7 +53,7 @@ def start(stack: ExitStack, *words: str) -> "subprocess.Popen[Any]":
 
     def end() -> None:
         process.terminate()
-        process.communicate(timeout=60)
+        process.communicate(timeout=LIMIT_S)
 
     stack.callback(end)
     return process
@@ -138,5 +138,5 @@ def beats(folder: Path, but: str) -> int:
 def run(folder: Path) -> "subprocess.CompletedProcess[str]":
     """Verify a published folder."""
     process = started("contest", "verify", str(folder), stdout=subprocess.PIPE, text=True)
-    out, _ = process.communicate(timeout=240)
+    out, _ = process.communicate(timeout=LIMIT_S)
     return subprocess.CompletedProcess((), process.returncode, out)

@@ -11,7 +11,7 @@ import pytest
 from benchmarks import contest_played
 from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, Here
 from lacoc_process import Lacoc
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest.headless.play import play
@@ -93,7 +93,7 @@ def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: i
     run = Lacoc(*words, cwd=file.parent)
     until(lambda: [*records.glob("*.mcap")])
     os.kill(run.pid, how)
-    run.wait(60)
+    run.wait(LIMIT_S)
     there = {path.name: path.stat().st_mtime_ns for path in records.glob("*.mcap")}
     assert 0 < len(there) < games(played)
     assert contest_played.play(file) == games(played) - len(there)

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from waiting import LIMIT_S
 
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Closed, Entered, Withdrawn, new
@@ -45,8 +46,8 @@ def test_two_programs_append_and_one_is_killed(tmp_path: Path) -> None:
     assert second.stdout is not None
     seen = [int(second.stdout.readline()) for _ in range(30)]
     second.send_signal(signal.SIGKILL)
-    assert first.wait(60) == 0
-    second.wait(60)
+    assert first.wait(LIMIT_S) == 0
+    second.wait(LIMIT_S)
     with FactStore(path) as store:
         store.append(new(Closed))
         facts = store.facts()

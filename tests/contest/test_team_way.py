@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 from lacoc_process import run_lacoc, started
 from ports import free_port
+from waiting import LIMIT_S
 
 from lacoc_server.contest.organiser import enter
 
 TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
 PEOPLE = TEAMS[:2]
 """Teams that play with `lacoc play` in a terminal; the others are bots."""
-WAIT_S = 120.0
 
 
 def write_contest(folder: Path) -> Path:
@@ -77,8 +77,8 @@ def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
             )
         )
     try:
-        told = [player.communicate(timeout=WAIT_S)[0] for player in players]
-        end = json.loads(run.communicate(timeout=WAIT_S)[0].splitlines()[-1])
+        told = [player.communicate(timeout=LIMIT_S)[0] for player in players]
+        end = json.loads(run.communicate(timeout=LIMIT_S)[0].splitlines()[-1])
     finally:
         for process in (*players, run):
             process.kill()

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from lacoc_process import Lacoc, run_lacoc
 from page_connection import PageConnection
 from ports import free_port
+from waiting import LIMIT_S
 
 from lacoc_client.design import requests
 from lacoc_client.gateway.wire import Kind, Unreadable
@@ -46,7 +47,7 @@ class Gateway:
 
     def close(self) -> None:
         self.process.terminate()
-        self.process.communicate(timeout=30)
+        self.process.communicate(timeout=LIMIT_S)
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import psutil
 import pytest
 from design_client import DesignClient
 from test_design_page import Gateway, sample
+from waiting import LIMIT_S
 
 from lacoc_client.design.designer import EVIDENCE_FILE
 from lacoc_client.phases.evidence import (
@@ -110,8 +111,8 @@ def test_two_phases_are_done_and_survive_a_kill(
     os.kill(gateway.process.pid, signal.SIGKILL)
     for child in children:  # the studio and its processes go on without the gateway
         child.kill()
-    gateway.process.communicate(timeout=30)
-    psutil.wait_procs(children, timeout=30)
+    gateway.process.communicate(timeout=LIMIT_S)
+    psutil.wait_procs(children, LIMIT_S)
     _, again = starts()
     assert states(again)[:3] == ["met", "met", "open"]
     assert again.phases["phase"] == before["phase"] == 3

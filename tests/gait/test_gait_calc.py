@@ -12,6 +12,7 @@ from pathlib import Path
 
 import openpyxl
 import pytest
+from waiting import LIMIT_S
 
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.gait.workbook import INPUT_SHEET, read_gait_file, write_workbook
@@ -82,7 +83,7 @@ def test_calc_shows_the_values_of_our_workbook(tmp_path, workshop, legs):
         ],
         check=True,
         capture_output=True,
-        timeout=120,
+        timeout=LIMIT_S,
     )
     for sheet in ("EX (input)", "Loco-data"):
         ours = tmp_path / f"ours-{sheet}.csv"

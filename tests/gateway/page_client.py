@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 import msgpack
 import msgspec
 import pytest
+from waiting import LIMIT_S
 from websockets.client import ClientProtocol
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import Opcode
@@ -24,8 +25,6 @@ from lacoc_shared.codec import decode
 from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, render
-
-TIMEOUT_S = 45.0
 
 
 class Refused(Exception):
@@ -106,7 +105,7 @@ class PageClient:
         """Return whether a request still waits for its reply; call this only before `reply`."""
         return number not in self._replies
 
-    def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
+    def wait(self, condition: Callable[[], Any], timeout_s: float = LIMIT_S) -> None:
         """Wait until a condition is true."""
         with self._changed:
             assert self._changed.wait_for(condition, timeout_s), "it did not become true"
@@ -209,7 +208,7 @@ class SleepyPage:
     def read_until(self, beat: int) -> list[int]:
         """Read frames up to a beat, and return the beats of all frames in order of arrival."""
         beats: list[int] = []
-        deadline_s = time.monotonic() + TIMEOUT_S
+        deadline_s = time.monotonic() + LIMIT_S
         while not beats or beats[-1] < beat:
             assert time.monotonic() < deadline_s
             self._protocol.receive_data(self._socket.recv(65_536))

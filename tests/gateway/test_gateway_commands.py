@@ -12,6 +12,7 @@ import pytest
 from court_process import CourtProcess, environment
 from lacoc_process import Lacoc, run_lacoc
 from page_client import PageClient
+from waiting import LIMIT_S
 
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_robots.library import sample_gait_files
@@ -49,7 +50,7 @@ class Command:
 
     def ended(self) -> int:
         self.process.send_signal(signal.SIGINT)
-        out, _ = self.process.communicate(timeout=30)
+        out, _ = self.process.communicate(timeout=LIMIT_S)
         self.said += out
         return self.process.returncode
 
@@ -136,7 +137,7 @@ def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
         assert not file.parent.name.startswith(".")
     finally:
         play.send_signal(signal.SIGINT)
-        play.communicate(timeout=30)
+        play.communicate(timeout=LIMIT_S)
     assert play.returncode == 0
     assert not file.parent.exists()
 
@@ -145,7 +146,7 @@ def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
     """If the file with the page key can't be written, the browser gets an address with the key."""
     play, key, opened = browse(tmp_path, tmp_path / "nowhere")
     play.send_signal(signal.SIGINT)
-    play.communicate(timeout=30)
+    play.communicate(timeout=LIMIT_S)
     assert opened.endswith(f"/play#key={key}")
     assert play.returncode == 0
 

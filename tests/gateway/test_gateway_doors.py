@@ -12,8 +12,9 @@ from typing import Any
 
 import msgpack
 import pytest
-from page_client import TIMEOUT_S, PageClient, Refused, refusal
+from page_client import PageClient, Refused, refusal
 from venue import REFEREE, TOKENS, Venue
+from waiting import LIMIT_S
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -39,7 +40,7 @@ ACTS: list[tuple[str, dict[str, Any]]] = [
 
 def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPMessage, bytes]:
     """Fetch a path exactly as written, dots included; return status, headers and body."""
-    connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=LIMIT_S)
     try:
         connection.putrequest("GET", path, skip_host="Host" in headers)
         for name, value in headers.items():
@@ -313,7 +314,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
     third.wait(third.closed.is_set)
     assert third.code() == TRY_LATER
     second.close()
-    deadline_s = time.monotonic() + TIMEOUT_S
+    deadline_s = time.monotonic() + LIMIT_S
     while True:
         fourth = venue.page(watch=False)
         try:

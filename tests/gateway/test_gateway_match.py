@@ -9,6 +9,7 @@ import pytest
 from court_stub import CourtStub
 from page_client import PageClient, Refused, SleepyPage, refusal, x_of
 from venue import TOKENS, Venue
+from waiting import LIMIT_S
 
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared.codec import encode
@@ -60,7 +61,7 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     assert [seat.team for seat in late.sheet.seats] == ["Ants", "Bees"]
     assert late.welcome["can_act"] is False
 
-    with urlopen(f"{venue.url}/courts.json", timeout=20) as answer:
+    with urlopen(f"{venue.url}/courts.json", timeout=LIMIT_S) as answer:
         (score,) = json.load(answer)
     assert (score["court"], score["call"], len(score["scores"])) == ("main", "", 2)
     assert score["phase"] in (Phase.PLAYING, Phase.FINISHED)
@@ -301,7 +302,7 @@ def test_a_gateway_ends_cleanly(venue: Venue) -> None:
     web = venue.web()
     page = venue.contestant("left")
     web.signal(signal.SIGINT)
-    assert web.process.wait(15) == 0
+    assert web.process.wait(LIMIT_S) == 0
     page.wait(page.closed.is_set)
     assert (venue.folder / "web.log").read_text().count("Traceback") == 0
 

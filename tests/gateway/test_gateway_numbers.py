@@ -7,12 +7,13 @@ import pytest
 from page_client import Refused, refusal
 from prometheus_client.parser import text_string_to_metric_families
 from venue import REFEREE, TOKENS, Venue
+from waiting import LIMIT_S
 
 pytestmark = pytest.mark.slow
 
 
 def scrape(url: str) -> dict[str, float]:
-    with urllib.request.urlopen(url, timeout=60) as reply:
+    with urllib.request.urlopen(url, timeout=LIMIT_S) as reply:
         text = reply.read().decode()
     return {
         sample.name.removeprefix("lacoc_gateway_"): sample.value
@@ -46,7 +47,7 @@ def test_a_scrape_and_the_log_of_a_gateway(venue: Venue) -> None:
     assert (after["viewers"], after["connected"]) == (2, 0)
     assert after["frames_sent_total"] >= found["frames_sent_total"]
     web.process.terminate()
-    out, _ = web.process.communicate(timeout=30)
+    out, _ = web.process.communicate(timeout=LIMIT_S)
     lines = [json.loads(line) for line in out.splitlines()]
     told = {line["text"]: line for line in lines}
     assert told["Court main sends frames."]["connected"] is True

@@ -11,6 +11,7 @@ from lacoc_process import Lacoc
 from mcap.reader import make_reader
 from page_client import PageClient, refusal
 from venue import REFEREE, TOKENS, Venue
+from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.wire import Kind
@@ -151,16 +152,16 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     seen = {"titles": titles(keyed.folder)}
     for decision in ("halt", "declare left --reason end", "official"):
         by_hand = keyed.start("referee", *decision.split(), keyed.invitation("referee"))
-        seen[decision] = by_hand.communicate(timeout=60)[0]
+        seen[decision] = by_hand.communicate(timeout=LIMIT_S)[0]
         assert by_hand.returncode == 0, seen[decision]
-    seen["watch"] = watch.communicate(timeout=60)[0]
-    seen["refused"] = refused.communicate(timeout=60)[0]
+    seen["watch"] = watch.communicate(timeout=LIMIT_S)[0]
+    seen["refused"] = refused.communicate(timeout=LIMIT_S)[0]
     for what, box in boxes.items():
         seen[what] = b"".join(mail.payload for mail in iter(box.take, None))
     seen["scene"] = watching.ask(KEYS.scene)
     seen["pages"] = b"".join(one.heard for one in keyed.pages)
     bot.terminate()
-    seen["bot"] = bot.communicate(timeout=60)[0]
+    seen["bot"] = bot.communicate(timeout=LIMIT_S)[0]
     court.close()
     web.close()
     seen |= {"court": court.said.encode(), "web": web.said.encode()}

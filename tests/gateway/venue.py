@@ -11,6 +11,7 @@ from court_process import environment
 from lacoc_process import Lacoc
 from page_client import PageClient
 from ports import free_port
+from waiting import LIMIT_S
 
 TOKENS = {"left": "l" * 26, "right": "r" * 26}
 REFEREE = "w" * 26
@@ -38,7 +39,7 @@ class Process:
     def kill(self) -> None:
         """Kill the process, as a power cut does."""
         self.process.kill()
-        self.process.wait(20)
+        self.process.wait(LIMIT_S)
 
     def signal(self, number: signal.Signals) -> None:
         os.kill(self.process.pid, number)
@@ -49,7 +50,7 @@ class Process:
             self.process.send_signal(signal.SIGCONT)
             self.process.terminate()
         if not self.process.stdout.closed:
-            self.said += self.process.communicate(timeout=30)[0]
+            self.said += self.process.communicate(timeout=LIMIT_S)[0]
 
 
 class Venue:

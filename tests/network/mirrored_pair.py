@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lacoc_process import Lacoc
 from slow_link import SlowLink
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
@@ -29,7 +29,6 @@ SEATS = ("left", "right")
 FAST, SLOW = SEATS
 EVERY_BEATS = 17
 """Beats from one key to the next; no multiple of the 5 beats between repeats of a command."""
-_WAIT_S = 60.0
 _TOKENS = {who: f"the token of {who}" for who in (*SEATS, "the referee")}
 _CONTEST = """
 [court.main]
@@ -71,7 +70,7 @@ class _Player(threading.Thread):
     def __init__(self, seat: str, address: str, stopping: threading.Event) -> None:
         super().__init__(name=seat)
         self._stopping = stopping
-        self._session = open_client([address], timeout_s=_WAIT_S)
+        self._session = open_client([address], timeout_s=LIMIT_S)
         self.controller = Controller(self._session, COURT, seat, _TOKENS[seat], seat.title())
         # A mailbox of its own, because a controller keeps only the newest frame.
         self._frames = self._session.mailbox(Keys(COURT).frame, 1000)

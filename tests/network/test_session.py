@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 
 import pytest
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES
 from lacoc_shared.mistakes import UserError
@@ -142,7 +142,7 @@ def test_refusals_carry_their_payload(router: Session) -> None:
             time.sleep(0.001)
         assert (request.key, request.payload) == ("lacoc/main/referee/start", b"please")
         request.refuse(b"no")
-        out, _ = process.communicate(timeout=60)
+        out, _ = process.communicate(timeout=LIMIT_S)
     assert out == "b'no'\n"
     assert issubclass(Refused, Exception)
 
@@ -223,6 +223,6 @@ def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -
         while process.poll() is None:
             frames.put(b"frame")
             time.sleep(0.001)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=LIMIT_S)
     assert process.returncode == {"pass": 0, "sys.exit(3)": 3}.get(end, 1), errors
     assert ("oops" in errors) == ("oops" in end)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from slow_link import SlowLink
+from waiting import LIMIT_S
 
 
 @pytest.fixture
@@ -40,7 +41,7 @@ def send_back(connection: socket.socket) -> None:
 
 def connect(link: SlowLink) -> socket.socket:
     host, _, port = link.address.removeprefix("tcp/").rpartition(":")
-    return socket.create_connection((host, int(port)), timeout=60)
+    return socket.create_connection((host, int(port)), timeout=LIMIT_S)
 
 
 def round_trip_s(client: socket.socket, packet: bytes = b"x") -> float:

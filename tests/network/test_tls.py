@@ -17,7 +17,7 @@ import msgspec
 import pytest
 from court_stub import CourtStub
 from keyed import KeyedCourt, keyed_file
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_client.controller import Controller, Hold
 from lacoc_server.doors.keys.certificates import LIFE, Authority, utc_now
@@ -172,7 +172,7 @@ def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> Non
         [sys.executable, "-c", code, str(invitation)],
         env=os.environ | {"RUST_LOG": "trace"},
         capture_output=True,
-        timeout=60,
+        timeout=LIMIT_S,
     )
     said = done.stdout + done.stderr
     assert done.returncode == 0, said

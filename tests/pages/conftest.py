@@ -14,8 +14,10 @@ from playwright.sync_api import (
     ConsoleMessage,
     Error,
     Page,
+    expect,
     sync_playwright,
 )
+from waiting import LIMIT_MS
 
 sys.path.append(str(Path(__file__).parent))
 sys.path.append(str(Path(__file__).parents[1] / "gateway"))
@@ -27,7 +29,7 @@ from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_
 from contestant import Contestant, Sit
 from venue import Venue
 
-WAIT_MS = 45_000
+expect.set_options(timeout=LIMIT_MS)
 
 
 @pytest.fixture(scope="session")
@@ -103,7 +105,7 @@ def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator
         options.setdefault("viewport", {"width": 800, "height": 450})
         options.setdefault("locale", "en-GB")
         context = browser.new_context(**options)
-        context.set_default_timeout(WAIT_MS)
+        context.set_default_timeout(LIMIT_MS)
         if slow_screen:
             context.add_init_script(SLOW_SCREEN)
         contexts.append(context)

@@ -13,10 +13,9 @@ from chromium import OpenPage
 from court_process import environment
 from lacoc_process import Lacoc
 from playwright.sync_api import Locator, Page, expect
+from waiting import LIMIT_S
 
 from lacoc_shared.seat import Phase
-
-TIMEOUT_MS = 90_000
 
 
 class Contestant:
@@ -32,7 +31,6 @@ class Contestant:
         settings: dict[str, Any] = {"viewport": {"width": 1000, "height": 700}}
         self.url = url
         self.page: Page = open_page(**settings | options)
-        self.page.set_default_timeout(TIMEOUT_MS)
 
     def open(self, path: str = "/play", key: str | None = None, query: str = "") -> None:
         """Go to a path of the gateway; with `key`, the page key, the page may act."""
@@ -45,13 +43,13 @@ class Contestant:
     def sees(self, selector: str, text: str | None = None) -> None:
         """Wait until an element is visible and contains the text."""
         found = self.find(selector).first
-        expect(found).to_be_visible(timeout=TIMEOUT_MS)
+        expect(found).to_be_visible()
         if text is not None:
-            expect(found).to_contain_text(text, timeout=TIMEOUT_MS)
+            expect(found).to_contain_text(text)
 
     def misses(self, selector: str) -> None:
         """Wait until no element matches the selector."""
-        expect(self.find(selector)).to_have_count(0, timeout=TIMEOUT_MS)
+        expect(self.find(selector)).to_have_count(0)
 
     def is_told(self, text: str) -> None:
         """Wait until the line that says what to do next contains the text."""
@@ -59,7 +57,7 @@ class Contestant:
 
     def is_toasted(self, text: str) -> None:
         """Wait for a toast (a short note) with the text."""
-        expect(self.find(".toast").filter(has_text=text).first).to_be_visible(timeout=TIMEOUT_MS)
+        expect(self.find(".toast").filter(has_text=text).first).to_be_visible()
 
     def stands(self, how: str) -> None:
         """Wait until the page is in the state `how`: seated, outside, lost, left or watching."""
@@ -83,7 +81,7 @@ class Contestant:
     def steer(self, digit: int) -> None:
         """Press a key until it takes effect: the first press may still be for the match before."""
         standing = self.find(f'.key[data-key="{digit}"][aria-pressed=true]')
-        end_s = time.monotonic() + TIMEOUT_MS / 1000
+        end_s = time.monotonic() + LIMIT_S
         while not standing.count():
             assert time.monotonic() < end_s, f"key {digit} has no effect"
             self.press(str(digit))
@@ -98,14 +96,14 @@ class Contestant:
 
         Playwright's `wait_for_function` does not work here: the pages' policy forbids it.
         """
-        end_s = time.monotonic() + TIMEOUT_MS / 1000
+        end_s = time.monotonic() + LIMIT_S
         while not self.page.evaluate(condition):
             assert time.monotonic() < end_s, condition
             self.page.wait_for_timeout(40)
 
     def download(self, act: Callable[[], None], folder: Path) -> tuple[str, str]:
         """Do something that downloads a file, and return the file's name and text."""
-        with self.page.expect_download(timeout=TIMEOUT_MS) as coming:
+        with self.page.expect_download() as coming:
             act()
         path = folder / "download"
         coming.value.save_as(path)
@@ -127,7 +125,7 @@ def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
         yield url, key
     finally:
         process.terminate()
-        process.communicate(timeout=30)
+        process.communicate(timeout=LIMIT_S)
 
 
 def start_own_page(folder: Path, *words: str) -> tuple[Lacoc, str, str]:

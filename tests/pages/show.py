@@ -7,11 +7,9 @@ from typing import Any
 from page_client import PageClient
 from playwright.sync_api import Locator, Page, expect
 from venue import Venue
+from waiting import LIMIT_S
 
 from lacoc_shared.seat import Phase
-
-WAIT_MS = 45_000
-"""The longest wait [ms], for a machine with two busy cores; a test goes on as soon as it can."""
 
 STALE = ".stale"
 
@@ -28,7 +26,6 @@ class Show:
 
     def __init__(self, page: Page, url: str, path: str, *, drawn: bool = True) -> None:
         self.page = page
-        page.set_default_timeout(WAIT_MS)
         page.goto(url + path)
         if drawn:
             self.until(lambda: self.view("drawnFrames") or 0, "no picture was drawn")
@@ -42,7 +39,7 @@ class Show:
 
         Playwright's `wait_for_function` does not work here: the pages' policy forbids it.
         """
-        end_s = time.monotonic() + WAIT_MS / 1000
+        end_s = time.monotonic() + LIMIT_S
         while not condition():
             assert time.monotonic() < end_s, otherwise
             self.page.wait_for_timeout(40)
@@ -52,18 +49,16 @@ class Show:
 
     def sees(self, selector: str, text: str = "") -> None:
         """Wait until an element is visible and contains the text."""
-        expect(self.find(selector).first).to_be_visible(timeout=WAIT_MS)
+        expect(self.find(selector).first).to_be_visible()
         if text:
-            expect(self.find(selector).first).to_contain_text(text, timeout=WAIT_MS)
+            expect(self.find(selector).first).to_contain_text(text)
 
     def misses(self, selector: str) -> None:
         """Wait until no element matches the selector."""
-        expect(self.find(selector)).to_have_count(0, timeout=WAIT_MS)
+        expect(self.find(selector)).to_have_count(0)
 
     def has_scores(self, *points: int) -> None:
-        expect(self.find(".score-bug .points")).to_have_text(
-            [str(one) for one in points], timeout=WAIT_MS
-        )
+        expect(self.find(".score-bug .points")).to_have_text([str(one) for one in points])
 
     def moves(self) -> None:
         """Wait until the picture shows another beat."""

@@ -19,7 +19,6 @@ from lacoc_robots.library import sample_gait_files
 
 pytestmark = pytest.mark.slow
 
-TIMEOUT_MS = 60_000
 SEQUENCES = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
 
 
@@ -41,7 +40,7 @@ class Desk(Contestant):
         return [str(one) for one in cards.evaluate_all("all => all.map(x => x.dataset.student)")]
 
     def comes_first(self, *students: str) -> None:
-        expect(self.find(".student b").first).to_have_text(students[0], timeout=TIMEOUT_MS)
+        expect(self.find(".student b").first).to_have_text(students[0])
         assert tuple(self.order()[: len(students)]) == students
 
     def focuses(self, selector: str) -> None:
@@ -96,7 +95,7 @@ def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
     desk.sees(".code b", room.code)
     desk.sees(".address b", room.listen)
     tries(ada)
-    expect(desk.find(f"{desk.card('Ada')} .speeds b")).not_to_have_text("–", timeout=TIMEOUT_MS)
+    expect(desk.find(f"{desk.card('Ada')} .speeds b")).not_to_have_text("–")
     assert desk.number(f"{desk.card('Ada')} .speeds b") > 30
     desk.sees(f"{desk.card('Ada')} svg.feet")
     before = desk.order()
@@ -144,8 +143,8 @@ def test_the_teacher_sets_rules_hands_out_and_takes_home(
         "input[type=file]",
         {"name": "Crab walk.txt", "mimeType": "text/plain", "buffer": postures.data},
     )
-    expect(desk.find(".handout input")).to_have_value("Crab walk", timeout=TIMEOUT_MS)
-    expect(desk.find(".handout input")).to_be_focused(timeout=TIMEOUT_MS)
+    expect(desk.find(".handout input")).to_have_value("Crab walk")
+    expect(desk.find(".handout input")).to_be_focused()
     desk.press("Enter")
     desk.is_toasted("Crab walk")
     cem.until(lambda: cem.last(Kind.HANDED).get("title") == "Crab walk")
@@ -193,12 +192,12 @@ def test_projector_mode_hides_names_everywhere(
     expect(desk.find("body")).not_to_contain_text("Evangeline")
     assert not violations(desk.page)
     desk.press("ArrowRight")
-    expect(desk.find(".walking h2")).not_to_have_text(label, timeout=TIMEOUT_MS)
+    expect(desk.find(".walking h2")).not_to_have_text(label)
     desk.press("ArrowLeft")
-    expect(desk.find(".walking h2")).to_have_text(label, timeout=TIMEOUT_MS)
+    expect(desk.find(".walking h2")).to_have_text(label)
     desk.press("Escape")
     desk.misses(".screen")
-    expect(desk.find(desk.card("Evangeline"))).to_be_focused(timeout=TIMEOUT_MS)
+    expect(desk.find(desk.card("Evangeline"))).to_be_focused()
 
 
 def test_the_page_goes_on_after_the_gateways_end(
@@ -254,5 +253,5 @@ def test_a_tournament_ends_in_large_standings(
         desk.page.click(".matches a >> nth=0")
     replay = opened.value
     for name in (left, right):
-        expect(replay.locator("body")).to_contain_text(name, timeout=TIMEOUT_MS)
+        expect(replay.locator("body")).to_contain_text(name)
     replay.close()

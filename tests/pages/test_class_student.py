@@ -15,7 +15,8 @@ from class_room import ClassRoom, until_kept
 from contestant import start_own_page
 from playwright.sync_api import expect
 from show import violations
-from test_design import TIMEOUT_MS, Designer, write_sample
+from test_design import Designer, write_sample
+from waiting import LIMIT_S
 
 pytestmark = pytest.mark.slow
 
@@ -53,7 +54,7 @@ class Pupil(Designer):
     def is_in(self, name: str) -> None:
         self.sees("#gait-grid td")
         self.sees(".bar .name b", name)
-        expect(self.find(".try")).to_be_enabled(timeout=TIMEOUT_MS)
+        expect(self.find(".try")).to_be_enabled()
 
     def changes(self, text: str) -> None:
         """Change the table's first number, and wait until the gateway has the change."""
@@ -120,7 +121,7 @@ def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoo
         page.sees(".coach", "has closed the other searches")
         page.misses(".coach .sizes button")
         teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})
-        expect(page.find(".coach .sizes button")).to_have_count(5, timeout=TIMEOUT_MS)
+        expect(page.find(".coach .sizes button")).to_have_count(5)
 
         page.changes("31")
         teacher.ask("hand_out", title="Step 1", sample=True)
@@ -139,13 +140,13 @@ def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoo
 
         other = page.page.context.new_page()
         other.goto(f"{room.url}/design?q=low")
-        expect(other.locator("#cell-0-0")).to_have_text("31", timeout=TIMEOUT_MS)
+        expect(other.locator("#cell-0-0")).to_have_text("31")
         page.sees("dialog.elsewhere", "another page")
         assert violations(page.page) == []
         page.press("Escape", "Escape")
         page.page.click("text=Work here")
         page.is_in("Ken")
-        expect(other.locator("dialog.elsewhere")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(other.locator("dialog.elsewhere")).to_be_visible()
         other.close()
 
         teacher.ask("forget", student="Ken")
@@ -170,7 +171,7 @@ def test_goes_on_after_the_gateway_was_killed(
     page.sees(".bar .name small", "not kept yet")
     again = ClassRoom(folder, room.listen)
     room.process = again.process
-    expect(page.find(".bar .name small")).to_have_text("everything is kept", timeout=TIMEOUT_MS)
+    expect(page.find(".bar .name small")).to_have_text("everything is kept")
     page.until(TOLD)
     own = json.loads(page.page.evaluate("localStorage.getItem('lacoc.class')"))
     other = again.student("Zoe", own["token"])
@@ -186,7 +187,7 @@ def kill(process: Any) -> None:
     for child in children:
         with suppress(psutil.NoSuchProcess):  # it has ended with its gateway
             child.kill()
-    process.communicate(timeout=60)
+    process.communicate(timeout=LIMIT_S)
 
 
 @pytest.mark.long
@@ -234,4 +235,4 @@ def test_alone_changes_come_back_after_a_kill(
         other.cell_is(0, 0, "12.375")
     finally:
         process.terminate()
-        process.communicate(timeout=60)
+        process.communicate(timeout=LIMIT_S)

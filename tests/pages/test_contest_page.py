@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 from chromium import OpenPage
 from playwright.sync_api import expect
-from show import WAIT_MS, violations
+from show import violations
 from stand import served
 from venue import Venue
 
@@ -81,7 +81,7 @@ def test_a_published_folder_shows_the_contest_and_its_replays(
     """A published folder shows the contest at any path of a web server; results lead to replays."""
     page = open_page(viewport=LAPTOP)
     page.goto(cup.url)
-    expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)
+    expect(page.locator("h1")).to_have_text("Tiny Cup")
     view = cup.sheet.stages[-1]
     expect(page.locator(".head .winner .team")).to_have_text(view.tables[0].rows[0].team)
     rows = page.locator("#stage-league .standings tbody tr")
@@ -92,18 +92,18 @@ def test_a_published_folder_shows_the_contest_and_its_replays(
     link = page.locator(f'#stage-league .match a[href*="{game.record}"]')
     expect(link).to_have_text(f"{game.scores[0]}:{game.scores[1]}")
     link.click()
-    page.wait_for_function("window.__replay !== undefined", timeout=WAIT_MS)
+    page.wait_for_function("window.__replay !== undefined")
     teams = page.evaluate("window.__replay.recording.sheet.value.seats.map((seat) => seat.team)")
     assert tuple(teams) == game.teams
     page.get_by_role("link", name="The contest").click()
-    expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)
+    expect(page.locator("h1")).to_have_text("Tiny Cup")
 
 
 def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:
     """A click on a team shows its matches, places and rating, at an address of its own."""
     page = open_page(viewport=LAPTOP)
     page.goto(cup.url)
-    page.locator("#stage-league .standings .team", has_text=TEAMS[2]).click(timeout=WAIT_MS)
+    page.locator("#stage-league .standings .team", has_text=TEAMS[2]).click()
     dialog = page.get_by_role("dialog", name=TEAMS[2])
     there = [match for view in cup.sheet.stages for match in view.matches]
     own = [match for match in there if TEAMS[2] in match.teams and "" not in match.teams]
@@ -112,7 +112,7 @@ def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:
     expect(dialog).to_contain_text(f"± {round(rating.interval_elo)}")
     assert "#team=" in page.url
     page.reload()
-    expect(dialog).to_be_visible(timeout=WAIT_MS)
+    expect(dialog).to_be_visible()
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
     expect(page).to_have_url(re.compile("^[^#]*$"))
@@ -122,7 +122,7 @@ def test_a_tie_break_is_explained_where_it_stands(cup: Cup, open_page: OpenPage)
     """A tap on the heading of a tie-break says in words what it is."""
     page = open_page(viewport=PHONE, has_touch=True)
     page.goto(cup.url)
-    page.get_by_role("button", name="Dir.").tap(timeout=WAIT_MS)
+    page.get_by_role("button", name="Dir.").tap()
     expect(page.locator("[popover]")).to_be_visible()
     expect(page.locator("[popover]")).to_contain_text("Direct comparison")
 
@@ -133,7 +133,7 @@ def test_a_phone_and_axe(cup: Cup, open_page: OpenPage, locale: str) -> None:
     pytest.importorskip("axe_core_python")
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale=locale)
     page.goto(cup.url)
-    expect(page.locator(".bracket .name").first).to_be_visible(timeout=WAIT_MS)
+    expect(page.locator(".bracket .name").first).to_be_visible()
     for element in ("document.documentElement", "document.querySelector('main')"):
         assert page.evaluate(f"{element}.scrollWidth") <= PHONE["width"]
     assert violations(page) == []
@@ -147,7 +147,7 @@ def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> No
     page = open_page(viewport=PROJECTOR)
     page.clock.install()
     page.goto(f"{cup.url}?big")
-    expect(page.locator(".slide")).to_have_attribute("data-slide", "winner", timeout=WAIT_MS)
+    expect(page.locator(".slide")).to_have_attribute("data-slide", "winner")
     for slide in ("bracket", "ratings", "winner"):
         page.clock.run_for(12_500)
         expect(page.locator(".slide")).to_have_attribute("data-slide", slide)
@@ -163,7 +163,7 @@ def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:
     """On paper every match of every round is there, and the page's buttons are not."""
     page = open_page(viewport=LAPTOP)
     page.goto(cup.url)
-    expect(page.locator("h1")).to_have_text("Tiny Cup", timeout=WAIT_MS)
+    expect(page.locator("h1")).to_have_text("Tiny Cup")
     page.evaluate("for (const one of document.querySelectorAll('details')) one.open = false")
     page.emulate_media(media="print")
     expect(page.locator(".tools")).not_to_be_visible()
@@ -181,22 +181,22 @@ def test_a_gateway_follows_the_contest(
     page = open_page(viewport=LAPTOP)
     console.expect(r"contest\.json")  # a browser logs each 404
     page.goto(f"{venue.url}/contest")
-    expect(page.get_by_role("status")).to_contain_text("no contest here yet", timeout=WAIT_MS)
+    expect(page.get_by_role("status")).to_contain_text("no contest here yet")
     facts = decode((cup.folder / "facts.json").read_bytes())
     entered = [fact for fact in facts if isinstance(fact, Entered)]
     path = venue.contest.with_suffix(".json")
     path.write_bytes(encode(sheet("Tiny Cup", compute(entered, FORMATS))))
-    expect(page.locator(".badge")).to_have_text("Not drawn yet", timeout=WAIT_MS)
+    expect(page.locator(".badge")).to_have_text("Not drawn yet")
     played = next(fact for fact in facts if isinstance(fact, Played))
     known = facts[: facts.index(played)]
     game = {"pairing": played.pairing, "game": 1, "teams": played.teams}
     call = Called(id="call", number=played.number, court="hall 1", **game)  # type: ignore[arg-type]
     path.write_bytes(encode(sheet("Tiny Cup", compute([*known, call], FORMATS))))
-    expect(page.locator(".badge")).to_have_text("Under way", timeout=WAIT_MS)
+    expect(page.locator(".badge")).to_have_text("Under way")
     watch = page.get_by_role("link", name="Watch court hall 1")
     expect(watch).to_have_attribute("href", "watch?court=hall%201")
     path.write_bytes(b"{")
-    expect(page.get_by_role("alert")).to_contain_text("Trying again", timeout=WAIT_MS)
+    expect(page.get_by_role("alert")).to_contain_text("Trying again")
     path.write_bytes(encode(cup.sheet))
-    expect(page.locator(".badge")).to_have_text("Over", timeout=WAIT_MS)
+    expect(page.locator(".badge")).to_have_text("Over")
     expect(page.get_by_role("alert")).to_have_count(0)

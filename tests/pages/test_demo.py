@@ -13,6 +13,7 @@ from chromium import OpenPage
 from court_process import environment
 from lacoc_process import COMMAND
 from show import Show
+from waiting import LIMIT_S
 
 pytestmark = [pytest.mark.slow, pytest.mark.long]
 
@@ -36,7 +37,7 @@ def demo(tmp_path: Path, built_pages: Path, request: pytest.FixtureRequest) -> I
     yield _read(screen, r"Watch at (http://\S+)/watch")
     _read(screen, "(Ctrl-C)")  # before it the demo still proves its record
     process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 0
+    assert process.wait(LIMIT_S) == 0
     os.close(screen)
 
 

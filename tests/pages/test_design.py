@@ -19,7 +19,6 @@ from lacoc_robots.library import find_robot, sample_gait_files
 pytestmark = pytest.mark.slow
 
 BOOK = "Loco-data.xlsx"
-TIMEOUT_MS = 60_000
 BRED_MS = 240_000
 """Variants are tried in the background, which is slow while other tests keep the machine busy."""
 TIP = "solo/leg4_2"
@@ -33,7 +32,7 @@ class Designer(Contestant):
         """Open the page and wait until it has a table and a studio."""
         self.open("/design", key)
         self.sees("#gait-grid td")
-        expect(self.find(".try")).to_be_enabled(timeout=TIMEOUT_MS)
+        expect(self.find(".try")).to_be_enabled()
 
     def go(self, row: int, col: int) -> None:
         """Select a cell by a click."""
@@ -48,19 +47,19 @@ class Designer(Contestant):
         return self.find(f"#cell-{row}-{col}").inner_text()
 
     def cell_is(self, row: int, col: int, text: str) -> None:
-        expect(self.find(f"#cell-{row}-{col}")).to_have_text(text, timeout=TIMEOUT_MS)
+        expect(self.find(f"#cell-{row}-{col}")).to_have_text(text)
 
     def tries(self) -> None:
         """Let the robot walk, and wait for the trial's figures."""
         before = self.find(".trials > li").count()
         self.press("Control+Enter")
-        expect(self.find(".trials > li")).to_have_count(before + 1, timeout=TIMEOUT_MS)
+        expect(self.find(".trials > li")).to_have_count(before + 1)
 
     def saves(self) -> None:
         """Save the table, and wait until the page says that it is saved."""
         expect(self.find(".bar .name small")).to_have_text("not saved")
         self.press("Control+s")
-        expect(self.find(".bar .name small")).to_have_text("saved", timeout=TIMEOUT_MS)
+        expect(self.find(".bar .name small")).to_have_text("saved")
 
     def figure(self, name: str) -> float:
         """Return a figure of the shown trial."""
@@ -297,8 +296,8 @@ def test_a_table_goes_to_practice(
     with page.page.context.expect_page() as coming:
         page.page.click("dialog >> text=Practise with it")
     practice = coming.value
-    practice.wait_for_url("**/practice*", timeout=TIMEOUT_MS)
-    expect(practice.locator(".pad, .key").first).to_be_visible(timeout=TIMEOUT_MS)
+    practice.wait_for_url("**/practice*")
+    expect(practice.locator(".pad, .key").first).to_be_visible()
     practice.close()
     page.page.evaluate("window.open = () => null")
     page.page.click("dialog >> text=Practise with it")
@@ -319,7 +318,7 @@ def test_predict_compare_and_the_way_back(
     page.page.locator(".foretell label", has_text="straight on").locator("input").check(force=True)
     page.page.locator(".foretell label", has_text="faster").locator("input").check(force=True)
     page.page.click(".foretell .strong")
-    expect(page.find(".result .verdict")).to_have_count(2, timeout=TIMEOUT_MS)
+    expect(page.find(".result .verdict")).to_have_count(2)
     page.page.click(".acts >> text=Compare")
     page.sees(".differences tbody tr", "Forward")
     page.sees(".shows", "pale: trial 1")
@@ -411,7 +410,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
     page.press("Control+s")
     page.page.click("dialog >> text=Save mine over it")
-    expect(page.find(".bar .name small")).to_have_text("saved", timeout=TIMEOUT_MS)
+    expect(page.find(".bar .name small")).to_have_text("saved")
     assert "1 Key\t45\t" in file.read_text(encoding="utf-8")
 
     page.page.click(".bar .name")
@@ -452,7 +451,7 @@ def test_a_phone_in_japanese_tries_and_compares(
     page.page.tap(".strip .round >> nth=1")
     page.cell_is(2, 3, "-40")
     page.page.tap(".try")
-    expect(page.find(".trials > li")).to_have_count(2, timeout=TIMEOUT_MS)
+    expect(page.find(".trials > li")).to_have_count(2)
     page.page.tap(".bar >> text=比べる")
     page.sees(".differences")
     assert page.page.evaluate("document.scrollingElement.scrollWidth") == 390

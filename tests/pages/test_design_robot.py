@@ -9,7 +9,7 @@ from chromium import OpenPage
 from contestant import own_page
 from playwright.sync_api import expect
 from show import violations
-from test_design import TIMEOUT_MS, Designer, write_sample
+from test_design import Designer, write_sample
 
 from lacoc_robots.library import find_robot
 
@@ -47,7 +47,7 @@ def test_a_number_of_the_robot_is_changed_and_saved(
         return page.find(f"[data-fact={name}] input").input_value()
 
     def field_is(page: Designer, name: str, value: str) -> None:
-        expect(page.find(f"[data-fact={name}] input")).to_have_value(value, timeout=TIMEOUT_MS)
+        expect(page.find(f"[data-fact={name}] input")).to_have_value(value)
 
     page = Designer(open_page, url, viewport={"width": 1280, "height": 800})
     page.begin(key)
@@ -103,7 +103,7 @@ def test_a_number_of_the_robot_is_changed_and_saved(
     field_is(page, "first_link_m", "80")
     page.page.click(".robot-file .button")
     page.sees(".robot-file small", "saved")
-    expect(page.find(".robot-file .button")).to_be_disabled(timeout=TIMEOUT_MS)
+    expect(page.find(".robot-file .button")).to_be_disabled()
     saved = file.read_bytes().decode()
     assert saved == text.replace("0.015, 0.070, 0.070", "0.015, 0.08, 0.070")
 

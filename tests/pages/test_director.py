@@ -9,7 +9,7 @@ from chromium import OpenPage
 from page_client import PageClient
 from playwright.sync_api import expect
 from ports import free_port
-from show import WAIT_MS, Show, decide, violations
+from show import Show, decide, violations
 from venue import Process
 
 from lacoc_shared.seat import Phase
@@ -91,6 +91,6 @@ def test_pages_follow_the_director(
         courts["east"].kill()
         for show in (watch, overlay):
             gone = show.find(".on-air[data-court=west][data-why=gone]")
-            expect(gone).to_be_visible(timeout=WAIT_MS)
+            expect(gone).to_be_visible()
             assert show.page.evaluate("window.stays")
             expect(show.find(".log, .thirds", has_text="Ants")).to_have_count(0)

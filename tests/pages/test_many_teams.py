@@ -13,8 +13,9 @@ from chromium import OpenPage
 from lacoc_process import run_lacoc, started
 from playwright.sync_api import Page, expect
 from ports import free_port
-from show import WAIT_MS, violations
+from show import violations
 from stand import served
+from waiting import LIMIT_S
 
 sys.path.append(str(Path(__file__).parents[1] / "league"))
 
@@ -78,7 +79,7 @@ def test_contest(
             page = open_page(**screen, locale=locale)
             page.goto(url)
             rows = page.locator("#stage-swiss .standings tbody tr")
-            expect(rows).to_have_count(teams, timeout=WAIT_MS)
+            expect(rows).to_have_count(teams)
             assert is_narrow(page)
             assert violations(page) == []
         page = open_page(**PROJECTOR)
@@ -87,7 +88,7 @@ def test_contest(
         slides = []
         for _ in range(12):
             slide = page.locator(".slide")
-            slides.append(slide.get_attribute("data-slide", timeout=WAIT_MS))
+            slides.append(slide.get_attribute("data-slide"))
             assert slide.evaluate("(e) => e.scrollHeight <= e.clientHeight"), slides
             page.clock.run_for(12_500)
         assert len({*slides}) > 2
@@ -112,13 +113,13 @@ def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, console:
             phone, laptop = open_page(**PHONE, locale="ja-JP"), open_page(**LAPTOP)
             for page in (phone, laptop):
                 page.goto(url)
-                expect(page.locator(".entries li")).to_have_count(MANY, timeout=WAIT_MS)
+                expect(page.locator(".entries li")).to_have_count(MANY)
             laptop.get_by_role("button", name="Close entries and draw").click()
             laptop.get_by_role("button", name=f"Close and draw with {MANY} teams").click()
             for page in (laptop, phone):
-                expect(page.locator(".slot").first).to_be_visible(timeout=WAIT_MS)
+                expect(page.locator(".slot").first).to_be_visible()
                 assert is_narrow(page)
                 assert violations(page) == []
         finally:
             run.terminate()
-            run.wait(30)
+            run.wait(LIMIT_S)

@@ -11,7 +11,8 @@ from chromium import OpenPage
 from lacoc_process import run_lacoc, started
 from playwright.sync_api import Page, expect
 from ports import free_port
-from show import WAIT_MS, violations
+from show import violations
+from waiting import LIMIT_S
 
 from lacoc_robots.library import sample_gait_files
 
@@ -65,13 +66,13 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
             )
         finally:
             run.terminate()
-            run.wait(30)
+            run.wait(LIMIT_S)
 
 
 def fill(page: Page, event: Event, team: str, code: str = "") -> None:
     """Fill in the form of /enter, with files that have no mistakes."""
     page.goto(f"{event.url}/enter")
-    page.locator("input.code").fill(code or event.code.lower(), timeout=WAIT_MS)
+    page.locator("input.code").fill(code or event.code.lower())
     page.locator(".field input").nth(1).fill(team)
     page.locator("input[type=file]").set_input_files(list(event.right))
     expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
@@ -82,7 +83,7 @@ def enter(open_page: OpenPage, event: Event, team: str) -> Page:
     page = open_page(viewport=PHONE)
     fill(page, event, team)
     page.locator("button[type=submit]").click()
-    expect(page.locator(".qr img")).to_be_visible(timeout=WAIT_MS)
+    expect(page.locator(".qr img")).to_be_visible()
     return page
 
 
@@ -95,17 +96,17 @@ def test_an_event_from_its_file_to_its_first_game(
     """
     office = open_page(viewport=LAPTOP)
     office.goto(event.office)
-    expect(office.locator(".head .code")).to_have_text(event.code, timeout=WAIT_MS)
+    expect(office.locator(".head .code")).to_have_text(event.code)
     assert "#" not in office.url, "the key stays in the address"
     assert violations(office) == []
     first = first_team(open_page, event)
     for team in TEAMS[1:]:
         enter(open_page, event, team)
     rows = office.locator(".entries li")
-    expect(rows).to_have_count(len(TEAMS), timeout=WAIT_MS)
+    expect(rows).to_have_count(len(TEAMS))
     assert violations(office) == []
     approve_and_draw(office)
-    expect(first.locator(".state")).to_contain_text("You are in", timeout=WAIT_MS)
+    expect(first.locator(".state")).to_contain_text("You are in")
     move(office)
     decide(office)
     late_files(office, first, event)
@@ -118,33 +119,31 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     page = open_page(viewport=LAPTOP)
     fill(page, event, FIRST, "AAAAAA")
     page.locator("button[type=submit]").click()
-    expect(page.get_by_role("alert")).to_contain_text("not the code", timeout=WAIT_MS)
+    expect(page.get_by_role("alert")).to_contain_text("not the code")
     page.locator("input.code").fill(event.code)
     page.locator("input[type=file]").set_input_files(event.wrong)
     page.locator("button[type=submit]").click()
-    expect(page.locator(".mistakes li")).to_have_count(3, timeout=WAIT_MS)
+    expect(page.locator(".mistakes li")).to_have_count(3)
     assert violations(page) == []
     page.locator("input[type=file]").set_input_files(list(event.right))
     expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
     page.locator("button[type=submit]").click()
-    expect(page.locator(".qr img")).to_be_visible(timeout=WAIT_MS)
+    expect(page.locator(".qr img")).to_be_visible()
     expect(page.get_by_role("status").first).to_contain_text("waits for the organiser")
     page.reload()
-    expect(page.locator("h1")).to_have_text(FIRST, timeout=WAIT_MS)
-    expect(page.get_by_role("link", name="To your matches")).to_be_visible(timeout=WAIT_MS)
+    expect(page.locator("h1")).to_have_text(FIRST)
+    expect(page.get_by_role("link", name="To your matches")).to_be_visible()
     assert violations(page) == []
     return page
 
 
 def approve_and_draw(office: Page) -> None:
     office.get_by_role("button", name=f"Approve all {len(TEAMS)}").click()
-    expect(office.locator('.entries li[data-state="in"]')).to_have_count(
-        len(TEAMS), timeout=WAIT_MS
-    )
+    expect(office.locator('.entries li[data-state="in"]')).to_have_count(len(TEAMS))
     office.get_by_role("button", name="Close entries and draw").click()
     expect(office.get_by_role("dialog")).to_contain_text("4 teams take part")
     office.get_by_role("button", name="Close and draw with 4 teams").click()
-    expect(office.locator('.slot[data-state="running"]')).to_have_count(2, timeout=WAIT_MS)
+    expect(office.locator('.slot[data-state="running"]')).to_have_count(2)
     assert violations(office) == []
 
 
@@ -155,7 +154,7 @@ def move(office: Page) -> None:
     assert violations(office) == []
     dialog.locator("select").first.select_option("main-2")
     dialog.get_by_role("button", name="Move").click()
-    expect(office.locator(".moved")).to_have_count(1, timeout=WAIT_MS)
+    expect(office.locator(".moved")).to_have_count(1)
     assert (
         office.locator(".column", has=office.locator(".moved")).get_attribute("aria-label")
         == "Court main-2"
@@ -165,19 +164,19 @@ def move(office: Page) -> None:
 def decide(office: Page) -> None:
     """Decide a match; the page shows what the decision changes before it can be made."""
     line = office.locator(".rulings li").first
-    line.get_by_role("button").click(timeout=WAIT_MS)
+    line.get_by_role("button").click()
     dialog = office.get_by_role("dialog")
     go = dialog.get_by_role("button", name="Decide this")
     points = dialog.locator(".points input")
     points.nth(0).fill("3")
     points.nth(1).fill("9")
-    expect(dialog.locator(".effects li").first).to_be_visible(timeout=WAIT_MS)
+    expect(dialog.locator(".effects li").first).to_be_visible()
     expect(go).to_be_disabled()
     assert violations(office) == []
     dialog.get_by_label("Reason").fill("the scores were swapped")
     go.click()
     expect(dialog).to_have_count(0)
-    expect(office.locator(".rulings .score").first).to_have_text("3 : 9", timeout=WAIT_MS)
+    expect(office.locator(".rulings .score").first).to_have_text("3 : 9")
 
 
 def late_files(office: Page, team: Page, event: Event) -> None:
@@ -187,13 +186,13 @@ def late_files(office: Page, team: Page, event: Event) -> None:
     team.get_by_text("Replace the files", exact=True).click()
     team.locator("input[type=file]").set_input_files(changed)
     team.get_by_role("button", name="Weigh in and replace").click()
-    expect(team.locator(".state")).to_contain_text("after entries were closed", timeout=WAIT_MS)
-    office.get_by_role("button", name=f"Approve {FIRST}").first.click(timeout=WAIT_MS)
+    expect(team.locator(".state")).to_contain_text("after entries were closed")
+    office.get_by_role("button", name=f"Approve {FIRST}").first.click()
     dialog = office.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Approve")).to_be_disabled()
     dialog.get_by_label("Reason").fill("the motor limit was misread")
     dialog.get_by_role("button", name="Approve").click()
-    expect(team.locator(".state")).to_contain_text("You are in. Your files", timeout=WAIT_MS)
+    expect(team.locator(".state")).to_contain_text("You are in. Your files")
 
 
 def papers(office: Page) -> None:
@@ -206,7 +205,7 @@ def papers(office: Page) -> None:
         ("links", "/referee?court=main-2#key="),
     ):
         office.get_by_label("Print …").select_option(paper)
-        expect(office.locator(".papers")).to_contain_text(content, timeout=WAIT_MS)
+        expect(office.locator(".papers")).to_contain_text(content)
         assert violations(office) == []
         office.emulate_media(media="print")
         expect(office.locator(".paper-tools")).not_to_be_visible()
@@ -219,9 +218,9 @@ def on_a_phone(open_page: OpenPage, event: Event) -> None:
     for path in (event.office, f"{event.url}/enter"):
         page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
         page.goto(path)
-        expect(page.locator("h1")).not_to_have_text("", timeout=WAIT_MS)
+        expect(page.locator("h1")).not_to_have_text("")
         if path == event.office:
-            expect(page.locator(".timetable")).to_be_visible(timeout=WAIT_MS)
+            expect(page.locator(".timetable")).to_be_visible()
         for element in ("document.documentElement", "document.querySelector('main')"):
             assert page.evaluate(f"{element}.scrollWidth") <= PHONE["width"]
         assert violations(page) == []
@@ -231,5 +230,5 @@ def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:
     """With a wrong key the page shows no entries, and says why."""
     page = open_page(viewport=LAPTOP)
     page.goto(f"{event.url}/office#organiser=guess")
-    expect(page.get_by_role("alert")).to_contain_text("does not open", timeout=WAIT_MS)
+    expect(page.get_by_role("alert")).to_contain_text("does not open")
     assert page.locator(".entries").count() == 0

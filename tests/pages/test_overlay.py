@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from chromium import OpenPage
 from playwright.sync_api import Page, expect
-from show import STALE, WAIT_MS, Show, decide, playing, violations
+from show import STALE, Show, decide, playing, violations
 from venue import Venue
 
 from lacoc_shared.seat import Phase
@@ -186,7 +186,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     show.sees(".result .kicker", "Official")
     decide(referee, type="next")
     show.misses(".result")
-    expect(show.find(".opening .ready")).to_have_count(0, timeout=WAIT_MS)
+    expect(show.find(".opening .ready")).to_have_count(0)
 
 
 @pytest.mark.long

@@ -7,7 +7,7 @@ from chromium import OpenPage
 from contestant import own_page
 from playwright.sync_api import expect
 from show import violations
-from test_design import TIMEOUT_MS, Designer, write_sample
+from test_design import Designer, write_sample
 
 pytestmark = pytest.mark.slow
 
@@ -25,7 +25,7 @@ class Student(Designer):
     def goes_to(self, phase: int) -> None:
         self.focuses(f".phase-dots button:nth-child({phase})")
         self.press("Enter")
-        expect(self.find(".learn h3")).to_contain_text(str(phase), timeout=TIMEOUT_MS)
+        expect(self.find(".learn h3")).to_contain_text(str(phase))
 
     def changes(self, text: str, *, guess: str = "") -> None:
         """Change the selected number; with `guess`, first guess where the foot goes."""
@@ -42,7 +42,7 @@ class Student(Designer):
             self.sees(".foot-guess .verdict.right, .foot-guess .verdict.wrong")
         else:
             script = "before => window.__studio.learning.phases.value.phases[0].share > before"
-            self.page.wait_for_function(script, arg=before, timeout=TIMEOUT_MS)
+            self.page.wait_for_function(script, arg=before)
 
     def composes(self, text: str) -> None:
         """Type into the focused field with an input method, letter by letter, and press Enter."""
@@ -69,7 +69,7 @@ class Student(Designer):
 
     def is_done(self, phase: int) -> None:
         dot = self.find(f".phase-dots button:nth-child({phase})")
-        expect(dot).to_have_attribute("data-state", "met", timeout=TIMEOUT_MS)
+        expect(dot).to_have_attribute("data-state", "met")
 
 
 @pytest.mark.long

@@ -16,15 +16,12 @@ from lacoc_server.doors.keys.make import make_keys
 
 pytestmark = pytest.mark.slow
 
-WAIT_MS = 45_000
-"""The longest wait [ms], for a machine with two busy cores; a test goes on as soon as it can."""
 JAPANESE_NAMES = re.compile(
     r"Kim|Ants|Bees|Left|Right|Hexapod|LACOC|Robot-Othello|Ctrl|Enter|main|MuJoCo|lacoc web"
 )
 
 Referee = Callable[..., Page]
 
-expect.set_options(timeout=WAIT_MS)
 ONLY = "it is possible only while the match is"
 IN_LOBBY = "Now the match is in the lobby"
 
@@ -43,7 +40,6 @@ def referee(venue: Venue, open_page: OpenPage) -> Referee:
 
     def opened(key: bool = True, size: tuple[int, int] = (1366, 768), query: str = "") -> Page:
         page = open_page(viewport={"width": size[0], "height": size[1]})
-        page.set_default_timeout(WAIT_MS)
         fragment = f"#key={venue.key}" if key else ""
         page.goto(f"{venue.url}/referee{query}{fragment}")
         expect(page.locator(".score-bug")).to_be_visible()

@@ -14,7 +14,7 @@ from chromium import OpenPage
 from drop import drop
 from mcap.writer import Writer
 from playwright.sync_api import Page, expect
-from show import WAIT_MS, Show, violations
+from show import Show, violations
 from venue import Venue
 
 from lacoc_arenas import arena as arenas
@@ -289,7 +289,7 @@ def test_the_servers_list_and_the_address(
     """Each recording and each time in it has an address; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
-    expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
+    expect(show.find(".recordings b")).to_have_count(2)
     show.sees(".recordings li:first-child", "planner")
     show.find(".recordings a", has_text="Othello").click()
     show.sees(".score-bug .team", "planner")

@@ -14,6 +14,7 @@ from lacoc_process import run_lacoc, started
 from playwright.sync_api import expect
 from ports import free_port
 from show import violations
+from waiting import LIMIT_S
 
 from lacoc_server.contest.organiser import enter
 from lacoc_shared.seat import Phase
@@ -23,7 +24,6 @@ pytestmark = pytest.mark.slow
 TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
 PERSON = "Bees"
 """Plays its first match at the second court, so that its page must go there."""
-WAIT_MS = 90_000
 
 
 @contextmanager
@@ -64,7 +64,7 @@ settings.match.start = "ready"
             invite = ("contest", "invite", "--contest", str(file), "--pages", opened["url"])
             lines = json.loads(run_lacoc(*invite, "--json").stdout)
             yield opened | lines[PERSON]
-            assert run.wait(WAIT_MS / 1000) == 0
+            assert run.wait(LIMIT_S) == 0
         finally:
             run.kill()
 
@@ -104,7 +104,7 @@ def play_a_match(player: Contestant, first: bool) -> str:
     If `first` is true, the page must be at the court "south".
     """
     button = player.find("button.ready")
-    expect(button).to_be_visible(timeout=WAIT_MS)
+    expect(button).to_be_visible()
     player.stands("seated")
     if first:
         assert "court=south" in player.page.url

@@ -8,7 +8,7 @@ import pytest
 from chromium import OpenPage
 from playwright.sync_api import expect
 from ports import free_port
-from show import STALE, WAIT_MS, Show, decide, playing, violations
+from show import STALE, Show, decide, playing, violations
 from stand import pixels_of
 from venue import Venue
 
@@ -455,9 +455,9 @@ def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> No
         text = f"rgb({', '.join(str(int(colour[at : at + 2], 16)) for at in (1, 3, 5))})"
         for place in (".score-bug", ".result"):
             mark = show.find(f"{place} [data-seat='1'] .seat-mark").first
-            expect(mark).to_have_css("background-color", text, timeout=WAIT_MS)
+            expect(mark).to_have_css("background-color", text)
         robot = show.find(".board g[aria-label^='Bees'] circle")
-        expect(robot).to_have_css("fill", text, timeout=WAIT_MS)
+        expect(robot).to_have_css("fill", text)
 
     referee.phase(Phase.FINISHED)
     show.sees(".result")
@@ -521,7 +521,7 @@ def test_accessible(venue: Venue, open_page: OpenPage) -> None:
     referee = playing(venue)
     referee.phase(Phase.FINISHED)
     show.sees(".result")
-    expect(show.find(".result")).to_have_css("opacity", "1", timeout=WAIT_MS)
+    expect(show.find(".result")).to_have_css("opacity", "1")
     assert violations(show.page) == []
     show.page.keyboard.press("s")
     show.sees("dialog")

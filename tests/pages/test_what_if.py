@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from chromium import OpenPage
 from msgspec.structs import replace
-from show import WAIT_MS, Show, violations
+from show import Show, violations
 from venue import Venue
 
 from lacoc_arenas import arena as arenas
@@ -72,7 +72,7 @@ def test_odds_are_a_curve_and_highlights_lead_there(library: Venue, open_page: O
     show.sees(".transport .chances", "90 : 10 %")
     show.sees(".seek .odds-curve polyline")
     rows = show.find(".highlights button")
-    rows.first.wait_for(timeout=WAIT_MS)
+    rows.first.wait_for()
     assert [row.split("\n")[-1] for row in rows.all_inner_texts()] == [
         "nearest: 10 → 75 %",
         "planner: 50 → 90 %",

@@ -19,6 +19,7 @@ import pytest
 import yaml
 from lacoc_process import Lacoc
 from ports import free_port
+from waiting import LIMIT_S
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text(encoding="utf-8"))
@@ -89,13 +90,13 @@ def test_the_composition_plays(tmp_path: Path) -> None:
                 if name in other.get("depends_on", ())
             }
             if "service_completed_successfully" in conditions:
-                assert process.wait(60) == 0
+                assert process.wait(LIMIT_S) == 0
                 file = tmp_path / "contest.toml"
                 file.write_text(here(file.read_text()))
             if "service_healthy" in conditions:
                 wait_until_healthy([here(word) for word in service["healthcheck"]["test"]])
         heard = wait_for(lines, "Play begins.", timeout_s=60)
-        with urllib.request.urlopen(f"http://127.0.0.1:{web_port}/watch", timeout=60) as page:
+        with urllib.request.urlopen(f"http://127.0.0.1:{web_port}/watch", timeout=LIMIT_S) as page:
             assert b"LACOC" in page.read()
 
     assert any("takes the left seat" in line for line in heard)
@@ -125,7 +126,7 @@ def lacoc(
         finally:
             process.terminate()
             try:
-                process.wait(20)
+                process.wait(LIMIT_S)
             except subprocess.TimeoutExpired:
                 process.kill()
             reader.join()

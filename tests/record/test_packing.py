@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from mcap.reader import make_reader
+from waiting import LIMIT_S
 
 from lacoc_shared import codec
 from lacoc_shared.messages import Frame
@@ -110,7 +111,7 @@ def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: Writ
 def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
     """A court packs in another process, which prints an error for a match without segments."""
     record = Record.read(write_match(tmp_path))
-    assert pack.pack_in_background(tmp_path, ["m"]).wait(60) == 0
+    assert pack.pack_in_background(tmp_path, ["m"]).wait(LIMIT_S) == 0
     assert Record.read(tmp_path / "m.mcap") == record
     again = subprocess.run(
         [sys.executable, "-m", "lacoc_shared.record.pack", str(tmp_path), "m"],

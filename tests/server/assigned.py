@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from ports import free_port
-from running import WAIT_S, served
+from running import served
+from waiting import LIMIT_S
 
 from lacoc_arenas import arena as arenas
 from lacoc_client.bot_player import BotPlayer
@@ -91,7 +92,7 @@ class Office:
 
     def answer(self, ask: Callable[[], Asked]) -> Done | Refusal:
         """Ask a court until it answers, as an office does: a busy machine may be late."""
-        end_s = time.monotonic() + WAIT_S
+        end_s = time.monotonic() + LIMIT_S
         while isinstance(answer := ask().wait(), NoAnswer):
             assert time.monotonic() < end_s, "the court does not answer"
         return answer
@@ -103,7 +104,7 @@ class Office:
         return answer
 
     def until(self, true: Callable[[], bool]) -> None:
-        end_s = time.monotonic() + WAIT_S
+        end_s = time.monotonic() + LIMIT_S
         while not true():
             assert time.monotonic() < end_s, "it did not come true"
             self.link.poll()

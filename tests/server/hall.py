@@ -7,7 +7,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from lacoc_process import started
-from running import WAIT_S, served, until, write_contest
+from running import served, until, write_contest
+from waiting import LIMIT_S
 
 from lacoc_client.asking import fetch
 from lacoc_client.referee import RefereeClient
@@ -136,4 +137,4 @@ class Hall:
 def _end(process: subprocess.Popen[bytes]) -> None:
     process.send_signal(signal.SIGCONT)
     process.kill()
-    process.wait(WAIT_S)
+    process.wait(LIMIT_S)

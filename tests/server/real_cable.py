@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from hall import Hall
-from running import WAIT_S
+from waiting import LIMIT_S
 
 from lacoc_shared.seat import SeatFlag
 
@@ -70,5 +70,5 @@ def pull_a_real_cable(folder: Path) -> bool:
         cable_is("down")
         hall.walks(1)
         hall.process.terminate()
-        assert hall.process.wait(WAIT_S) == 0
+        assert hall.process.wait(LIMIT_S) == 0
     return True

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from lacoc_process import started
 from ports import free_port
+from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
@@ -19,8 +20,6 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import render
-
-WAIT_S = 60.0
 
 
 def write_contest(path: Path) -> Path:
@@ -57,13 +56,13 @@ def served(
         yield process
     finally:
         process.terminate()
-        process.communicate(timeout=WAIT_S)
+        process.communicate(timeout=LIMIT_S)
 
 
 def until(clients: Iterable[Controller | Spectator], true: Callable[[], bool]) -> None:
-    """Let clients receive and send until a condition is true; fail after `WAIT_S`."""
+    """Let clients receive and send until a condition is true; fail after `LIMIT_S`."""
     clients = list(clients)
-    end_s = time.monotonic() + WAIT_S
+    end_s = time.monotonic() + LIMIT_S
     while not true():
         assert time.monotonic() < end_s, "it did not come true"
         for client in clients:

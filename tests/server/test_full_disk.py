@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 import msgspec
 import pytest
-from running import WAIT_S, Party, party, served, write_contest
+from running import Party, party, served, write_contest
+from waiting import LIMIT_S
 
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
@@ -273,7 +274,7 @@ def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:
         ],
         capture_output=True,
         text=True,
-        timeout=WAIT_S,
+        timeout=LIMIT_S,
         check=False,
     )
     assert done.returncode == 2

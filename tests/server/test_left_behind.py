@@ -9,8 +9,9 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from running import WAIT_S, party, served, until, write_contest
+from running import party, served, until, write_contest
 from stage import LEFT, QUICK, RIGHT, decide, join, setup
+from waiting import LIMIT_S
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
@@ -214,7 +215,7 @@ def failing(flag: Path, what: str) -> list[str]:
 
 def packed(folder: Path, *numbers: str) -> list[Path]:
     """Wait until a folder holds the packed files of these matches and nothing else; return them."""
-    end_s, wanted = time.monotonic() + WAIT_S, sorted(f"-{number}.mcap" for number in numbers)
+    end_s, wanted = time.monotonic() + LIMIT_S, sorted(f"-{number}.mcap" for number in numbers)
     while sorted(path.name[-9:] for path in folder.iterdir()) != wanted:
         assert time.monotonic() < end_s, list(folder.iterdir())
         time.sleep(0.05)
@@ -232,7 +233,7 @@ def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
         those.until(lambda: those.frame.clock_ticks > 20)
         seen = those.frame
         flag.touch()
-        assert first.wait(WAIT_S) not in (0, -signal.SIGKILL)
+        assert first.wait(LIMIT_S) not in (0, -signal.SIGKILL)
         flag.unlink()
         assert [path.suffixes[-3:] for path in folder.iterdir()] == [[".000", ".live", ".mcap"]]
 
@@ -263,7 +264,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
         assert len(list(folder.glob("*.live.mcap"))) == 3
         assert process.stdout is not None
         process.send_signal(signal.SIGTERM)
-        said, _ = process.communicate(timeout=WAIT_S)
+        said, _ = process.communicate(timeout=LIMIT_S)
         assert process.returncode == 0
         assert "Records can't be packed now: [Errno 11] Resource temporarily unavailable" in said
         assert len(list(folder.glob("*.live.mcap"))) == 3

@@ -17,8 +17,8 @@ import pytest
 from hall import Hall
 from ports import free_port
 from real_cable import pull_a_real_cable
-from running import WAIT_S
 from slow_link import SlowLink
+from waiting import LIMIT_S
 
 from lacoc_client.asking import NoAnswer, ask
 from lacoc_client.controller import Controller, Hold
@@ -201,7 +201,7 @@ def frames_of(hall: Hall) -> int:
     """Return how many frames a spectator receives in 600 beats."""
     first, frames = hall.frame.beat, 0
     while hall.frame.beat < first + WATCHED_BEATS:
-        frames += hall.view.wait_frame(WAIT_S) is not None
+        frames += hall.view.wait_frame(LIMIT_S) is not None
     return frames
 
 

@@ -13,6 +13,7 @@ import psutil
 import pytest
 from handed_in import players_of
 from lacoc_process import run_lacoc, started
+from waiting import LIMIT_S
 
 from lacoc_server.commands.simulate import simulate_command
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -129,7 +130,7 @@ def test_a_request_to_end_leaves_nothing_half_done(
     """SIGTERM ends the command and its worker processes; half records are removed."""
     workers = psutil.Process(many.pid).children(recursive=True)
     many.send_signal(signal.SIGTERM)
-    assert many.wait(30) == 130
+    assert many.wait(LIMIT_S) == 130
     assert psutil.wait_procs(workers, 10)[1] == []
     assert list((tmp_path / "records").iterdir()) == []
 
@@ -141,7 +142,7 @@ def test_a_worker_that_dies_is_told(many: "subprocess.Popen[str]", tmp_path: Pat
         if "spawn_main" in " ".join(child.cmdline()):
             child.kill()
             break
-    _, said = many.communicate(timeout=30)
+    _, said = many.communicate(timeout=LIMIT_S)
     assert many.returncode == 2
     assert "The process that played straight and nearest was killed" in said
     assert list((tmp_path / "records").iterdir()) == []

@@ -17,6 +17,7 @@ from assigned import (
     token,
     write_office_contest,
 )
+from waiting import LIMIT_S
 
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller
@@ -300,7 +301,7 @@ def test_a_court_that_is_told_to_retire_ends_for_good(tmp_path: Path) -> None:
         office.assign("Ants", "Bees")
         with suppress(NoReply):
             office.link.retire().wait()
-        assert office.process.wait(60) == NOT_AGAIN
+        assert office.process.wait(LIMIT_S) == NOT_AGAIN
     assert [*(tmp_path / "recordings").glob("*.live.mcap")]
 
 

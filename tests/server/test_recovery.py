@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from benchmarks.played import OTHER_ARITHMETIC
-from running import WAIT_S, party, served, write_contest
+from running import party, served, write_contest
 from verdicts import verdict
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_arenas import arena as arenas
 from lacoc_client.controller import Controller
@@ -191,7 +191,7 @@ def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -
             while view.wait_frame(0.2) is not None:
                 pass
             process = stack.enter_context(served(contest, folder))
-            assert view.wait_frame(WAIT_S) is not None
+            assert view.wait_frame(LIMIT_S) is not None
             referee.enter()
 
 

@@ -13,7 +13,7 @@ import psutil
 import pytest
 from benchmarks.trials import entry_of
 from lacoc_process import started
-from waiting import until
+from waiting import LIMIT_S, until
 
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.studio.answers import answer, read_files, try_gait
@@ -51,7 +51,6 @@ from lacoc_shared.studio import (
 
 pytestmark = pytest.mark.slow
 KEYS = StudioKeys("test")
-WAIT_S = 60.0
 QUADRUPED = SentFile(*find_robot("quadruped"))
 
 
@@ -65,7 +64,7 @@ class Asker:
     def begin(self, what: str, request: object) -> Question:
         """Send a request (bytes as they are); return a question whose `wait` gives the reply."""
         payload = request if isinstance(request, bytes) else encode(request)
-        return self.session.question(KEYS.request(what), payload, WAIT_S)
+        return self.session.question(KEYS.request(what), payload, LIMIT_S)
 
     def robot(self, robot: SentFile | None = None) -> RobotReply:
         """Ask what a robot file describes; return the studio's reply."""
@@ -103,8 +102,8 @@ def asker() -> Iterator[Asker]:
     finally:
         children = psutil.Process(process.pid).children(recursive=True)
         process.terminate()
-        assert process.wait(WAIT_S) == 0
-        assert psutil.wait_procs(children, WAIT_S)[1] == []
+        assert process.wait(LIMIT_S) == 0
+        assert psutil.wait_procs(children, LIMIT_S)[1] == []
 
 
 def files_of(robot: str) -> GaitFiles:
@@ -429,4 +428,4 @@ def test_no_process_is_left_when_a_studio_is_killed() -> None:
     children = parent.children(recursive=True)
     process.kill()
     process.wait()
-    assert psutil.wait_procs(children, WAIT_S)[1] == []
+    assert psutil.wait_procs(children, LIMIT_S)[1] == []

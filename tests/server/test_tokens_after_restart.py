@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 from lacoc_process import Lacoc, run_lacoc
-from running import WAIT_S, frame, party, phase, served, until, write_contest
+from running import frame, party, phase, served, until, write_contest
+from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
 from lacoc_shared.contest.file import load
@@ -38,7 +39,7 @@ def opened(folder: Path, arena: str = "practice") -> Iterator[dict[str, Any]]:
         yield json.loads(process.stdout.readline())
     finally:
         process.kill()
-        process.communicate(timeout=WAIT_S)
+        process.communicate(timeout=LIMIT_S)
 
 
 @contextmanager

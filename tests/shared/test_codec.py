@@ -8,6 +8,7 @@ import msgpack
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from waiting import LIMIT_S
 
 from lacoc_shared.codec import (
     BadMessage,
@@ -134,5 +135,5 @@ for _ in range(400):
 @pytest.mark.slow
 def test_a_message_that_many_threads_read_first_ends_no_process() -> None:
     """Six threads that decode a new kind of message at the same time do not crash the process."""
-    done = subprocess.run([sys.executable, "-c", FIRST_USE], capture_output=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", FIRST_USE], capture_output=True, timeout=LIMIT_S)
     assert (done.returncode, done.stderr) == (0, b"")

@@ -7,6 +7,7 @@ import sys
 from datetime import datetime
 
 import pytest
+from waiting import LIMIT_S
 
 SAY = """
 from lacoc_shared.command import log
@@ -26,7 +27,7 @@ def said(code: str, encoding: str = "utf-8") -> str:
         encoding=encoding,
         env=os.environ | {"PYTHONIOENCODING": encoding},
         check=True,
-        timeout=60,
+        timeout=LIMIT_S,
     )
     assert done.stderr == ""
     return done.stdout
@@ -129,7 +130,7 @@ time.sleep(0.2)
 faulthandler._sigsegv()
 """
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=LIMIT_S
     )
     assert done.returncode != 0
     first, *rest = done.stdout.splitlines()

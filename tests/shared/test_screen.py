@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from waiting import LIMIT_S
 
 from lacoc_shared.command import screen
 from lacoc_shared.messages import Done
@@ -108,7 +109,7 @@ def test_no_name_is_a_traceback(tmp_path: Path) -> None:
         capture_output=True,
         cwd=tmp_path,
         env=os.environ | {"PYTHONIOENCODING": "cp932"},
-        timeout=60,
+        timeout=LIMIT_S,
         check=False,
     )
     assert (done.returncode, done.stderr) == (2, b"")
