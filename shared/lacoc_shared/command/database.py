@@ -62,9 +62,12 @@ def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged 
             return Damaged(why)
         case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED:
             return UserError(say("database.in-use", file=file))
-    if opening:
-        return UserError(say("database.cannot-open", file=text_of(path), why=why))
-    return UserError(say("database.no-room", file=file, why=why))
+        case _ if opening:
+            return UserError(say("database.cannot-open", file=text_of(path), why=why))
+        case sqlite3.SQLITE_FULL | sqlite3.SQLITE_IOERR:
+            return UserError(say("database.no-room", file=file, why=why))
+        case _:
+            return UserError(say("database.failed", file=text_of(path), why=why))
 
 
 def _set_up(

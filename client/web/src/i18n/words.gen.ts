@@ -84,6 +84,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "database.in-use": ["Another program uses the file {file}. Close that program, then start this one again.", "ファイル {file} を別のプログラムが使っています。そのプログラムを終了してから、起動し直してください。"],
   "database.newer": ["The file {file} is not of a form that this version of LACOC can read. Rename or move the file, or install the newest LACOC.", "{file} は、この版の LACOC が読める形式のファイルではありません。ファイルの名前か場所を変えるか、最新の LACOC を入れてください。"],
   "database.no-room": ["The file {file} can't be written ({why}). What was saved before is safe. Make room on the disk, then do the last step again.", "ファイル {file} に書き込めません（{why}）。これまでに保存したものは無事です。ディスクに空きを作り、最後の操作をもう一度してください。"],
+  "database.failed": ["The last step could not be saved in the file {file} ({why}). Check that the file is still in its place and that you may write to it, then start this program again.", "最後の操作をファイル {file} に保存できませんでした（{why}）。ファイルが元の場所にあり、書き込めることを確かめてから、起動し直してください。"],
   "database.cannot-open": ["The file {file} can't be opened: {why}.", "ファイル {file} を開けません：{why}。"],
   "event.lobby": ["The match is waiting for the teams.", "チームの参加を待っています。"],
   "event.ready": ["All teams are ready.", "すべてのチームの準備が完了しました。"],
