@@ -375,7 +375,7 @@ def arranged(played: list[Line], number: int) -> list[Placed]:
 def main() -> None:
     """Run the benchmark, print its results, and exit with 1 if an aim is missed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.director", description=__doc__)
-    parser.add_argument("--events", type=int, default=20, help="arrangements by chance")
+    parser.add_argument("--events", type=int, default=100, help="arrangements by chance")
     parser.add_argument("--lines", type=Path, help="file that keeps the matches")
     options = parser.parse_args()
     played = lines(options.lines)

@@ -8,9 +8,9 @@ from typing import Literal, NamedTuple
 from lacoc_client.director.courts import CourtNow
 from lacoc_client.director.moments import Moment, Track
 from lacoc_client.director.moments import Why as Moving
-from lacoc_client.director.plan import CUTS_MOST, Prices, cuts_left, is_worth_it, may_cut
+from lacoc_client.director.plan import CUTS_MOST, Prices, cuts_left, is_worth_it, may_cut, worth
 
-AHEAD_S = 15.0
+AHEAD_S = 20.0
 """Everything is shown this much later than it is played [s], so the director knows what comes."""
 RESULT_S = 6.0
 """A result stays on air at least for this time [s]."""
@@ -142,19 +142,25 @@ class Director:
         return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
 
     def _locked(self, court: str, at_s: float) -> bool:
-        """Return whether a court is in the last 30 s of a close match at a time."""
+        """Return whether a court has a close end or a fresh result at a time."""
+        now = self._at(court, at_s)
+        if now is None or not now.is_over:
+            return now is not None and now.is_closing
+        before = self._at(court, at_s - RESULT_S)
+        return before is not None and before.is_played
+
+    def _at(self, court: str, at_s: float) -> CourtNow | None:
+        """Return how a court stood at a time, by the first look from then on."""
         index = bisect_left(self._looks, at_s, key=lambda look: look[0])
-        courts = self._looks[min(index, len(self._looks) - 1)][1]
-        return court in courts and courts[court].is_closing
+        return self._looks[min(index, len(self._looks) - 1)][1].get(court)
 
     def _richest(self, shown_s: float, shown: Mapping[str, CourtNow]) -> str:
         """Return the court to show: one where a match is played, with the largest moments soon.
 
         Of equal ones it is the one with the highest stake, then the first.
         """
-        worth = {name: (one.is_played, one.stake) for name, one in shown.items()}
         soon = dict.fromkeys(shown, 0.0)
         for one in self._moments:
             if one.court in soon and one.at_s >= shown_s - _LATE_S:
-                soon[one.court] += one.points**2
-        return max(shown, key=lambda name: (worth[name][0], soon[name], worth[name][1]))
+                soon[one.court] += worth(one.points)
+        return max(shown, key=lambda name: (shown[name].is_played, soon[name], shown[name].stake))

@@ -41,6 +41,14 @@ def may_cut(cuts: Sequence[float], at_s: float) -> bool:
     return cuts_left(cuts, at_s) > 0 and not (cuts and at_s - cuts[-1] < LEAST_S)
 
 
+def worth(points: float) -> float:
+    """Return what a moment of so many points is worth on air: their cube.
+
+    So one swing of ten points is worth as much as eight swings of five.
+    """
+    return points**3
+
+
 class Prices:
     """What moments and cuts are worth, compared with all moments of the last minutes.
 
@@ -51,15 +59,11 @@ class Prices:
     def __init__(self, known: Sequence[Moment]) -> None:
         self._sorted = sorted((one.points for one in known), reverse=True)
         self._least = self._rank(_LOOKED_AT)
-        self._costs = [_NEARLY * self._rank(share) ** 2 for share in _RANKS]
+        self._costs = [_NEARLY * worth(self._rank(share)) for share in _RANKS]
 
     def value(self, moment: Moment) -> float:
-        """Return what a moment is worth on air; all but the best moments are worth 0.
-
-        The worth is the square of the moment's points, so that one swing of ten points is worth
-        more than two swings of five.
-        """
-        return moment.points * moment.points if moment.points >= self._least else 0.0
+        """Return what a moment is worth on air; all but the best moments are worth 0."""
+        return worth(moment.points) if moment.points >= self._least else 0.0
 
     def cost(self, left: int) -> float:
         """Return what a cut costs while `left` cuts are left, 1 to `CUTS_MOST`."""
@@ -89,8 +93,8 @@ def is_worth_it(
         prices: what moments and cuts are worth.
         locked: tells whether a cut away from a court is forbidden at a time.
     """
-    worth = prices.value(moment)
-    if not worth:
+    gain = prices.value(moment)
+    if not gain:
         return False
     best = sorted(coming, key=lambda one: (-prices.value(one), one.at_s))[:_MOST]
     ahead = sorted(one for one in best if prices.value(one))
@@ -112,6 +116,6 @@ def is_worth_it(
         return max(stay, gain + way(index + 1, one.court, (*cuts, one.at_s)))
 
     made = tuple(cuts)
-    go = worth - prices.cost(max(1, cuts_left(cuts, moment.at_s)))
+    go = gain - prices.cost(max(1, cuts_left(cuts, moment.at_s)))
     go += way(0, moment.court, (*made, moment.at_s))
     return go > way(0, on_air, made)
