@@ -68,6 +68,13 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     assert contest_played.play(again) == 2
 
 
+def test_a_contest_that_runs_is_not_run_again(copied: Path) -> None:
+    """While one program runs a contest, another one is refused; later it may."""
+    with ContestFolder(copied).alone(), pytest.raises(UserError, match="another program"):
+        contest_played.play(copied)
+    assert contest_played.play(copied) == 0
+
+
 def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:
     """In a new contest with the same records, only the games of a changed entry are played."""
     contest = CONTEST + SWISS.replace('"swiss"', '"round-robin"').replace("rounds = 2\n", "")

@@ -182,10 +182,11 @@ def play_headless(
         The sheet at the end, and how many games this call played.
 
     Raises:
-        UserError: if the contest has no stage or too few teams, or something goes wrong.
+        UserError: if the contest runs already, has no stage or too few teams, or something goes
+            wrong.
     """
     where = ContestFolder(file)
-    with FactStore(where.facts) as store:
+    with where.alone(), FactStore(where.facts) as store:
         prepare(where, store)
         writer = SheetWriter(where, progress)
         with engine as opened:

@@ -1,6 +1,8 @@
 """Where the files of a contest are: beside its contest file."""
 
 import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from lacoc_arenas.arena import Arena
@@ -8,6 +10,9 @@ from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.plans import game, plans
 from lacoc_shared.contest import file as contests
 from lacoc_shared.gait.tables import Level
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.record import files
+from lacoc_shared.words import say
 
 
 class ContestFolder:
@@ -36,8 +41,27 @@ class ContestFolder:
         """The tokens of the teams; secret."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"
         """Names of the courts that have left their machine, and are run here since; one a line."""
+        self._lock = folder / f"{file.stem}.lock"
         self.entries = EntryFolder(folder / "entries")
         self.records = self.contest.recordings
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Run the contest in this process alone; a killed process does not keep others out.
+
+        Raises:
+            UserError: if another process runs the contest, or the folder can't be written.
+        """
+        try:
+            lock = self._lock.open("ab")
+        except OSError as error:
+            why = error.strerror or str(error)
+            path = text_of(self._lock)
+            raise UserError(say("command.cannot-write", path=path, why=why)) from None
+        with lock:
+            if not files.hold(lock):
+                raise UserError(say("contest.runs-already", file=text_of(self.file)))
+            yield
 
     @property
     def games(self) -> list[Arena]:

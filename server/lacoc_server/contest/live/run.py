@@ -84,12 +84,14 @@ def play_live(
         The sheet at the end.
 
     Raises:
-        UserError: if the contest has no stage, no office or too few teams, or something goes wrong.
+        UserError: if the contest runs already, has no stage, no office or too few teams, or
+            something goes wrong.
     """
     where = ContestFolder(file)
     if where.contest.office is None:
         raise UserError(say("contest.no-office", file=str(file)))
     with ExitStack() as stack:
+        stack.enter_context(where.alone())
         store = stack.enter_context(FactStore(where.facts))
         prepare(where, store, entering=entering)
         logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-contest-")))
