@@ -91,7 +91,7 @@ def _line(x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> str:
 
 def main() -> None:
     """Read the record that the command line names, and write the picture."""
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 3 or not sys.argv[2].endswith(".svg"):
         sys.exit("python examples/plot_match.py RECORD match.svg")
     try:
         match = notebook.read(sys.argv[1])

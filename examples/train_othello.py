@@ -2,7 +2,7 @@
 
     pip install "lacoc[server,rl]"
     python examples/train_othello.py --minutes 30
-    lacoc simulate my_bot.py straight --both-sides
+    lacoc simulate learned_bot.py straight --both-sides
 
 The teacher is a rule of a few lines (`teach`): go to the nearest disc that can be flipped. The
 learner is a network. It sees the places of both robots and all discs, and chooses between turning
@@ -271,8 +271,10 @@ def main() -> None:
         default=100,
         help="pairs of matches, one in each seat, that test the policy at the end",
     )
-    options.add_argument("--out", type=Path, default=Path("my_bot.py"), help="the bot file")
+    options.add_argument("--out", type=Path, default=Path("learned_bot.py"), help="the bot file")
     told = options.parse_args()
+    if told.out.exists():
+        options.error(f"{told.out} exists already; choose another name with --out")
     with _pool(max(1, told.jobs - 1)) as pool:
         learner = Learner(tuple(told.hidden), seed=1)
         for policy in train(pool, learner, 60 * told.minutes, told.matches):

@@ -77,7 +77,7 @@ def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
 
     wrong = script.add(line)
     assert wrong is not None
-    assert render(wrong).startswith("Line 2 is left out: ")
+    assert render(wrong).startswith("Line 2 can't be used: ")
     assert script.add("3") is None
     assert [key for _, key in played(script, 1.0)] == ["1", "3"]
 

@@ -234,6 +234,7 @@ def test_angles_move_the_joints() -> None:
         ({"arena": "practice"}, "duration_s"),
         ({"actions": "thoughts"}, "angles"),
         ({"beats": 0}, "at least 1"),
+        ({"beats": 1.5}, "whole number"),
         ({"robots": ("hexapod",) * 3}, "2"),
         ({"render_mode": "human"}, "rgb_array"),
         ({"settings": {"match": {"duration_s": -1}}}, "duration_s"),
@@ -243,6 +244,56 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> No
     """A wrong argument raises an error that names it, or says what is allowed."""
     with pytest.raises(UserError, match=said):
         LacocParallelEnv(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("kind", "action"),
+    [
+        *(("keys", action) for action in (-1, 9, 1.5, [1], "2")),
+        *(("angles", action) for action in (0, np.zeros(17), np.full(18, np.nan), "up")),
+    ],
+)
+def test_actions_outside_the_space_are_refused(kind: Any, action: Any) -> None:
+    """An action that the space does not have is refused and named; the episode stays as it was."""
+    env = LacocParallelEnv(settings=SHORT, actions=kind)
+    env.reset(seed=0)
+    before = env.save()
+    with pytest.raises(UserError, match=r"no action|not an action"):
+        env.step({"left": action})
+    with pytest.raises(UserError, match="red"):
+        env.step({"red": action})
+    assert env.save() == before
+
+
+FULL = """
+import resource, signal, sys
+from lacoc_server.simulate.environments import LacocParallelEnv
+from lacoc_shared.mistakes import UserError
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+env = LacocParallelEnv(settings={"match": {"duration_s": 1.0}})
+env.reset(seed=1)
+while env.agents:
+    env.step({})
+_, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+resource.setrlimit(resource.RLIMIT_FSIZE, (30_000, most))
+try:
+    env.write_record(sys.argv[1])
+except UserError as error:
+    print(error.phrase.code)
+resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+env.write_record(sys.argv[1])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a limit on the size of files")
+def test_a_full_disk_leaves_no_part_of_a_record(tmp_path: Path) -> None:
+    """On a full disk the record is not written, and later it can be written under its name."""
+    words = [sys.executable, "-c", FULL, str(tmp_path / "one.mcap")]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["record.no-room"]
+    assert [path.name for path in tmp_path.iterdir()] == ["one.mcap"]
 
 
 def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:

@@ -181,6 +181,21 @@ def test_a_mask_resets_some_rows() -> None:
     many.close()
 
 
+def test_wrong_actions_change_no_row() -> None:
+    """If an action is missing or is none of the space, no row goes on."""
+    many = LacocVectorEnv(2, settings=SHORT)
+    many.reset(seed=1)
+    before = [row.save() for row in many.rows]
+    for actions, said in (
+        (np.array([2]), "1 actions for 2 rows"),
+        (np.array([2, -1]), "no action"),
+    ):
+        with pytest.raises(UserError, match=said):
+            many.step(actions)
+    assert [row.save() for row in many.rows] == before
+    many.close()
+
+
 @pytest.mark.slow
 def test_rows_of_the_library() -> None:
     """`gymnasium.make_vec` makes rows, each with a seed and a picture of its own."""

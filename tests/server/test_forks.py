@@ -240,11 +240,23 @@ def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path
         (("--beat", "120", "--times", "3"), "needs a bot in a seat"),
         (("--beat", "120", "--keys", "left"), "does not name a seat and a file"),
         (("--beat", "120", "--keys", "left=none.txt"), "Cannot read none.txt"),
+        (("--beat", "20", "--take-back", "12"), "Event 12 happens at beat"),
+        (("--beat", "120", "--players", "planner,-", "--keys", "left=keys.txt"), "both name"),
+        (("--beat", "120", "--keys", "left=wrong.txt"), "Line 1 can't be used: 'f'"),
         (("--beat", "120", "--take-back", "999"), "event 999 can't be taken back"),
     ],
 )
-def test_a_mistake_is_explained(words: tuple[str, ...], said: str, file: Path) -> None:
+def test_a_mistake_is_explained(
+    words: tuple[str, ...],
+    said: str,
+    file: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """If options of `fork` are wrong, the error says which and why, and no fork is written."""
+    monkeypatch.chdir(tmp_path)
+    Path("keys.txt").write_text("1.0 2\n")
+    Path("wrong.txt").write_text("0 forward\n")
     code, found = run(fork_app, str(file), *words, "--out", str(file.parent))
     assert code != 0
     assert said in found

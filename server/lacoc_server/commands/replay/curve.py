@@ -96,5 +96,5 @@ def _bots(source: Source, players: str | None, folder: Path | None) -> tuple[str
         return best, best
     names = players.split(",")
     if len(names) != 2:
-        raise UserError(say("fork.players", seats=source.seats, given=len(names)))
+        raise UserError(say("odds.players", given=len(names)))
     return names[0], names[1]

@@ -226,9 +226,15 @@ def _show_odds(source: Source, beat: int, played: Sequence[Forked], json: bool) 
     won = {
         seat: sum(one.result.computed == seat for one in over) for seat in (*source.seats, "draw")
     }
+    others = [one.result.scores for one in played if not one.result.computed]
+    leads = [scores[0] - max(scores[1:], default=0) for scores in others]
     if json:
-        screen.print_json({"kind": "odds", "beat": beat, "forks": len(played), "won": won})
+        told = {"kind": "odds", "beat": beat, "forks": len(played), "won": won, "leads": leads}
+        screen.print_json(told)
         return
     screen.show(say("fork.odds", beat=beat, forks=len(played)))
     for seat, count in won.items():
         screen.show(say("fork.won", seat=seat, count=count, percent=100 * count / len(played)))
+    if leads:
+        said = [f"{lead:+}" for lead in leads]
+        screen.show(say("fork.not-over", count=len(leads), leads=said))

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
+from operator import index
 from typing import Any, Literal
 
 import numpy as np
@@ -89,7 +90,7 @@ class Court:
     def _check(arena: Arena, actions: str, beats: int) -> None:
         if actions not in ("keys", "angles"):
             raise UserError(say("environment.actions", found=str(actions)[:40]))
-        if beats < 1:
+        if not isinstance(beats, int) or beats < 1:
             raise UserError(say("environment.beats", found=beats))
         if Level.LOCOMOTION not in arena.match.open_levels:
             raise UserError(say("environment.level", arena=arena.name))
@@ -145,14 +146,49 @@ class Court:
             found.append(((limits[:, 0] + limits[:, 1]) / 2, (limits[:, 1] - limits[:, 0]) / 2))
         return found
 
+    def digit(self, seat: int, action: Any) -> int:
+        """Return the digit of an action.
+
+        Raises:
+            UserError: if there is no such action.
+        """
+        digits: tuple[int, ...] = self.digits[seat]
+        try:
+            number = index(action)
+        except TypeError:
+            number = -1
+        if not 0 <= number < len(digits):
+            raise UserError(say("environment.key", found=repr(action)[:40], last=len(digits) - 1))
+        return digits[number]
+
     def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
-        """Return the key that an action presses; if actions are angles, steer and return None."""
+        """Return the key that an action presses; if actions are angles, steer and return None.
+
+        Raises:
+            UserError: if the action space does not have the action.
+        """
         if self.actions == "keys":
-            return press(episode.frame, seat, self.digits[seat][action])
+            return press(episode.frame, seat, self.digit(seat, action))
         middle, half = self._ranges_rad[seat]
-        share = np.clip(np.asarray(action, np.float64), -1.0, 1.0)
+        share = shares(action, middle.shape)
         episode.steer(seat, tuple((middle + half * share).tolist()))
         return None
+
+
+def shares(action: Any, shape: tuple[int, ...]) -> Angles:
+    """Return an action of angles as an array of this shape, cut to -1 to 1.
+
+    Raises:
+        UserError: if it has another shape, or a number is not finite.
+    """
+    try:
+        share = np.asarray(action, np.float64)
+    except (TypeError, ValueError):
+        share = np.empty(0)
+    if share.shape != shape or not np.isfinite(share).all():
+        found = repr(action)[:80]
+        raise UserError(say("environment.shares", found=found, shape=[str(one) for one in shape]))
+    return np.clip(share, -1.0, 1.0)
 
 
 def lead(frame: Frame, seat: int) -> int:

@@ -283,12 +283,13 @@ class Episode:
             while match.beats < self.match.beats:
                 journal.beat(keys.get(match.beats + 1, ()))
             journal.beat([closing(match)])
+            journal.flush()
+            journal.close()
+            pack([journal.writer.path], file)
         except BaseException:  # Ctrl-C too: the record can be written again
             journal.close()
-            journal.writer.path.unlink()
+            journal.writer.path.unlink(missing_ok=True)
             raise
-        journal.close()
-        pack([journal.writer.path], file)
 
     def _inputs(self, keys: Sequence[Key | None]) -> list[Input]:
         """Return the inputs of the next beat, and note the keys."""

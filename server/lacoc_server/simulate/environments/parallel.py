@@ -125,9 +125,15 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         Returns:
             What each agent sees; rewards; whether the match is over; whether physics stopped; and
             at the end, for each agent, the scores and whether it won.
+
+        Raises:
+            UserError: if there is no such agent, or the action space does not have an action.
         """
         if not self.agents:
             return {}, {}, {}, {}, {}
+        if not actions.keys() <= self.action_spaces.keys():
+            found, agents = list(map(str, actions)), self.possible_agents
+            raise UserError(say("environment.agents", found=found, agents=agents))
         episode, court = self._episode, self.court
         keys = [
             None if (action := actions.get(agent)) is None else court.act(episode, seat, action)

@@ -73,7 +73,7 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         self.render_mode = render_mode
         court = Court(arena, settings, robots, "keys", restart, beats)
         self.metadata = {**type(self).metadata, "render_fps": 50 / beats}
-        self._beats = beats
+        self._court, self._beats = court, beats
         middle = (num_envs + 1) // 2
         self._halves = [
             _Half(court, opponent, rows, threads)
@@ -138,7 +138,15 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         Returns:
             What the learners see, rewards, whether each match is over, whether physics stopped, and
             what `LacocEnv` tells of each row.
+
+        Raises:
+            UserError: if there is not an action for each row; then no row has changed.
         """
+        if len(actions) != self.num_envs:
+            found, rows = len(actions), self.num_envs
+            raise UserError(say("environment.row-actions", found=found, rows=rows))
+        for action in actions:
+            self._court.digit(0, action)
         size = self.single_observation_space.shape or (0,)
         seen = np.empty((self.num_envs, *size), np.float32)
         rewards = np.zeros(self.num_envs)

@@ -12,6 +12,7 @@ from gymnasium import spaces
 from lacoc_arenas.learned.senses import Numbers
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import weigh_in
+from lacoc_server.simulate.environments.court import shares
 from lacoc_server.simulate.environments.drawn import Drawn
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course, practice_field
@@ -110,6 +111,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         self._drawn = Drawn(render_mode)
         joints = self._spec.joints
         shape = (postures, joints) if self._tables else (joints,)
+        self._shape = shape
         self.action_space = spaces.Box(-1.0, 1.0, shape, np.float32)
         high = [10.0] * len(_FIGURES)
         if not self._tables:
@@ -160,12 +162,11 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             whether time is up or physics stopped; and with a table all its figures.
 
         Raises:
-            UserError: if the episode is over.
+            UserError: if the episode is over, or the action space does not have the action.
         """
         if self._over:
             raise UserError(say("environment.over"))
-        share = np.clip(np.asarray(action, np.float64), -1.0, 1.0)
-        target = self._middle + self._half * share
+        target = self._middle + self._half * shares(action, self._shape)
         if self._tables:
             return self._try(target)
         self._drive.target = tuple(target.tolist())

@@ -99,11 +99,21 @@ def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
             raise UserError(say("fork.no-seat", seat=seat, seats=seats))
     if job.bots and len(job.bots) != len(seats):
         raise UserError(say("fork.players", seats=seats, given=len(job.bots)))
+    _check_event(job, source)
     players: dict[int, Callable[[], Press]] = {}
     for index, name in enumerate(job.bots):
         if name != RECORDED:
             (bot,) = bots_of(source, (name,), folder)
             players[index] = of_bot(bot, index, job.variant)
     for seat, lines in job.scripts.items():
+        if seats.index(seat) in players:
+            raise UserError(say("fork.two-players", seat=seat))
         players[seats.index(seat)] = of_script(lines, seats.index(seat))
     return Change(job.take_back, job.restart, players)
+
+
+def _check_event(job: ForkJob, source: Source) -> None:
+    """Check that the event that is to be taken back happened before the fork."""
+    for event in source.record.events:
+        if event.number == job.take_back and event.beat >= job.beat:
+            raise UserError(say("fork.event-later", event=event.number, beat=event.beat))
