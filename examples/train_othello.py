@@ -305,10 +305,11 @@ def train(pool: Executor, learner: Learner, length_s: float, matches: int) -> It
             played += matches
             seen = np.concatenate([*([seen] if len(seen) else []), *(one.seen for one in new)])
             lead = statistics.mean(one.lead for one in new)
-            print(
-                f"{1 - left:4.0%}: {played} matches, lead {lead:5.1f}; {right[-1]:.0%} right",
-                flush=True,
-            )
+            who = "learner" if policy else "teacher"
+            said = f"{1 - left:4.0%}: {played} matches; the {who} led straight by {lead:.1f} points"
+            if policy:
+                said += f", and chose as the teacher in {right[-1]:.0%} of all places"
+            print(said, flush=True)
             policy = learner.network()
             yield policy
     yield learner.network()
