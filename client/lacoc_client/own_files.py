@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from lacoc_client.seat_files import SeatFiles, gaits_in, gather
 from lacoc_robots.library import GAIT_NAMES
+from lacoc_robots.seat_files import SeatFiles, gaits_in, gather
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import Phrase
 

@@ -44,7 +44,7 @@ def find_robot(name_or_path: str) -> tuple[str, bytes]:
         UserError: if there is no such robot, or its file can't be read.
     """
     file = _robot_file(name_or_path)
-    return text_of(file.name), _content(file)
+    return text_of(file.name), read_content(file)
 
 
 def sample_gait_files(name_or_path: str) -> GaitFiles:
@@ -63,7 +63,7 @@ def gait_files_in(folder: Path) -> GaitFiles:
         UserError: if a file can't be read.
     """
     postures, locomotion = (
-        SentFile(name, _content(folder / name)) if (folder / name).exists() else None
+        SentFile(name, read_content(folder / name)) if (folder / name).exists() else None
         for name in GAIT_NAMES
     )
     return GaitFiles(postures, locomotion)
@@ -89,7 +89,12 @@ def _robot_file(name_or_path: str) -> Path:
     return plugins.folder_of(plugins.package(GROUP, "robot", name_or_path)) / "robot.toml"
 
 
-def _content(file: Path) -> bytes:
+def read_content(file: Path) -> bytes:
+    """Read a file.
+
+    Raises:
+        UserError: if it can't be read.
+    """
     try:
         return file.read_bytes()
     except OSError as error:

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from lacoc_client.own_files import OwnFiles
-from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather, remarks, with_level_b
 from lacoc_robots.library import sample_gait_files
+from lacoc_robots.seat_files import SeatFiles, as_text, gaits_in, gather, remarks, with_level_b
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.text import read_gait, write_gait
@@ -152,9 +152,10 @@ def test_a_workbook_travels_as_text() -> None:
     assert read_gait(files.postures.data, "a") == read_gait(POSTURES, "b")
     assert files.locomotion == SAMPLE.locomotion
 
-    with pytest.raises(FileRefused) as caught:
-        as_text(SeatFiles(postures=SentFile("broken.xlsx", b"PK\x03\x04")))
-    assert [one.file for one in caught.value.mistakes] == ["broken.xlsx"]
+    for broken in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"):  # cut off; with a password
+        with pytest.raises(FileRefused) as caught:
+            as_text(SeatFiles(postures=SentFile("broken.xlsx", broken)))
+        assert [one.file for one in caught.value.mistakes] == ["broken.xlsx"]
 
 
 def test_level_b_is_made_of_postures_that_come_alone() -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_robots.library import sample_gait_files
+from lacoc_robots.library import robot_folder, sample_gait_files
 from lacoc_server.contest import organiser
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
@@ -22,6 +22,7 @@ from lacoc_server.contest.live.whereabouts import Known, Pace
 from lacoc_shared.codec import encode
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.tokens import new_token
+from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import Refusal, SentFile
 from lacoc_shared.messages.desk import (
     AnyRequest,
@@ -45,6 +46,7 @@ from lacoc_shared.messages.desk import (
     TokenList,
     Tokens,
 )
+from lacoc_shared.words import say
 
 NOW_MS = 1_800_000_000_000
 KEY, CODE = "organiser", "K7QM3X"
@@ -144,6 +146,36 @@ def test_a_team_enters_by_page(room: Room) -> None:
     own = room.ask(Own(secret=applied.token))
     assert isinstance(own, OwnEntry)
     assert (own.state, own.token) == ("in", applied.token), "one token for the whole event"
+
+
+def test_a_workbook_is_read_as_at_a_court(room: Room) -> None:
+    """A workbook enters under its own name; a broken one is a mistake of the team's own file."""
+    locomotion = sample().locomotion
+    data = (robot_folder("hexapod") / "Loco-data.xlsx").read_bytes()
+    files = Files(postures=SentFile("Loco-data.xlsx", data), locomotion=locomotion)
+    applied = room.ask(Apply(secret=CODE, team="Bees", files=files))
+    assert isinstance(applied, OwnEntry), applied
+    text = room.applications.waiting["Bees"].entry.postures
+    assert text is not None
+    assert read_gait(text, "") == read_gait(sample().postures.data, "")  # type: ignore[union-attr]
+
+    alone = Files(postures=files.postures)
+    assert isinstance(room.ask(Apply(secret=CODE, team="Crabs", files=alone)), OwnEntry)
+
+    half = SentFile("mine.xlsx", data[: len(data) // 2])
+    refused = room.ask(Apply(secret=CODE, team="Ants", files=Files(postures=half)))
+    assert isinstance(refused, Refusal)
+    (mistake,) = refused.mistakes
+    assert (mistake.file, mistake.found) == ("mine.xlsx", say("gait.damaged"))
+    assert room.states()["Ants"] == "refused"
+
+
+def test_a_mistake_in_a_text_has_the_team_s_own_name(room: Room) -> None:
+    """A mistake names the file as the team called it."""
+    files = Files(locomotion=SentFile("walk.txt", b"z"))
+    refused = room.ask(Apply(secret=CODE, team="Ants", files=files))
+    assert isinstance(refused, Refusal)
+    assert {mistake.file for mistake in refused.mistakes} == {"walk.txt"}
 
 
 def test_files_are_replaced_until_entries_close_then_with_a_reason(room: Room) -> None:

@@ -1,5 +1,6 @@
 """Tests of entries: the files of a team, weighed in and frozen under their hash."""
 
+import os
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -10,15 +11,20 @@ from benchmarks import contest_played
 from benchmarks.contest_played import CONTEST, FINAL, IDLE, SWISS
 
 from lacoc_arenas import arena as arenas
-from lacoc_robots.library import find_robot
+from lacoc_robots.library import find_robot, robot_folder
+from lacoc_robots.seat_files import gaits_in
+from lacoc_server.commands.contest import playing
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.entries import EntryFolder, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Closed, Disqualified, FilesChanged, Withdrawn
+from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import LANGUAGES, render, say
 
-ENTRY = gather(None, "planner", "hexapod")
+ENTRY = gather(None, "planner", "hexapod").entry
+SAMPLE = robot_folder("hexapod")
 
 
 @dataclass
@@ -63,7 +69,7 @@ def cup(tmp_path: Path) -> Cup:
 def test_each_part_changes_the_hash(change: dict[str, object]) -> None:
     """Another file or bot gives an entry another hash; the same files give the same one."""
     assert msgspec.structs.replace(ENTRY, **change).hash != ENTRY.hash
-    assert gather(None, "planner", "hexapod").hash == ENTRY.hash
+    assert gather(None, "planner", "hexapod").entry.hash == ENTRY.hash
 
 
 def test_frozen_files_that_were_changed_are_found(tmp_path: Path) -> None:
@@ -98,6 +104,94 @@ def test_every_mistake_of_every_file_is_told(tmp_path: Path) -> None:
         weigh(gather(own, "", "hexapod"), [arenas.load("othello")], {})
     assert len(refused.value.mistakes) > 2
     assert len({mistake.file for mistake in refused.value.mistakes}) > 1
+
+
+@pytest.mark.parametrize(("book_s", "taken"), [(1001, "Loco-data.xlsx"), (999, "Loco-data.txt")])
+def test_of_a_workbook_and_a_text_the_newer_is_taken(
+    tmp_path: Path, book_s: int, taken: str
+) -> None:
+    """`contest enter` takes the gait files of a folder that `lacoc play` takes there."""
+    for name in ("Loco-data.txt", "LocoTra-data.txt"):
+        (tmp_path / name).write_bytes((SAMPLE / name).read_bytes())
+        os.utime(tmp_path / name, (1000, 1000))
+    other = (SAMPLE / "Loco-data.txt").read_bytes().replace(b"45", b"44")
+    (tmp_path / "Loco-data.txt").write_bytes(other)
+    os.utime(tmp_path / "Loco-data.txt", (1000, 1000))
+    (tmp_path / "Loco-data.xlsx").write_bytes((SAMPLE / "Loco-data.xlsx").read_bytes())
+    os.utime(tmp_path / "Loco-data.xlsx", (book_s, book_s))
+
+    handed = gather(tmp_path, "", "hexapod")
+
+    assert handed.taken == (taken, "LocoTra-data.txt")
+    assert [path.name for path in gaits_in(tmp_path)] == [*handed.taken]
+    table = read_gait(handed.entry.postures or b"", "")
+    from_book = read_gait((SAMPLE / "Loco-data.txt").read_bytes(), "")
+    assert (table == from_book) == (taken == "Loco-data.xlsx")
+    newer = [note.code for note in handed.notes]
+    assert newer == (["play.older-sequences"] if taken == "Loco-data.xlsx" else [])
+    weigh(handed, [arenas.load("othello")], {})
+
+
+def test_a_workbook_alone_is_enough(tmp_path: Path) -> None:
+    """A folder with nothing but a workbook enters; level B is the sample's (README)."""
+    (tmp_path / "Loco-data.xlsx").write_bytes((SAMPLE / "Loco-data.xlsx").read_bytes())
+    handed = gather(tmp_path, "", "hexapod")
+    entry = weigh(handed, [arenas.load("othello")], {})
+    assert handed.made
+    assert (handed.taken, handed.notes) == (("Loco-data.xlsx",), ())
+    assert read_gait(entry.locomotion or b"", "") == read_gait(ENTRY.locomotion or b"", "")
+
+
+def test_a_broken_workbook_is_a_mistake_among_the_others(tmp_path: Path) -> None:
+    """A cut-off workbook is a mistake of the team's file; other files' mistakes come with it."""
+    book = (SAMPLE / "Loco-data.xlsx").read_bytes()
+    (tmp_path / "Loco-data.xlsx").write_bytes(book[: len(book) // 2])
+    (tmp_path / "LocoTra-data.txt").write_bytes(ENTRY.locomotion or b"")
+    for games in ([arenas.load("othello")], []):
+        with pytest.raises(FileRefused) as refused:
+            weigh(gather(tmp_path, "", "hexapod"), games, {})
+        (mistake,) = refused.value.mistakes
+        assert (mistake.file, mistake.found) == ("Loco-data.xlsx", say("gait.damaged"))
+
+    (tmp_path / "LocoTra-data.txt").write_text("z\n")
+    (tmp_path / "robot.toml").write_text("legs = 3\n")
+    with pytest.raises(FileRefused) as refused:
+        weigh(gather(tmp_path, "", "hexapod"), [arenas.load("othello")], {})
+    files = [mistake.file for mistake in refused.value.mistakes]
+    assert set(files) == {"Loco-data.xlsx", "LocoTra-data.txt", "robot.toml"}
+    assert files.count("Loco-data.xlsx") == 1
+
+
+def test_a_folder_without_a_gait_is_told_what_belongs_there(tmp_path: Path) -> None:
+    """The words for a missing folder or gait name the files, and no sign that `enter` lacks."""
+    with pytest.raises(UserError, match=r"Loco-data\.xlsx") as no_gait:
+        gather(tmp_path, "", "hexapod")
+    with pytest.raises(UserError, match="no folder") as no_folder:
+        gather(tmp_path / "nowhere", "", "hexapod")
+    for error in (no_gait, no_folder):
+        assert all("@" not in render(error.value.phrase, language) for language in LANGUAGES)
+
+
+def test_the_command_tells_which_files_it_took(
+    cup: Cup, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`lacoc contest enter` prints the files that it takes, also if one of them has mistakes."""
+    folder = cup.file.parent / "own"
+    folder.mkdir()
+    book = (SAMPLE / "Loco-data.xlsx").read_bytes()
+    (folder / "Loco-data.xlsx").write_bytes(book)
+    (folder / "LocoTra-data.xlsx").write_bytes(book)
+    playing.enter("Ann", folder, contest=cup.file)
+    told = " ".join("".join(capsys.readouterr()).split())
+    assert "Files taken from the folder: Loco-data.xlsx." in told
+    assert "LocoTra-data.xlsx is not used" in told
+    assert "level B is made from Loco-data.xlsx" in told
+    assert "Ann has entered" in told
+
+    (folder / "Loco-data.xlsx").write_bytes(book[:1000])
+    with pytest.raises(FileRefused):
+        playing.enter("Ann", folder, contest=cup.file)
+    assert "Files taken from the folder: Loco-data.xlsx." in "".join(capsys.readouterr())
 
 
 @pytest.mark.parametrize(
@@ -184,6 +278,6 @@ def test_an_own_robot_is_in_the_entry(tmp_path: Path) -> None:
     own = tmp_path / "own"
     own.mkdir()
     (own / "Loco-data.txt").write_bytes(ENTRY.locomotion or b"")
-    assert gather(own, "", "hexapod").robot == find_robot("hexapod")[1]
+    assert gather(own, "", "hexapod").entry.robot == find_robot("hexapod")[1]
     (own / "robot.toml").write_bytes(find_robot("long-legs")[1])
-    assert gather(own, "", "hexapod").robot == find_robot("long-legs")[1]
+    assert gather(own, "", "hexapod").entry.robot == find_robot("long-legs")[1]

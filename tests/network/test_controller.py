@@ -13,7 +13,7 @@ from waiting import until
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller, Hold
 from lacoc_client.gateway.seat_thread import SeatThread
-from lacoc_client.seat_files import SeatFiles, to_send
+from lacoc_robots.seat_files import SeatFiles, to_send
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import seal
 from lacoc_shared.codec import encode

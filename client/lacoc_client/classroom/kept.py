@@ -7,7 +7,7 @@ from lacoc_client.design.learning.draft import NAME as DRAFT
 from lacoc_client.design.learning.draft import read_draft
 from lacoc_client.phases.class_file import ClassFile, Document
 from lacoc_client.phases.export import evidence_csv, tables_zip
-from lacoc_client.seat_files import USUAL_NAMES
+from lacoc_robots.seat_files import USUAL_NAMES
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.words import say

@@ -19,7 +19,7 @@ from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.export import evidence_csv, tables_zip
-from lacoc_client.seat_files import SeatFiles
+from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 

@@ -11,7 +11,6 @@ from typing import Literal
 import msgspec
 
 from lacoc_client.phases.export import free_name
-from lacoc_client.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_client.simulation import (
     BeginLine,
     LeftOutLine,
@@ -21,6 +20,7 @@ from lacoc_client.simulation import (
     Standing,
     StandingsLine,
 )
+from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_shared.mistakes import Mistake, UserError, text_of
 from lacoc_shared.words import Phrase, say
 

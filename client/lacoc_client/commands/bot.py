@@ -15,9 +15,9 @@ from lacoc_client.asking import NoCourt, NotNow, Patience
 from lacoc_client.bot_player import BotPlayer
 from lacoc_client.commands import entrance
 from lacoc_client.controller import Controller, Hold
-from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
 from lacoc_client.team_way import TeamWay, is_gone, is_over
+from lacoc_robots.seat_files import SeatFiles, gather
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages.office import Whereabouts

@@ -15,12 +15,12 @@ from lacoc_client.commands import entrance, pages
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.own_files import OwnFiles
-from lacoc_client.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_client.stopping import stop_signals
 from lacoc_client.team_way import TeamWay, is_gone, is_over, office_court
 from lacoc_client.terminal.keys import Keys, open_keys
 from lacoc_client.terminal.play import TerminalPlay, keys_table
 from lacoc_client.terminal.words import played
+from lacoc_robots.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.gait.tables import Level

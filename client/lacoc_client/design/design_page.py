@@ -20,8 +20,8 @@ from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.evidence import Hand, Moved, Named
 from lacoc_client.phases.facts import TrialFacts
-from lacoc_client.seat_files import SeatFiles
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
+from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.studio import TrialReply

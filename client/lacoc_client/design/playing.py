@@ -4,7 +4,7 @@ import tempfile
 import threading
 from pathlib import Path
 
-from lacoc_client.seat_files import USUAL_NAMES, SeatFiles
+from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_shared.command.child import Child
 from lacoc_shared.words import say
 

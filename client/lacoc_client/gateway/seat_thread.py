@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from lacoc_client.controller import REPEAT_S, Controller, Hold
 from lacoc_client.gateway.wire import FAULT
-from lacoc_client.seat_files import SeatFiles
+from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import open_client

@@ -1,7 +1,7 @@
 """What an organiser does with a contest: enter teams, take them out, let their games be played."""
 
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -9,7 +9,7 @@ from pathlib import Path
 from lacoc_server.contest import publish
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.headless.play import Engine, play
-from lacoc_server.contest.kept.entries import Entry, gather, weigh
+from lacoc_server.contest.kept.entries import Entry, HandedIn, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
@@ -34,7 +34,14 @@ NAME_MAX = 24
 """Most characters of a team's name."""
 
 
-def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> Phrase:
+def enter(
+    file: Path,
+    team: str,
+    folder: Path | None,
+    bot: str,
+    reason: str,
+    found: Callable[[HandedIn], None] = lambda _: None,
+) -> Phrase:
     """Enter a team, or change its files; return what was done.
 
     Args:
@@ -43,6 +50,7 @@ def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> 
         folder: folder with its files; None: the contest's robot and gait.
         bot: the bot that plays for it; "": people play.
         reason: why its files change after entries were closed.
+        found: called with the files that were found, before they are weighed in.
 
     Raises:
         FileRefused: with every mistake of every file.
@@ -50,8 +58,9 @@ def enter(file: Path, team: str, folder: Path | None, bot: str, reason: str) -> 
     """
     team = team_name(team)
     where = ContestFolder(file)
-    entry = gather(folder, bot, where.contest.robot)
-    weigh(entry, where.games, where.contest.limits)
+    handed = gather(folder, bot, where.contest.robot)
+    found(handed)
+    entry = weigh(handed, where.games, where.contest.limits)
     with FactStore(where.facts) as store:
         return enter_weighed(where, store, team, entry, reason)
 

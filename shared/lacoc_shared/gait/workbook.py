@@ -70,8 +70,17 @@ def read_gait_file(
         raise UserError(
             say("command.cannot-read", path=str(path), why=error.strerror or str(error))
         ) from error
-    read = read_workbook if data.startswith((_ZIP, _COMPOUND_FILE)) else read_gait
+    read = read_workbook if is_workbook(data) else read_gait
     return read(data, path.name, legs=legs, range_deg=range_deg, notes=notes)
+
+
+def is_workbook(data: bytes) -> bool:
+    """Return whether a gait file is a workbook and not text; it may be broken or of another kind.
+
+    Args:
+        data: the file, or its first bytes.
+    """
+    return data.startswith((_ZIP, _COMPOUND_FILE))
 
 
 def read_workbook(

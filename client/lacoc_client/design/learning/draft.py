@@ -5,7 +5,7 @@ import msgspec
 from lacoc_client.design.files import sent_gait
 from lacoc_client.design.table import FileTable
 from lacoc_client.phases.class_file import Document
-from lacoc_client.seat_files import SeatFiles, with_level_b
+from lacoc_robots.seat_files import SeatFiles, with_level_b
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 

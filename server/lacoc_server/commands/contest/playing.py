@@ -10,6 +10,7 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.words import render, say
 
 if TYPE_CHECKING:
+    from lacoc_server.contest.kept.entries import HandedIn
     from lacoc_server.contest.kept.sheet_writer import Progress
     from lacoc_server.contest.live.run import Opened
     from lacoc_server.contest.sheet import ContestSheet
@@ -45,12 +46,26 @@ def enter(
 ) -> None:
     """Enter a team with its files; they are weighed in at once, and frozen.
 
+    Of several gait files for a level the newest one is taken: Loco-data.txt or Loco-data.xlsx for
+    level A, LocoTra-data.txt for level B. If there is none for level B, it is made from the
+    postures, with the sequences of the sample's keys.
+
     A team can enter again with other files until entries are closed: at the time in the contest
     file, or when the first stage is drawn. After that a change needs a reason.
     """
     from lacoc_server.contest import organiser
 
-    screen.show(organiser.enter(contest, team, folder, bot, reason))
+    screen.show(organiser.enter(contest, team, folder, bot, reason, _tell_found))
+
+
+def _tell_found(handed: "HandedIn") -> None:
+    """Print which files of a folder are taken, and remarks on them."""
+    if handed.taken:
+        screen.note(say("contest.taken", files=handed.taken))
+    for note in handed.notes:
+        screen.warn(note)
+    if handed.made and handed.gaits.postures is not None:
+        screen.note(say("contest.made-level-b", file=handed.gaits.postures.name))
 
 
 def withdraw(

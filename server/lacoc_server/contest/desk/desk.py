@@ -132,10 +132,10 @@ class Desk:
     def _weighed(self, team: str, files: Files) -> Entry:
         """Weigh in files; note for the organiser what is wrong with them."""
         contest = self._book.where.contest
-        entry = entering.entry_of(files, contest.robot)
         try:
-            with self._scales:
-                weigh(entry, self._games, contest.limits)
+            with self._scales:  # reading a workbook takes a while, too
+                handed = entering.handed_in(files, contest.robot)
+                entry = weigh(handed, self._games, contest.limits)
         except FileRefused as error:
             with self._one:
                 self._book.note_refused(team, tuple(error.mistakes))

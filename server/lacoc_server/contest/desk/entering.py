@@ -2,9 +2,9 @@
 
 from typing import Literal
 
-from lacoc_robots.library import find_robot
+from lacoc_robots.seat_files import SeatFiles
 from lacoc_server.contest.desk.book import Book
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.entries import Entry, HandedIn, hand_in
 from lacoc_server.contest.organiser import close_in_time, enter_weighed, team_name
 from lacoc_shared.messages.desk import Files, OwnEntry
 from lacoc_shared.mistakes import UserError
@@ -14,23 +14,19 @@ APPLICATIONS_MOST = 300
 """Most teams that wait for the organiser."""
 
 
-def entry_of(files: Files, robot: str) -> Entry:
-    """Make an entry of the files that a team hands in.
+def handed_in(files: Files, robot: str) -> HandedIn:
+    """Read the files that a team hands in on its page.
 
     Args:
         files: the files.
         robot: the contest's robot, for a team that brings none.
 
     Raises:
-        UserError: if there is no gait file.
+        UserError: if there is no gait file, or the contest's robot can't be read.
     """
     if files.postures is None and files.locomotion is None:
         raise UserError(say("desk.no-files"))
-    return Entry(
-        robot=files.robot.data if files.robot else find_robot(robot)[1],
-        postures=files.postures.data if files.postures else None,
-        locomotion=files.locomotion.data if files.locomotion else None,
-    )
+    return hand_in(SeatFiles(files.robot, files.postures, files.locomotion), robot)
 
 
 def newcomer(book: Book, text: str) -> str:

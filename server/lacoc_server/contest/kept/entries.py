@@ -4,7 +4,8 @@ import hashlib
 import re
 import shutil
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +14,17 @@ import msgspec
 from lacoc_arenas import brains
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.checked_bot import broken
-from lacoc_robots.library import GAIT_NAMES, find_robot, gait_files_in, sample_gait_files
+from lacoc_robots.library import GAIT_NAMES, find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
+from lacoc_robots.seat_files import SeatFiles, files_in, gaits_in, remarks, to_send
 from lacoc_robots.stand_test import try_standing
+from lacoc_server.match.entry import Entry as WeighedIn
 from lacoc_server.match.entry import weigh_in
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 _ROBOT, _PROGRAM, _BOT = "robot.toml", "bot.py", "entry.json"
 """Names of the files of an entry besides the gait files."""
@@ -53,58 +57,141 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True):
         return JoinSeat(seat, team, robot, postures, locomotion, token_hash="")
 
 
-def gather(folder: Path | None, bot: str, robot: str) -> Entry:
+@dataclass(frozen=True)
+class HandedIn:
+    """What a team hands in, before it is weighed in."""
+
+    robot: SentFile
+    gaits: SeatFiles
+    """The gait files as text, under the names that the team gave them."""
+    bot: str = ""
+    program: bytes | None = None
+    """As in `Entry`."""
+    wrong: FileRefused | None = None
+    """The mistakes of workbooks; None: there are none."""
+    taken: tuple[str, ...] = ()
+    """Names of the files that were taken from a folder."""
+    made: bool = False
+    """Whether level B was made from the postures."""
+    notes: tuple[Phrase, ...] = ()
+    """Remarks on the folder and on its workbook."""
+
+    @property
+    def entry(self) -> Entry:
+        """The entry that the contest keeps once it is weighed in."""
+        return Entry(
+            robot=self.robot.data,
+            postures=self.gaits.postures.data if self.gaits.postures else None,
+            locomotion=self.gaits.locomotion.data if self.gaits.locomotion else None,
+            bot=self.bot,
+            program=self.program,
+        )
+
+
+def hand_in(files: SeatFiles, robot: str) -> HandedIn:
+    """Make what a team hands in of its files: workbooks become text, as for a court.
+
+    If there is no locomotion file, level B is made from the postures, as on the page /play.
+
+    Args:
+        files: the files as the team has them, at least one of them a gait file.
+        robot: the contest's robot, for a team that brings none: an installed one or a file.
+
+    Raises:
+        UserError: if the contest's robot can't be read.
+    """
+    notes: list[Phrase] = []
+    gaits, wrong = to_send(files, None, notes)
+    return HandedIn(
+        files.robot or SentFile(_ROBOT, find_robot(robot)[1]),
+        gaits,
+        wrong=wrong,
+        made=files.locomotion is None and gaits.locomotion is not None,
+        notes=tuple(notes),
+    )
+
+
+def gather(folder: Path | None, bot: str, robot: str) -> HandedIn:
     """Read the files that a team hands in.
 
     Args:
         folder: folder with gait files, and a robot.toml if the robot is the team's own; None: the
-            contest's robot with its sample gait.
+            contest's robot with its sample gait. Of several gait files for a level the newest one
+            is taken, as `lacoc play` does.
         bot: an installed bot's name, or a Python file; "": people play.
         robot: the contest's robot: an installed one or a file.
 
     Raises:
         UserError: if the folder has no gait, or a file can't be read.
     """
-    if folder is not None and not folder.is_dir():
-        raise UserError(say("simulate.no-folder", folder=str(folder)))
-    own = None if folder is None else folder / _ROBOT
-    _, model = find_robot(str(own) if own is not None and own.exists() else robot)
-    postures, locomotion = sample_gait_files(robot) if folder is None else gait_files_in(folder)
-    if postures is None and locomotion is None:
-        wanted = " or ".join(GAIT_NAMES)
-        raise UserError(say("simulate.no-gait", wanted=wanted, folder=str(folder)))
+    if folder is None:
+        handed = hand_in(SeatFiles(None, *sample_gait_files(robot)), robot)
+    else:
+        handed = _of_folder(folder, robot)
     program = _read(Path(bot)) if bot.endswith(".py") else None
-    return Entry(
-        robot=model,
-        postures=None if postures is None else postures.data,
-        locomotion=None if locomotion is None else locomotion.data,
-        bot=bot if program is None else text_of(Path(bot).stem),
-        program=program,
-    )
+    name = bot if program is None else text_of(Path(bot).stem)
+    return replace(handed, bot=name, program=program)
 
 
-def weigh(entry: Entry, games: Iterable[Arena], limits: Mapping[str, Any]) -> None:
+def _of_folder(folder: Path, robot: str) -> HandedIn:
+    if not folder.is_dir():
+        raise UserError(say("contest.no-folder", folder=str(folder)))
+    files = files_in(folder)
+    if files.postures is None and files.locomotion is None:
+        raise UserError(say("contest.no-gait", folder=str(folder)))
+    if (own := folder / _ROBOT).exists():
+        files = files._replace(robot=SentFile(*find_robot(str(own))))
+    handed = hand_in(files, robot)
+    taken = tuple(file.name for file in files if file is not None)
+    notes = (*remarks(folder, gaits_in(folder)), *handed.notes)
+    return replace(handed, taken=taken, notes=notes)
+
+
+def weigh(handed: HandedIn, games: Iterable[Arena], limits: Mapping[str, Any]) -> Entry:
     """Check an entry: weigh in its files as a court does, let its robot stand, and check its bot.
 
     Args:
-        entry: the entry.
+        handed: what the team hands in.
         games: the arenas in which the team will play.
         limits: the contest's limits for robots.
 
+    Returns:
+        The entry, to be kept.
+
     Raises:
-        FileRefused: with every mistake of every file, or because the robot does not stand.
+        FileRefused: with every mistake of every file, or because the robot does not stand. A
+            mistake has the name that the team gave the file.
         UserError: if its bot is not installed, or its program has a mistake.
     """
     for arena in games:
         levels = arena.match.open_levels
-        join = entry.join(0, "")
-        fit = weigh_in(join.robot, join.postures, join.locomotion, Limits.of(limits), levels)
-        if falls := try_standing(fit.robot, fit.gait, levels, join.robot.name):
+        fit = _weigh_in(handed, limits, levels)
+        if falls := try_standing(fit.robot, fit.gait, levels, handed.robot.name):
             raise FileRefused(falls)
-        if entry.bot and entry.program is None:
-            brains.find(arena, entry.bot)
-    if entry.program is not None:
-        _check_program(f"{entry.bot}.py", entry.program)
+        if handed.bot and handed.program is None:
+            brains.find(arena, handed.bot)
+    if handed.wrong is not None:  # the contest has no game yet
+        raise handed.wrong
+    if handed.program is not None:
+        _check_program(f"{handed.bot}.py", handed.program)
+    return handed.entry
+
+
+def _weigh_in(handed: HandedIn, limits: Mapping[str, Any], levels: Collection[Level]) -> WeighedIn:
+    """Weigh in the files for one arena.
+
+    Raises:
+        FileRefused: with every mistake of every file.
+    """
+    _, postures, locomotion = handed.gaits
+    try:
+        return weigh_in(handed.robot, postures, locomotion, Limits.of(limits), levels)
+    except FileRefused as refused:
+        if handed.wrong is None:
+            raise
+        books = {mistake.file for mistake in handed.wrong.mistakes}  # they came without contents
+        others = [mistake for mistake in refused.mistakes if mistake.file not in books]
+        raise FileRefused([*handed.wrong.mistakes, *others]) from None
 
 
 def _check_program(name: str, source: bytes) -> None:

@@ -1,15 +1,15 @@
 """A contestant's robot and gait files, read from their folders (rules 2)."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_robots.library import GAIT_NAMES, find_robot, sample_gait_files
+from lacoc_robots.library import GAIT_NAMES, find_robot, read_content, sample_gait_files
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.joining import join_postures, sample_sequences
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait, write_gait
-from lacoc_shared.gait.workbook import read_gait_file, read_workbook
+from lacoc_shared.gait.workbook import is_workbook, read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
 from lacoc_shared.words import Phrase, say
@@ -69,7 +69,7 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
     mistakes: list[Mistake] = []
     texts: list[SentFile | None] = []
     for file in (files.postures, files.locomotion):
-        if file is None or not file.data.startswith(_ZIP):
+        if file is None or not is_workbook(file.data):
             texts.append(file)
             continue
         try:
@@ -84,10 +84,11 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
 def to_send(
     files: SeatFiles, sequences: Sequence[Sequence[int]] | None, notes: list[Phrase]
 ) -> tuple[SeatFiles, FileRefused | None]:
-    """Turn the files of a page into files that a court reads.
+    """Turn files as a team has them into files that a court reads.
 
-    Workbooks with mistakes are sent without their contents. The court then says whether it needs
-    the files now: in a match that is on, a seat may be taken again without them.
+    Workbooks with mistakes are sent without their contents. Whoever reads the files then finds the
+    mistakes of the other files too. A court says whether it needs the files now: in a match that is
+    on, a seat may be taken again without them.
 
     Args:
         files: the files of a join.
@@ -107,8 +108,7 @@ def to_send(
 
 
 def _emptied(file: SentFile | None) -> SentFile | None:
-    is_workbook = file is not None and file.data.startswith(_ZIP)
-    return SentFile(file.name, _ZIP) if file is not None and is_workbook else file
+    return SentFile(file.name, _ZIP) if file is not None and is_workbook(file.data) else file
 
 
 def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = None) -> SeatFiles:
@@ -143,11 +143,27 @@ def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = N
 
 def gaits_in(folder: Path) -> list[Path]:
     """Return the newest gait file of each level in a folder, found by name (workshop 4-1)."""
-    found = (
-        [path for pattern in patterns for path in sorted(folder.glob(pattern))]
-        for patterns in (_POSTURES, _LOCOMOTION)
+    return [path for path in _newest_in(folder) if path is not None]
+
+
+def files_in(folder: Path) -> SeatFiles:
+    """Read the gait files of `gaits_in` as they are; a file's name decides its level.
+
+    Raises:
+        UserError: if a file can't be read.
+    """
+    postures, locomotion = (
+        None if path is None else SentFile(text_of(path.name), read_content(path))
+        for path in _newest_in(folder)
     )
-    return [max(paths, key=lambda path: path.stat().st_mtime) for paths in found if paths]
+    return SeatFiles(None, postures, locomotion)
+
+
+def _newest_in(folder: Path) -> Iterator[Path | None]:
+    """Yield the newest gait file of level A, then that of level B; None: there is none."""
+    for patterns in (_POSTURES, _LOCOMOTION):
+        paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]
+        yield max(paths, key=lambda path: path.stat().st_mtime, default=None)
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
@@ -189,7 +205,7 @@ def _read(
             raise UserError(say("play.same-keys", one=one, other=path.name))
         data = path.read_bytes()
         name = text_of(path.name)
-        if data.startswith(_ZIP):
+        if is_workbook(data):
             files[type(table)] = _text(name, table)
             if notes is not None:
                 notes += noted  # the text has a new legend, so the court can't find it
