@@ -14,7 +14,7 @@ from ports import free_port
 from show import violations
 from waiting import LIMIT_S
 
-from lacoc_robots.library import sample_gait_files
+from lacoc_robots.library import robot_folder, sample_gait_files
 
 pytestmark = pytest.mark.slow
 
@@ -33,6 +33,8 @@ class Event(NamedTuple):
     facts: Path
     right: tuple[Path, Path]
     wrong: Path
+    cut: Path
+    """A workbook that is cut off."""
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +53,8 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
         path.write_bytes(one.data)
     wrong = folder / "LocoTra-wrong.txt"
     wrong.write_bytes(given[1].data.replace(b"0", b"x", 3))
+    cut = folder / "Loco-data.xlsx"
+    cut.write_bytes((robot_folder("hexapod") / "Loco-data.xlsx").read_bytes()[:4000])
     words = ("contest", "run", str(file), "--entries", "--json")
     with started(*words, stdout=subprocess.PIPE, text=True) as run:
         try:
@@ -63,6 +67,7 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
                 folder / "contest.db",
                 (paths[0], paths[1]),
                 wrong,
+                cut,
             )
         finally:
             run.terminate()
@@ -100,8 +105,9 @@ def test_an_event_from_its_file_to_its_first_game(
     assert "#" not in office.url, "the key stays in the address"
     assert violations(office) == []
     first = first_team(open_page, event)
-    for team in TEAMS[1:]:
+    for team in TEAMS[1:-1]:
         enter(open_page, event, team)
+    enter_a_workbook(open_page, event, TEAMS[-1])
     rows = office.locator(".entries li")
     expect(rows).to_have_count(len(TEAMS))
     assert violations(office) == []
@@ -125,6 +131,14 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     page.locator("button[type=submit]").click()
     expect(page.locator(".mistakes li")).to_have_count(3)
     assert violations(page) == []
+    page.locator("input[type=file]").set_input_files([event.right[1], event.cut])
+    expect(page.locator(".files li b").nth(1)).to_have_text("Loco-data.xlsx")
+    page.locator("button[type=submit]").click()
+    expect(page.get_by_role("alert")).to_contain_text(
+        "Your files have 1 mistake. Nothing was entered."
+    )
+    expect(page.locator(".mistakes li")).to_have_count(1)
+    expect(page.locator(".mistakes")).to_contain_text("Loco-data.xlsx")
     page.locator("input[type=file]").set_input_files(list(event.right))
     expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
     page.locator("button[type=submit]").click()
@@ -135,6 +149,18 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     expect(page.get_by_role("link", name="To your matches")).to_be_visible()
     assert violations(page) == []
     return page
+
+
+def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
+    """Enter with a workbook alone; the page says of what level B is made."""
+    page = open_page(viewport=PHONE)
+    fill(page, event, team)
+    page.get_by_role("button", name="Remove LocoTra-data.txt").click()
+    book = robot_folder("hexapod") / "Loco-data.xlsx"
+    page.locator("input[type=file]").set_input_files(book)
+    expect(page.locator(".files li b").last).to_have_text("made from Loco-data.xlsx")
+    page.locator("button[type=submit]").click()
+    expect(page.locator(".qr img")).to_be_visible()
 
 
 def approve_and_draw(office: Page) -> None:

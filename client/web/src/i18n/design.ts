@@ -119,7 +119,7 @@ export const design = {
     "No mistakes; {keys} keys do different things",
     "間違いはありません。別々の動作をするキーは {keys} 個です",
   ],
-  "design.phase.mistakes": ["{count} mistakes", "間違いが {count} 件あります"],
+  "design.phase.mistakes": ["Mistakes: {count}", "間違いが {count} 件あります"],
   "design.foot.ask": ["Guess: where will the foot go?", "予想：足先はどちらへ動く？"],
   "design.foot.now": ["Now change a number of the leg.", "では、脚の数値を変えてください。"],
   "design.foot.forward": ["forward", "前"],

@@ -38,7 +38,7 @@ export const office = {
   "office.state.disqualified": ["Disqualified", "失格"],
   "office.bot": ["Bot: {bot}", "ボット：{bot}"],
   "office.hash": ["Hash of the files", "ファイルのハッシュ"],
-  "office.mistakes": ["{count} mistakes in its newest files", "最新のファイルの誤り：{count} 件"],
+  "office.mistakes": ["Mistakes in its newest files: {count}", "最新のファイルの誤り：{count} 件"],
   "office.link": [
     "The team's link for the whole event. Whoever has it plays for the team.",
     "大会を通して使うチームのリンクです。持っている人がチームとして操作できます。",
@@ -131,10 +131,7 @@ export const office = {
   "enter.go": ["Weigh in and enter", "検査して登録"],
   "enter.change": ["Weigh in and replace the files", "検査してファイルを差し替え"],
   "enter.weighing": ["Weighing in …", "検査中…"],
-  "enter.mistakes": [
-    "{count} mistakes: nothing was entered",
-    "誤りが {count} 件あるため、登録されていません",
-  ],
+  "enter.nothing": ["Nothing was entered.", "登録されていません。"],
   "enter.until": [
     "You can replace the files until {time}.",
     "{time} までファイルを差し替えられます。",

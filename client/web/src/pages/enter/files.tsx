@@ -1,7 +1,7 @@
 /** The files of a team that enters: dropped or picked, sorted by what is in them. */
 
 import { useId } from "preact/hooks";
-import { choose, chosenNames, forget, MOST_BYTES, SLOTS } from "../../core/files";
+import { choose, chosenNames, forget, MOST_BYTES, SLOTS, type Slot } from "../../core/files";
 import { t } from "../../i18n";
 import { PickFiles } from "../../ui/pick";
 import { toast } from "../../ui/toasts";
@@ -14,6 +14,14 @@ export async function take(files: Iterable<File>): Promise<void> {
     // A folder seems to be a file until it is read.
     else await choose(file).catch(() => toast(t("files.unreadable", { name }), "no"));
   }
+}
+
+/** What is used in a slot without a file. */
+function unnamed(slot: Slot, postures: string): string {
+  if (slot === "robot") return t("enter.contests");
+  // The office makes level B with the sample's sequences, as a court's page does by default.
+  if (slot === "locomotion" && postures) return t("files.made", { name: postures });
+  return t("enter.none");
 }
 
 export function Files() {
@@ -31,7 +39,7 @@ export function Files() {
         {SLOTS.map((slot) => (
           <li key={slot}>
             <span class="muted">{t(`enter.${slot}`)}</span>
-            <b>{names[slot] || t(slot === "robot" ? "enter.contests" : "enter.none")}</b>
+            <b>{names[slot] || unnamed(slot, names.postures)}</b>
             {names[slot] && (
               <button
                 class="button quiet small"

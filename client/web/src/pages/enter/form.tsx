@@ -144,7 +144,9 @@ function Refusal({ entrant }: Props) {
   return (
     <div id="enter-why" class="why" role="alert">
       {why && (
-        <p>{mistakes.length ? t("enter.mistakes", { count: mistakes.length }) : said(why)}</p>
+        <p>
+          {said(why)} {mistakes.length > 0 && t("enter.nothing")}
+        </p>
       )}
       {mistakes.length > 0 && <Mistakes mistakes={mistakes} />}
     </div>
