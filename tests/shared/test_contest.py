@@ -124,7 +124,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         ("legs_max = 6", "legs_max = 1" + "0" * 5000, "digits"),
         ("legs_max = 6", "legs_max = " + "[" * 2000, "too deep"),
         ("duration_s = 60.0", "duration_s = 0x" + "f" * 40, "many digits"),
-        ('name = "Spring"', "name = Spring", r"can't be read.*line 3"),
+        ('name = "Spring"', "name = Spring", r"can't be read.*\(line 3\): name = Spring\.$"),
         ("silent_s = 2", "faults = -1", r"health.faults.*Expected `int` >= 0"),
         ("silent_s = 2", "silent_s = nan", r"health.silent_s"),
         ("silent_s = 2", "silent = 1", r"unknown field `silent`.*silent_s"),
@@ -149,6 +149,58 @@ def test_a_wrong_entry_is_named(file: Path, old: str, new: str, said: str) -> No
         contests.load(file)
 
     assert str(file) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        '"next tuesday"',
+        "next tuesday",
+        '"2026-11-25 09:00"',
+        "2026-11-25",
+        "2026-11-25 9:00",
+        "2026-13-25T09:00:00+09:00",
+        "2026-11-25T09:00:00+9",
+        "20261125",
+    ],
+)
+def test_a_wrong_time_is_told_with_an_example(file: Path, time: str) -> None:
+    """Whatever is wrong with the time, one message names the entry, what it is, and a right one."""
+    file.write_text(GOOD.replace("[contest]", f"[contest]\nentries_close = {time}  # noon"))
+    with pytest.raises(UserError) as caught:
+        contests.load(file)
+    assert str(caught.value) == (
+        f"Contest file {file}, [contest.entries_close]: expected a time such as "
+        f"2026-11-25T09:00:00+09:00, without quotes, found {time}."
+    )
+
+
+@pytest.mark.parametrize("time", ["2026-11-25T09:00:00+09:00", '"2026-11-25T09:00:00+09:00"'])
+def test_a_right_time_is_read(file: Path, time: str) -> None:
+    """The time of the example is read, with and without quotes."""
+    file.write_text(GOOD.replace("[contest]", f"[contest]\nentries_close = {time}"))
+    close = contests.load(file).entries_close
+    assert close is not None
+    assert close.isoformat() == "2026-11-25T09:00:00+09:00"
+
+
+def test_only_a_missing_file_is_to_be_written(file: Path) -> None:
+    """A file that is there but wrong is to be mended; 'init' would move it away."""
+    file.write_text("[contest\n")
+    with pytest.raises(UserError, match=r"can't be read: .*line 1") as caught:
+        contests.load(file)
+    assert "init" not in str(caught.value)
+    file.unlink()
+    with pytest.raises(UserError, match="'lacoc contest init' writes one"):
+        contests.load(file)
+
+
+def test_a_line_with_a_token_is_not_shown(file: Path) -> None:
+    """The message about a line that has a token gives the line's number alone."""
+    file.write_text('[office]\ntoken = "secret-of-the-office\n')
+    with pytest.raises(UserError, match=r"\(line 2\)") as caught:
+        contests.load(file)
+    assert "secret" not in str(caught.value)
 
 
 TWO = """

@@ -8,6 +8,7 @@ is still None.
 
 import itertools
 import math
+import re
 from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
@@ -20,7 +21,7 @@ from lacoc_shared.contest.key_folder import KeyFolder
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.network.address import (
     ANY_HOST,
     check_protocols,
@@ -202,6 +203,9 @@ def load(path: Path) -> Contest:
     """
     try:
         return loads(path.read_bytes(), path)
+    except FileNotFoundError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("contest.no-file", file=str(path), why=why)) from None
     except OSError as error:
         raise _cannot_read(path, error.strerror or str(error)) from None
 
@@ -219,6 +223,9 @@ def loads(data: bytes, path: Path) -> Contest:
     try:
         table = read_toml(data)
     except BadToml as error:
+        if found := _CLOSE_LINE.match(error.line):
+            wrong = _not_a_time(found[1])
+            raise UserError(say("contest.wrong", file=str(path), wrong=wrong)) from None
         raise _cannot_read(path, error.phrase) from None
     try:
         return _contest(table, path.resolve().parent)
@@ -244,6 +251,14 @@ def throwaway(
 
 def _cannot_read(path: Path, why: Phrase | str) -> UserError:
     return UserError(say("contest.unreadable", file=str(path), why=why))
+
+
+_CLOSE_LINE = re.compile(r"\s*entries_close\s*=\s*([^#]*)")
+
+
+def _not_a_time(found: str) -> Phrase:
+    where = "contest.entries_close"
+    return say("contest.not-a-time", where=where, found=printable(found.strip()))
 
 
 class _Wrong(Exception):
@@ -277,6 +292,12 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 def _contest(table: dict[str, Any], folder: Path) -> Contest:
     file = _convert(table, _File, "")
+    close = file.contest.get("entries_close")
+    try:
+        msgspec.convert(close, datetime | None)
+    except msgspec.ValidationError:
+        found = f'"{close}"' if isinstance(close, str) else str(close)
+        raise _Wrong(_not_a_time(found)) from None
     general = _convert(file.contest, _General, "contest")
     keys = None if general.keys is None else KeyFolder(folder / general.keys)
     courts = {

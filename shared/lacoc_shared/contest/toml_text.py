@@ -9,6 +9,7 @@ import re
 import tomllib
 from typing import Any
 
+from lacoc_shared.mistakes import printable
 from lacoc_shared.words import Phrase, render, say
 
 MAX_BYTES = 1 << 20
@@ -16,6 +17,7 @@ MAX_BYTES = 1 << 20
 
 _DOTS = 100  # most dots in a line; time and memory for a key grow with the square of its parts
 _DEEPEST = 32
+_LINE = 80  # most characters of a line that a message shows
 _INTEGERS = range(-(2**63), 2**64)  # the integers that a message can carry
 _TOO_LONG = re.compile(r"[0-9][0-9_]{4000,}")
 _PLACE = re.compile(r" \(at line (\d+), column \d+\)")
@@ -25,21 +27,30 @@ class BadToml(ValueError):
     """The text can't be read as TOML; `row` is the line, counted from 1, if it is known.
 
     `remedy` says what should be there, if that is not obvious. `reason` is a phrase, or the plain
-    text that Python's own parser gave.
+    text that Python's own parser gave. `line` is the line's text, if Python's parser refused it.
     """
 
     def __init__(
-        self, reason: Phrase | str, row: int | None = None, remedy: Phrase | None = None
+        self,
+        reason: Phrase | str,
+        row: int | None = None,
+        remedy: Phrase | None = None,
+        line: str = "",
     ) -> None:
-        super().__init__(reason, row, remedy)
+        super().__init__(reason, row, remedy, line)
         self.reason = reason
         self.row = row
         self.remedy = remedy
+        self.line = line
 
     @property
     def phrase(self) -> Phrase:
-        """Reason, line and remedy as one phrase, for use in a sentence."""
-        return say("toml.bad", reason=self.reason, row=self.row, remedy=self.remedy)
+        """Reason, line and remedy as one phrase, for use in a sentence.
+
+        The text of a line with a token is left out: whoever reads the message may not know it.
+        """
+        line = None if "token" in self.line else printable(self.line.strip(), _LINE) or None
+        return say("toml.bad", reason=self.reason, row=self.row, remedy=self.remedy, line=line)
 
     def __str__(self) -> str:
         return render(self.phrase)
@@ -76,7 +87,9 @@ def read_toml(
     except tomllib.TOMLDecodeError as error:
         place = _PLACE.search(str(error))
         reason = str(error).replace(place[0], "") if place else str(error)
-        raise BadToml(reason[:80], int(place[1]) if place else None) from None
+        refused = int(place[1]) if place else None
+        line = text.split("\n")[refused - 1] if refused else ""
+        raise BadToml(reason[:80], refused, line=line) from None
     except ValueError:  # Python reads integers of at most 4,300 digits
         long_row = _row_of_long_number(text)
         raise BadToml(say("robot.many-digits"), long_row, say("toml.short-number")) from None

@@ -375,7 +375,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "toml.many-dots": ["more than {most} dots in a line", "1 行に {most} 個を超えるピリオド"],
   "toml.not-utf-8": ["bytes that are not text in UTF-8", "UTF-8 のテキストではないデータ"],
   "toml.too-long": ["{bytes} bytes, but at most {most} are allowed", "{bytes} バイト（上限 {most} バイト）"],
-  "toml.bad": ["{reason}< (line {row})><: expected {remedy}>", "{reason}<（{row} 行目）><。正しくは：{remedy}>"],
+  "toml.bad": ["{reason}< (line {row})><: {line}><: expected {remedy}>", "{reason}<（{row} 行目）><：{line}><。正しくは：{remedy}>"],
   "toml.short-number": ["a number of at most 15 digits", "15 桁以下の数"],
   "sequences.too-many": ["There are {keys} {keys:plural key|keys}, and the longest sequence has {longest} {longest:plural posture|postures}. A file holds 1 to {most_keys} keys, each with at most {most_postures} postures.", "キーは {keys} 個あり、最も長い並びは {longest} 姿勢です。1 つのファイルに入るのは 1～{most_keys} キー、1 つのキーにつき {most_postures} 姿勢までです。"],
   "sequences.empty": ["Key {key} of level B has no posture. Give it one, such as 0.", "レベル B のキー {key} に姿勢がありません。0 などの姿勢を 1 つ以上入れてください。"],
