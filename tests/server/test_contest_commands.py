@@ -110,6 +110,18 @@ def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, s
         run("check", str(file))
 
 
+@pytest.mark.parametrize(("year", "told"), [(2020, True), (2999, False)])
+def test_check_warns_if_entries_are_over(tmp_path: Path, year: int, told: bool) -> None:
+    """A time in the past is no mistake, but `check` says that no team can enter any more."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    close = f"{year}-11-25T09:00:00+09:00"
+    file.write_text(file.read_text().replace("[contest]", f"[contest]\nentries_close = {close}"))
+    result = CliRunner().invoke(app, ["check", str(file)])
+    assert (result.exit_code, "has no mistakes" in result.stdout) == (0, True)
+    assert (f"entries_close, {close}, is over" in result.stderr) == told
+
+
 def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
     """A court's name that can't be part of a key expression is refused, and no file is written."""
     with pytest.raises(UserError, match="Main Hall"):

@@ -1,6 +1,7 @@
 """Write, check and show the contest file (`lacoc_shared.contest.file`), and make its keys."""
 
 import os
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -187,6 +188,9 @@ def check(file: FileToRead = FILE) -> None:
     plans(contest, file)
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
+    close = contest.entries_close
+    if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
+        screen.warn(say("contest.close-is-over", time=close.isoformat()))
 
 
 def keys(
