@@ -1,6 +1,8 @@
 """Tests of entries: the files of a team, weighed in and frozen under their hash."""
 
+import json
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -15,6 +17,7 @@ from lacoc_robots.library import find_robot, robot_folder
 from lacoc_robots.seat_files import gaits_in
 from lacoc_server.commands.contest import playing
 from lacoc_server.contest import organiser
+from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import EntryFolder, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
@@ -23,6 +26,7 @@ from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import LANGUAGES, render, say
 
+Run = Callable[..., tuple[int, str, str]]
 ENTRY = gather(None, "planner", "hexapod").entry
 SAMPLE = robot_folder("hexapod")
 
@@ -281,3 +285,27 @@ def test_an_own_robot_is_in_the_entry(tmp_path: Path) -> None:
     assert gather(own, "", "hexapod").entry.robot == find_robot("hexapod")[1]
     (own / "robot.toml").write_bytes(find_robot("long-legs")[1])
     assert gather(own, "", "hexapod").entry.robot == find_robot("long-legs")[1]
+
+
+def test_standings_before_the_draw_list_who_has_entered(
+    cup: Cup, lacoc: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before the draw `standings` names the teams that take part, and those that wait."""
+    code, said, _ = lacoc("contest", "standings", cup.file)
+    assert (code, said) == (0, "Not drawn yet. 0 teams have entered:\n")
+    cup.enter("Bees")
+    cup.enter("Ants", bot="")
+    cup.enter("Wasps")
+    cup.out("Wasps")
+    with Applications(ContestFolder(cup.file).applications) as applications:
+        applications.put("Moths", ENTRY)
+    with monkeypatch.context() as japanese:
+        japanese.setenv("LACOC_LANGUAGE", "ja")
+        assert "登録済みのチームは 2 チームです" in lacoc("contest", "standings", cup.file)[1]
+    assert lacoc("contest", "standings", cup.file)[:2] == (
+        0,
+        "Not drawn yet. 2 teams have entered:\n  Bees (bot planner)\n  Ants\n"
+        "  Moths (waits for your approval on the page /office)\n",
+    )
+    sheet = json.loads(lacoc("contest", "standings", cup.file, "--json")[1])
+    assert [team["name"] for team in sheet["teams"]] == ["Bees", "Ants", "Wasps"]

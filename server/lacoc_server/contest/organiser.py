@@ -9,6 +9,7 @@ from pathlib import Path
 from lacoc_server.contest import publish
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import Entry, HandedIn, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
@@ -208,6 +209,19 @@ def sheet(file: Path) -> ContestSheet:
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
         return sheets.sheet_of(where.contest.name, store.facts(), FORMATS)
+
+
+def waiting(file: Path) -> list[str]:
+    """Return the teams whose entries wait for the organiser, the oldest first.
+
+    Raises:
+        UserError: if the entries that wait can't be read.
+    """
+    path = ContestFolder(file).applications
+    if not path.exists():  # nobody entered by page; reading makes no file
+        return []
+    with Applications(path) as applications:
+        return [*applications.waiting]
 
 
 def publish_to(file: Path, folder: Path) -> None:

@@ -195,15 +195,26 @@ def _live(
 
 
 def standings(file: FileToRead = FILE, json: options.Json = False) -> None:
-    """Print the standings of each stage as they are now."""
+    """Print the standings of each stage as they are now; before the draw, who has entered."""
     from lacoc_server.contest import organiser
     from lacoc_server.contest.sheet import encode
 
     sheet = organiser.sheet(file)
     if json:
         screen.stdout.print(encode(sheet).decode(), markup=False, soft_wrap=True)
-    else:
+    elif sheet.stages:
         _show(sheet)
+    else:
+        _show_entered(sheet, organiser.waiting(file))
+
+
+def _show_entered(sheet: "ContestSheet", waiting: list[str]) -> None:
+    here = [team for team in sheet.teams if not team.gone]
+    screen.show(say("contest.not-drawn", teams=len(here)))
+    for team in here:
+        screen.show(say("contest.entered-team", team=team.name, bot=team.bot or None))
+    for name in waiting:
+        screen.show(say("contest.waiting-team", team=name))
 
 
 def _show(sheet: "ContestSheet") -> None:
