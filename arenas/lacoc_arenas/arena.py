@@ -19,6 +19,7 @@ from lacoc_arenas.checked_game import Source, checked
 from lacoc_arenas.game import AnyGame
 from lacoc_shared.command import plugins
 from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import Colour, Pattern
@@ -94,11 +95,20 @@ class Arena:
         try:
             file = msgspec.convert(settings, _File)
         except msgspec.ValidationError as error:
-            raise UserError(say("arena.wrong", name=name, error=str(error))) from None
+            where, wrong = place_and_words(error)
+            raise UserError(
+                say("arena.wrong", name=name, where=where or None, error=wrong)
+            ) from None
         try:
             self.game: AnyGame = self._make(file.game)
-        except ValueError as error:  # msgspec.ValidationError is one
-            raise UserError(say("arena.wrong-game", name=name, error=str(error))) from None
+        except msgspec.ValidationError as error:
+            where, wrong = place_and_words(error)
+            raise UserError(
+                say("arena.wrong-game", name=name, where=where or None, error=wrong)
+            ) from None
+        except ValueError as error:
+            said = say("arena.wrong-game", name=name, where=None, error=str(error))
+            raise UserError(said) from None
         ids = [seat.id for seat in file.seat]
         if len(ids) != len(self.game.starts) or len(set(ids)) != len(ids):
             needed = len(self.game.starts)

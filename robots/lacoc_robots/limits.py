@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 
+from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -61,6 +62,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         try:
             return msgspec.convert(overrides, cls)
         except msgspec.ValidationError as error:
+            where, wrong = place_and_words(error)
+            known = cls.__struct_fields__
             raise UserError(
-                say("limits.wrong", error=str(error), known=cls.__struct_fields__)
+                say("limits.wrong", where=where or None, error=wrong, known=known)
             ) from None

@@ -26,17 +26,31 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
         ('[stage.a]\nformat = "league"\n', r'There is no format "league"\. Choose double-knockout'),
         ("[stage.a]\n", r"missing required field `format`"),
         ('[stage."A b"]\nformat = "swiss"\n', r"stage"),
-        (GROUPS + "games = 0\n", r"groups.*>= 1.*games"),
-        (GROUPS + 'games = "two"\n', r"groups.*Expected `int`, got `str`.*games"),
-        (GROUPS + "teams = -1\n", r"groups.*>= 0.*teams"),
+        (GROUPS + "games = 0\n", r"groups.*games: .*at least 1"),
+        (
+            GROUPS + 'games = "two"\n',
+            r"groups.*games: expected a whole number, without quotes, found text",
+        ),
+        (GROUPS + "teams = -1\n", r"groups.*teams: .*at least 0"),
         (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, teams'),
         (GROUPS + 'tie_breaks = ["luck"]\n', r'no tie-break "luck"\. Choose from points'),
         (GROUPS + 'after = "groups"\n', r'comes after "groups", but no stage of this name'),
         (GROUPS + 'arena = "chess"\n', r'no arena "chess"'),
         (GROUPS + 'arena = "practice"\n', r'"practice" is not a game for two'),
         (GROUPS + "settings.match.duration = 3\n", r"duration"),
-        (GROUPS + 'settings = "long"\n', r"groups.*Expected `object`, got `str`"),
+        (
+            GROUPS + 'settings = "long"\n',
+            r"groups.*settings: expected a table, found text in quotes",
+        ),
         ("[stage]\nformat = 3\n", r"stage"),
+        (
+            GROUPS + "settings.match.duration_s = -1\n",
+            r"stage.groups.*match.duration_s: expected a number of at least 0",
+        ),
+        (
+            GROUPS + 'settings.match.duration_s = "60"\n',
+            r"stage.groups.*match.duration_s: expected a number, without quotes, found text",
+        ),
     ],
 )
 def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -> None:

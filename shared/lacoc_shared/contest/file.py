@@ -20,6 +20,7 @@ from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.contest.key_folder import KeyFolder
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.network.address import (
@@ -392,10 +393,10 @@ def _convert(value: Any, kind: type[T], where: str) -> T:
     try:
         return msgspec.convert(value, kind)
     except msgspec.ValidationError as error:
-        what, _, place = str(error).partition(" - at `$")
-        at = f"{where}{place.rstrip('`')}".lstrip(".")
+        place, what = place_and_words(error)
+        at = ".".join(filter(None, (where, place)))
         fields = getattr(kind, "__struct_fields__", ())
-        known = fields if "field" in what else None
+        known = fields if isinstance(what, str) and "field" in what else None
         raise _Wrong(say("contest.bad-entry", where=at or None, error=what, known=known)) from None
 
 

@@ -14,6 +14,7 @@ from lacoc_server.contest.league.facts import AnyFact, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
@@ -50,7 +51,8 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
             _check(plan, [one.stage for one in found])
             game(plan)
         except msgspec.ValidationError as error:
-            wrong = say("contest.bad-stage", stage=text_of(name), error=str(error))
+            where, said = place_and_words(error)
+            wrong = say("contest.bad-stage", stage=text_of(name), where=where or None, error=said)
         except UserError as error:
             wrong = say("contest.in", where=f"stage.{text_of(name)}", wrong=error.phrase)
         if wrong is not None:
