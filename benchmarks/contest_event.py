@@ -40,8 +40,8 @@ _KEYS = "22222213"
 _WAIT_S = 120.0
 _WHOLE_S = 1800.0
 _LOOK_S = 0.2
-_READY = '{ match = { start = "ready" } }'
-_SHORT = "{ match = { duration_s = %s, countdown_s = 1.0%s } }"
+_READY = 'settings.match.start = "ready"'
+_SHORT = "settings.match = { duration_s = %s, countdown_s = 1.0%s }"
 
 
 def main() -> int:

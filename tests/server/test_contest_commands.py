@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from lacoc_arenas import arena as arenas
 from lacoc_server.commands import serve
 from lacoc_server.commands.contest.app import app
+from lacoc_server.contest.kept.plans import game, plans
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 
@@ -108,6 +109,20 @@ def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, s
 
     with pytest.raises(UserError, match=said):
         run("check", str(file))
+
+
+def test_the_length_of_an_events_games_is_a_commented_line(tmp_path: Path) -> None:
+    """The lines of `init --event` that set the length are right if they are uncommented."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file), "--event")
+    assert "has no mistakes" in run("check", str(file))
+    line = "settings.match.duration_s = 120.0"
+    text = file.read_text()
+    assert text.count(f"# {line} ") == 2
+    file.write_text(text.replace(f"# {line} ", f"{line} "))
+    assert "has no mistakes" in run("check", str(file))
+    matches = [game(plan).match for plan in plans(contests.load(file), file)]
+    assert [(match.duration_s, match.start) for match in matches] == [(120.0, "ready")] * 2
 
 
 @pytest.mark.parametrize(("year", "told"), [(2020, True), (2999, False)])

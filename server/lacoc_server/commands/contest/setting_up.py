@@ -99,7 +99,8 @@ token = "{office}"
 format = "round-robin"     # or "swiss", "sequential", "single-knockout", "double-knockout"
 groups = 2
 arena = "{arena}"
-settings = {{ match = {{ start = "ready" }} }}
+settings.match.start = "ready"
+# settings.match.duration_s = 120.0    # length of a game; else as in the arena's file
 
 [stage.finals]
 format = "single-knockout"
@@ -108,7 +109,8 @@ teams = 4                  # the best four of the groups
 games = 3                  # best of three, sides swapped after each game
 third_place = true
 arena = "{arena}"
-settings = {{ match = {{ start = "ready" }} }}
+settings.match.start = "ready"
+# settings.match.duration_s = 120.0    # length of a game; else as in the arena's file
 {courts}"""
 _EVENT_COURT = """
 [court.{court}]
