@@ -3,7 +3,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { places } from "../../../client/web/src/core/contest/places.ts";
-import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
+import {
+  enterPage,
+  filesFragment,
+  filesOf,
+  isThisMachine,
+} from "../../../client/web/src/core/given.ts";
 import { clockOf, columns, dropped, momentOf } from "../../../client/web/src/core/timetable.ts";
 
 const slot = (pairing, court, at_ms, more = {}) => ({
@@ -108,4 +113,13 @@ test("an address is read however it is typed", () => {
   }
   assert.equal(enterPage("https://cup.example"), "https://cup.example/enter");
   for (const typed of ["", "  ", "http://"]) assert.equal(enterPage(typed), "");
+});
+
+test("a host that means this machine is known", () => {
+  for (const host of ["localhost", "127.0.0.1", "127.0.1.1", "[::1]"]) {
+    assert.equal(isThisMachine(host), true, host);
+  }
+  for (const host of ["192.168.1.20", "cup.example", "127.example", "[fe80::1]", "0.0.0.0"]) {
+    assert.equal(isThisMachine(host), false, host);
+  }
 });

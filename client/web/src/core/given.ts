@@ -19,6 +19,11 @@ export function enterPage(address: string): string {
   }
 }
 
+/** Whether a host name means the machine on which the page itself is shown. */
+export function isThisMachine(hostname: string): boolean {
+  return hostname === "localhost" || hostname === "[::1]" || /^127(\.\d+){3}$/.test(hostname);
+}
+
 /** Files as a fragment, without its "#". */
 export function filesFragment(files: GivenFiles): string {
   const kept = SLOTS.flatMap((slot) => {

@@ -31,7 +31,7 @@ export function Head({ organiser, view, onSettings }: Props) {
           <div>
             <dt>{t("office.enterAt")}</dt>
             <dd>
-              <a href="/enter">{`${location.host}/enter`}</a>
+              <a href="/enter">{`${organiser.host.value}/enter`}</a>
             </dd>
           </div>
           <div>

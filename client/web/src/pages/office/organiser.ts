@@ -14,6 +14,7 @@ import {
   type Said,
   type TeamRow,
 } from "../../core/desk";
+import { isThisMachine } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
 import { said, sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
@@ -44,6 +45,8 @@ export class Organiser {
   readonly feed = new Feed();
   readonly view = signal<OfficeView | null>(null);
   readonly links = signal<Links | null>(null);
+  /** Host and port for teams; other machines can't use the host if it means this machine. */
+  readonly host = signal(location.host);
   readonly over = signal<Over | null>(null);
   /** Why the last request for the overview failed; null: it did not. */
   readonly trouble = signal<Phrase | null>(null);
@@ -102,6 +105,11 @@ export class Organiser {
     }
   }
 
+  private async getHost(): Promise<void> {
+    const { address } = await this.desk.connection.ask<{ address: string }>("address");
+    this.host.value = new URL(address).host;
+  }
+
   private again(afterMs: number): void {
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.look(), afterMs);
@@ -113,6 +121,7 @@ export class Organiser {
     try {
       const wish: AnyRequest = { do: "overview", known, secret: this.key };
       const { view } = await this.desk.ask<Overviewed>(wish);
+      if (view && !this.view.peek() && isThisMachine(location.hostname)) await this.getHost();
       if (view) this.view.value = view;
       this.trouble.value = null;
     } catch (error) {

@@ -1,0 +1,31 @@
+"""Tests of the connection of the pages /office and /enter that need no desk."""
+
+import threading
+
+import msgpack
+from starlette.applications import Starlette
+from waiting import LIMIT_S
+from websockets.sync.client import connect
+
+from lacoc_client.gateway import server
+from lacoc_client.office.site import DeskSite
+
+
+def test_a_page_learns_the_address_of_the_network() -> None:
+    """A page that was opened at 127.0.0.1 can show the address that other machines can open."""
+    address = "http://192.168.1.20:8080"
+    site = DeskSite("tcp/127.0.0.1:1", "key", address)
+    opened, ended = server.listen(server.LOOPBACK), threading.Event()
+    serving = threading.Thread(
+        target=server.serve, args=(Starlette(routes=site.routes), opened, ended.is_set)
+    )
+    serving.start()
+    try:
+        at = server.url(opened).replace("http", "ws")
+        with connect(f"{at}/office/ws", compression=None) as page:
+            page.send(msgpack.packb({"id": 1, "do": "address"}))
+            answer = page.recv(LIMIT_S)
+    finally:
+        ended.set()
+        serving.join(LIMIT_S)
+    assert address.encode() in answer
