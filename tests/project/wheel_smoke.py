@@ -16,8 +16,6 @@ import urllib.request
 import venv
 from pathlib import Path
 
-from waiting import LIMIT_S
-
 _LIMIT_S = 300  # longer than any command needs, unless it hangs
 SAMPLE = "import lacoc_robots.samples.hexapod as robot; print(robot.__path__[0])"
 IMPORT_ALL = """
@@ -81,7 +79,7 @@ def try_pages(env: Environment) -> None:
 
 def fetch(url: str) -> str:
     """Return the text that a gateway sends for an address."""
-    with urllib.request.urlopen(url, timeout=LIMIT_S) as response:
+    with urllib.request.urlopen(url, timeout=_LIMIT_S) as response:
         text: str = response.read().decode()
         return text
 
