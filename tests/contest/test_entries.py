@@ -309,20 +309,3 @@ def test_standings_before_the_draw_list_who_has_entered(
     )
     sheet = json.loads(lacoc("contest", "standings", cup.file, "--json")[1])
     assert [team["name"] for team in sheet["teams"]] == ["Bees", "Ants", "Wasps"]
-
-
-def test_check_tells_how_many_matches_are_planned(tmp_path: Path, lacoc: Run) -> None:
-    """With entries, `check` tells the matches and games of each stage; without, it tells none."""
-    file = tmp_path / "contest.toml"
-    lacoc("contest", "init", file, "--event")
-    assert "matches" not in lacoc("contest", "check", file)[1]
-    assert not ContestFolder(file).facts.exists()
-    for team in ("Ants", "Bees", "Moths", "Wasps", "Crabs"):
-        Cup(file).enter(team)
-    code, said, _ = lacoc("contest", "check", file)
-    groups, finals = said.splitlines()[1:]
-    assert (code, groups) == (
-        0,
-        'Stage "groups", with the entries so far: 5 teams, at most 4 matches and 4 games.',
-    )
-    assert finals.endswith("4 teams, at most 4 matches and 16 games.")

@@ -26,7 +26,6 @@ from lacoc_server.contest.league.facts import (
     Withdrawn,
     new,
 )
-from lacoc_server.contest.league.forecast import most_matches
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.mistakes import UserError
@@ -223,31 +222,6 @@ def waiting(file: Path) -> list[str]:
         return []
     with Applications(path) as applications:
         return [*applications.waiting]
-
-
-def forecast(file: Path) -> list[Phrase]:
-    """Return how many matches each stage will have with the teams that have entered.
-
-    Returns:
-        A sentence for each stage; none if fewer than two teams have entered, or a stage is drawn.
-    """
-    where = ContestFolder(file)
-    if not where.facts.exists():  # nobody entered; reading makes no file
-        return []
-    with FactStore(where.facts) as store:
-        contest = compute(store.facts(), FORMATS)
-    here = sum(not team.gone for team in contest.teams)
-    said, counts = [], {"": here}
-    for plan in where.plans if here >= 2 and not contest.stages else ():
-        before = counts[plan.after]
-        teams = counts[plan.stage] = min(before, plan.teams or before)
-        matches = most_matches(plan, teams, FORMATS)
-        extra = plan.settings.extra_games if FORMATS[plan.format].decisive else 0
-        games = matches * (plan.settings.games + extra)
-        said.append(
-            say("contest.forecast", stage=plan.stage, teams=teams, matches=matches, games=games)
-        )
-    return said
 
 
 def publish_to(file: Path, folder: Path) -> None:

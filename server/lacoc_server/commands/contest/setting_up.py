@@ -183,8 +183,6 @@ def _event(arena: str, courts: list[str]) -> str:
 
 def check(file: FileToRead = FILE) -> None:
     """Check a contest file, its stages, its arenas' settings and its limits for robots."""
-    from lacoc_server.contest import organiser
-
     contest = contests.load(file)
     Limits.of(contest.limits)
     for name, court in contest.courts.items():
@@ -192,8 +190,6 @@ def check(file: FileToRead = FILE) -> None:
     plans(contest, file)
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
-    for said in organiser.forecast(file):
-        screen.show(said)
     close = contest.entries_close
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
         screen.warn(say("contest.close-is-over", time=close.isoformat()))
