@@ -78,6 +78,10 @@ class Contestant:
         for key in keys:
             self.page.keyboard.press(key)
 
+    def has_field(self) -> None:
+        """Wait until the field has the focus, so that Tab and Space belong to the game."""
+        self.sees(".field3d:focus")
+
     def steer(self, digit: int) -> None:
         """Press a key until it takes effect: the first press may still be for the match before."""
         standing = self.find(f'.key[data-key="{digit}"][aria-pressed=true]')
