@@ -3,9 +3,19 @@
 from lacoc_client.asking import ask
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.messages import DecisionReply, DecisionRequest, Done, Enter
+from lacoc_shared.messages import (
+    DecisionReply,
+    DecisionRequest,
+    Done,
+    Enter,
+    Outlook,
+    OutlookRequest,
+)
 from lacoc_shared.network.session import Session
 from lacoc_shared.words import Phrase
+
+_OUTLOOK_S = 30.0
+"""Longest wait for an outlook, which a court computes beside its beats."""
 
 
 class RefereeClient:
@@ -47,3 +57,17 @@ class RefereeClient:
         request = DecisionRequest(token=self._token, by=by, reason=reason, decision=decision)
         key = self._keys.decision(name)
         return ask(self._session, self._keys, key, request, DecisionReply)
+
+    def look_ahead(self, decision: Decision | None, seconds: float) -> Outlook:
+        """Ask what would happen if play went on; the match stays as it is.
+
+        Args:
+            decision: what would be decided before; None: nothing.
+            seconds: how long play would go on at most [s], up to `OUTLOOK_MOST_S`.
+
+        Raises:
+            UserError: if the court refuses, such as when the match is not in a halt.
+        """
+        request = OutlookRequest(token=self._token, decision=decision, seconds=seconds)
+        key = self._keys.outlook
+        return ask(self._session, self._keys, key, request, Outlook, _OUTLOOK_S)

@@ -75,6 +75,7 @@ STRUCTS = (
     messages.HealthVerdict,
     messages.Health,
     messages.DecisionReply,
+    messages.Outlook,
     mistakes.Mistake,
     messages.SentFile,
     office.AssignedSeat,

@@ -107,6 +107,11 @@ class Keys:
         return f"{self.root}/referee/{name}"
 
     @property
+    def outlook(self) -> str:
+        """Key expression on which a referee asks what would happen if play went on."""
+        return f"{self.root}/outlook"
+
+    @property
     def where(self) -> str:
         """Key expression on which a team asks where it plays, at a court with an office."""
         return f"{self.root}/where"

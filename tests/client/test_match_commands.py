@@ -52,6 +52,13 @@ class Referee:
         reply: dict[str, Any] = json.loads(out)
         return reply
 
+    def outlook(self, *words: str) -> dict[str, Any]:
+        """Ask what would happen if play went on."""
+        code, out, err = self.run("outlook", *words, "--json", "--token", self._token)
+        assert (code, err) == (0, "")
+        seen: dict[str, Any] = json.loads(out)
+        return seen
+
     def refused(self, *words: str) -> str:
         """Ask for a decision that the court refuses, and return the court's reason."""
         code, out, err = self.run(*words, "--token", self._token)
@@ -75,7 +82,11 @@ def test_the_referee_has_every_decision(
     assert referee.decide("freeze", "left", "60")["scores"] == [18, 18]
     referee.decide("unfreeze", "left")
     referee.decide("restart", "right")
+    assert "it is possible only while the match is halted" in referee.refused("outlook")
     referee.decide("halt")
+    seen = referee.outlook("--seconds", "2", "--restart", "left")
+    assert (seen["seconds"], seen["before"], seen["phase"]) == (2.0, [18, 18], "PLAYING")
+    assert "not both" in referee.refused("outlook", "--take-back", "1", "--restart", "left")
     assert "give a reason" in referee.refused("adjust", "left", "2")
     taken = referee.decide("adjust", "left", "-2")
     assert taken["scores"] == [16, 18]

@@ -24,6 +24,7 @@ from lacoc_shared.messages import (
     Health,
     Join,
     Outcome,
+    Outlook,
     Refusal,
     Scene,
     SceneBody,
@@ -86,6 +87,10 @@ def make_event(number: int, match: int = 1, text: str = "something") -> Event:
     return Event(number=number, match=match, beat=0, clock_ticks=0, kind="phase", said=said)
 
 
+SEEN = Outlook(beat=7, clock_ticks=5, before=(1, 2), scores=(3, 4), seconds=2.0, phase=4, events=())
+"""What the stub answers to every referee who asks for an outlook."""
+
+
 class CourtStub:
     """A court with a beat every 5 ms on a thread of its own; `inputs` has all that its match got.
 
@@ -102,7 +107,9 @@ class CourtStub:
         self.scales = Scales()
         inbox = Inbox(KEYS, SEATS, token_hashes, self.scales, secrets.token_bytes, **restored)
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
-        self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
+        self.network = CourtNetwork(
+            KEYS, [listen], inbox, desk, protection, look_ahead=lambda _: lambda: SEEN
+        )
         self.trouble: Phrase | None = None
         """The reason why no beats pass, such as a full disk; None while they pass.
 

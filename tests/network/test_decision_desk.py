@@ -1,6 +1,7 @@
 """The referee's desk: which requests become decisions, and which are refused."""
 
 import math
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -11,7 +12,7 @@ from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide
-from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
+from lacoc_shared.messages import DecisionRequest, Done, Enter, OutlookRequest, Refusal
 from lacoc_shared.words import Phrase, faults, render, say
 
 HASHES = [tokens.hash_token("other"), tokens.hash_token("whistle")]
@@ -106,8 +107,35 @@ def test_a_token_can_be_shown_without_deciding() -> None:
     assert desk.refused == {"wrong-token": 1, "bad-bytes": 1}
 
 
+@pytest.mark.parametrize(
+    ("asked", "why"),
+    [
+        ({"token": "guess"}, "wrong-token"),
+        ({"token": "whistle", "seconds": 31.0}, "bad-bytes"),
+        ({"token": "whistle", "seconds": math.nan}, "bad-bytes"),
+        ({"token": "whistle", "seconds": 0}, "bad-bytes"),
+        ({"token": "whistle", "decision": {"type": "bribe"}}, "bad-bytes"),
+        ({"token": "whistle", "decision": {"type": "clock", "gives_s": math.inf}}, "out-of-range"),
+    ],
+)
+def test_an_outlook_is_refused_with_its_reason(asked: dict[str, Any], why: str) -> None:
+    """A request for an outlook needs a referee's token, a real decision and sane numbers."""
+    desk = DecisionDesk(HASHES)
+    refusal = desk.outlook(encode(asked))
+    assert isinstance(refusal, Refusal)
+    assert faults(refusal.why) == []
+    assert desk.refused == {why: 1}
+
+
+def test_an_outlook_is_passed_on() -> None:
+    """A request for an outlook has ten seconds and no decision if it names none."""
+    asked = DecisionDesk(HASHES).outlook(encode({"token": "whistle"}))
+    assert asked == OutlookRequest(token="whistle", decision=None, seconds=10.0)
+
+
 @given(st.text(), st.binary(max_size=300))
 def test_no_bytes_ever_raise(name: str, payload: bytes) -> None:
     """No bytes make the desk raise an exception; it answers with a refusal."""
+    assert isinstance(DecisionDesk(HASHES).outlook(payload), Refusal)
     assert isinstance(DecisionDesk(HASHES).decision(name, payload), Refusal)
     assert isinstance(DecisionDesk(HASHES).enter(payload), Refusal)

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from court_stub import KEYS, TOKENS, WHISTLE
+from court_stub import KEYS, SEEN, TOKENS, WHISTLE
 from keyed import KeyedCourt, keyed_file
 from waiting import until
 
@@ -107,12 +107,16 @@ def test_only_the_referees_user_decides(
 ) -> None:
     """Only the referee's user reaches the desk, and needs the referee's token there."""
     request = encode(DecisionRequest(token=WHISTLE, by="Kim", reason="", decision=Start()))
-    with pytest.raises(NoReply):
-        sessions[who].ask(KEYS.decision("start"), request)
+    for key in (KEYS.decision("start"), KEYS.outlook):
+        with pytest.raises(NoReply):
+            sessions[who].ask(key, request)
     assert heard(court) == 0
 
-    RefereeClient(sessions["referee"], "main", WHISTLE).decide(Start(), "", "Kim")
+    referee = RefereeClient(sessions["referee"], "main", WHISTLE)
+    referee.decide(Start(), "", "Kim")
     assert [type(one) for one in court.inputs] == [Decide]
+    assert referee.look_ahead(None, 2.0) == SEEN
+    assert len(court.inputs) == 1
     with pytest.raises(UserError, match="not a referee's token"):
         RefereeClient(sessions["referee"], "main", TOKENS["left"]).enter()
 

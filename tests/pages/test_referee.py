@@ -124,11 +124,16 @@ def disc(page: Page, name: str) -> Locator:
     return page.locator(f".board g[aria-label^='{name}:']")
 
 
-def to_playing(page: Page, venue: Venue) -> None:
+def start(page: Page, venue: Venue) -> None:
+    """Begin a match's countdown; a busy browser may not show a second or two of play."""
     venue.contestant("left", "Ants")
     venue.contestant("right", "Bees")
     phase(page, 2)
     step(page)
+
+
+def to_playing(page: Page, venue: Venue) -> None:
+    start(page, venue)
     phase(page, 4)
 
 
@@ -150,7 +155,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     venue.court("--seconds", "2")
     venue.web()
     page, other = at_the_desk(referee()), referee(query="?lang=ja")
-    to_playing(page, venue)
+    start(page, venue)
     phase(page, 6)
     advice = page.locator(".match .advice")
     expect(advice).to_contain_text("times real time (at least 2 is required)")
@@ -522,7 +527,7 @@ def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) 
     venue.court("--seconds", "1")
     venue.web()
     page = at_the_desk(referee())
-    to_playing(page, venue)
+    start(page, venue)
     phase(page, 6)
     step(page)
     dialog = page.get_by_role("dialog")
@@ -646,14 +651,23 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     step(page, "Control+Enter")
     phase(page, 5)
     before = scores(page)
+    page.get_by_role("button", name="If play went on").click()
+    on = page.locator(".match .outlook")
+    expect(on).to_contain_text("After 10 s more of play")
+    assert on.locator("dd").first.inner_text().split(" : ") == before
+    assert len(on.locator(".then").inner_text().split(" : ")) == 2
     expect(strike.locator(".act")).not_to_have_attribute("aria-disabled", "true")
     strike.locator(".act").click()
     preview = page.locator(".preview")
     expect(preview).to_contain_text("is removed: strike flag")
     then = preview.locator(".then").inner_text().split(" : ")
     assert then != before == scores(page)
+    page.get_by_role("button", name="and if play went on").click()
+    on = page.get_by_role("dialog").locator(".outlook")
+    assert on.locator("dd").first.inner_text().split(" : ") == then
     confirm(page, "rule")
     has_scores(page, *map(int, then))
+    expect(page.locator(".match .outlook .preview")).to_have_count(0)  # it was about another score
     expect(strike.locator(".fate")).to_have_text("taken back")
     # The referee can also click a robot on the field.
     page.locator(".board g[aria-label='Ants (left)']").click()

@@ -120,6 +120,7 @@ def test_every_key_expression() -> None:
         *(keys.request("{seat}", what) for what in ("join", "ready", "leave")),
         keys.enter,
         keys.decision("{decision}"),
+        keys.outlook,
         *(keys.office(what) for what in ("assign", "withdraw", "tell", "copy", "retire")),
         keys.where,
         keys.alive,

@@ -23,10 +23,18 @@ from lacoc_client.spectator import Spectator
 from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal import words
 from lacoc_client.terminal.line_view import event_columns
-from lacoc_client.terminal.plain import event_dict, frame_dict, reply_dict
+from lacoc_client.terminal.plain import event_dict, frame_dict, outlook_dict, reply_dict
 from lacoc_shared.command import options, screen
-from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
-from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
+from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision, Restart, TakeBack
+from lacoc_shared.messages import (
+    OUTLOOK_MOST_S,
+    DecisionReply,
+    Event,
+    Frame,
+    Health,
+    SeatHealth,
+    Sheet,
+)
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase, SeatFlag
@@ -229,6 +237,58 @@ def log(
                         screen.print_json(event_dict(event, view.sheet))
                     else:
                         screen.show(_log_line(event, view.sheet))
+
+
+@app.command(rich_help_panel="Look")
+def outlook(
+    seconds: Annotated[
+        float, typer.Option(help="How long play would go on.", min=0.1, max=OUTLOOK_MOST_S)
+    ] = 10.0,
+    take_back: Annotated[
+        int | None,
+        typer.Option(metavar="EVENT", help="Take back the event with this number before."),
+    ] = None,
+    restart: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SEAT", help="Put the robot of this seat back at its start place before."
+        ),
+    ] = None,
+    invitation: options.Invitation = None,
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    token: options.Token = None,
+    json: options.Json = False,
+) -> None:
+    """During a halt, show what would happen if play went on; the match stays as it is.
+
+    The court lets a copy of the match go on. Each robot goes on with its last key, and nobody
+    presses another one.
+    """
+    if take_back is not None and restart is not None:
+        raise UserError(say("referee.one-decision"))
+    decision: Decision | None = None
+    if take_back is not None:
+        decision = TakeBack(take_back)
+    elif restart is not None:
+        decision = Restart(restart)
+    access = entrance.referee(
+        invitation=invitation, contest=contest, court=court, connect=connect, token=token
+    )
+    with open_client(access.addresses, credentials=access.credentials) as session:
+        view = Spectator(session, access.court)
+        found = RefereeClient(session, access.court, access.token).look_ahead(decision, seconds)
+        if json:
+            screen.print_json(outlook_dict(found, view.sheet))
+            return
+        screen.show(say("referee.outlook", seconds=found.seconds))
+        for event in found.events:
+            screen.show(Text.assemble("  ", *event_columns(event, view.sheet)))
+        if not found.events:
+            screen.show(say("referee.outlook-nothing"))
+        then, before = " : ".join(map(str, found.scores)), " : ".join(map(str, found.before))
+        screen.show(say("referee.outlook-score", then=then, before=before))
 
 
 def _decide(

@@ -33,6 +33,8 @@ TRY_LATER = 1013
 _ASKS_HZ, _ASKS_BURST = 100.0, 200
 _TOKENS_HZ, _TOKENS_BURST = 1.0, 10
 _COURTS_HZ, _COURTS_BURST = 1.0, 5
+_LOOKS_S = 10.0
+"""How long play goes on in the outlook that a referee sees [s]."""
 
 
 class Page:
@@ -97,6 +99,8 @@ class Page:
                 answers.reply(asked.id, {})
             case wire.DecideAsk():
                 answers.later(asked.id, self._decide(asked, self._acting()[1]))
+            case wire.OutlookAsk():
+                answers.later(asked.id, self._look_ahead(asked, self._acting()[1]))
         return True
 
     async def _watch(self, asked: wire.Watch) -> bool:
@@ -215,6 +219,12 @@ class Page:
             lambda: as_referee(
                 access, lambda client: client.decide(asked.decision, asked.reason, by)
             )
+        )
+
+    async def _look_ahead(self, asked: wire.OutlookAsk, referees: Referees) -> Any:
+        access, _ = referees.acting(self._viewer)
+        return await self._courts.threads.run(
+            lambda: as_referee(access, lambda client: client.look_ahead(asked.decision, _LOOKS_S))
         )
 
     def _log(self, text: str, kind: str, **particulars: object) -> None:

@@ -154,6 +154,13 @@ class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
     reason: Phrase | str = ""
 
 
+class OutlookAsk(Ask, frozen=True, kw_only=True, tag="outlook"):
+    """Ask as a referee what would happen if play went on."""
+
+    decision: Decision | None = None
+    """What would be decided before; None: nothing."""
+
+
 Asked = (
     Watch
     | Rate
@@ -166,6 +173,7 @@ Asked = (
     | EnterAsk
     | TakeOver
     | DecideAsk
+    | OutlookAsk
 )
 """Every request of a page."""
 

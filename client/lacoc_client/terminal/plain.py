@@ -13,6 +13,7 @@ from lacoc_shared.messages import (
     DecisionReply,
     Event,
     Frame,
+    Outlook,
     SeatFrame,
     Sheet,
     SheetSeat,
@@ -66,6 +67,17 @@ def reply_dict(reply: DecisionReply) -> dict[str, Any]:
     """Turn the reply to a decision into plain values, with its sentence as `text`."""
     plain: dict[str, Any] = msgspec.to_builtins(reply)
     return plain | {"text": render(reply.said)}
+
+
+def outlook_dict(outlook: Outlook, sheet: Sheet) -> dict[str, Any]:
+    """Turn an outlook into plain values, its events as `event_dict` does."""
+    plain: dict[str, Any] = msgspec.to_builtins(outlook)
+    del plain["clock_ticks"]
+    return plain | {
+        "clock_s": round(outlook.clock_ticks * BEAT_S, 2),
+        "phase": Phase(outlook.phase).name,
+        "events": [event_dict(event, sheet) for event in outlook.events],
+    }
 
 
 def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:

@@ -15,6 +15,7 @@ from lacoc_robots.limits import Limits
 from lacoc_server.court.assigning import Preparation
 from lacoc_server.court.copying import Copying
 from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
@@ -141,9 +142,12 @@ def serve_command(
             copying = Copying(folder, name, weighing.aside)
             office = OfficeDesk(hash_token(plan.office.token), inbox.seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
-        network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard, office))
+        outlooks = Outlooks(weighing.aside)
+        network = opened.enter_context(
+            CourtNetwork(keys, addresses, inbox, desk, guard, office, outlooks)
+        )
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
-        running = Court(settings, network, left or over, office)
+        running = Court(settings, network, left or over, office, outlooks)
         if exporter is not None:
             exporter.registry.register(running.metrics)
         stop = _stop_on_signal()

@@ -20,6 +20,7 @@ from lacoc_server.court.assigning import Prepared, staying
 from lacoc_server.court.health import MatchHealth
 from lacoc_server.court.log import CourtLog
 from lacoc_server.court.metrics import CourtMetrics
+from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.court.pace import Pace
 from lacoc_server.doors.network import Arrival, CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk, Wanted
@@ -78,6 +79,7 @@ class Court:
         left: a match that an earlier court left unfinished, to go on with.
         office: the desk of the contest's office, if it has one: the court then plays only what the
             office assigns.
+        outlooks: answers referees who ask what would happen if play went on.
     """
 
     def __init__(
@@ -86,8 +88,10 @@ class Court:
         network: CourtNetwork,
         left: Unfinished | None = None,
         office: OfficeDesk[Prepared] | None = None,
+        outlooks: Outlooks | None = None,
     ) -> None:
         self._office = office
+        self._outlooks = outlooks
         self._settings = settings
         self._network = network
         self._log = CourtLog(settings.name)
@@ -174,6 +178,8 @@ class Court:
         coming = {item.seat: item for item in own if isinstance(item, JoinSeat)}
         held = [coming.get(seat.index) or seat.coming or seat.join for seat in match.seats]
         network.hold(held, match.has_begun)
+        if self._outlooks is not None:
+            self._outlooks.hold(match)
         arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])

@@ -14,7 +14,7 @@ from lacoc_shared import codec, seal
 from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.inputs import Decide
 from lacoc_shared.keyspace import DECISION_MAX_BYTES
-from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
+from lacoc_shared.messages import DecisionRequest, Done, Enter, OutlookRequest, Refusal
 from lacoc_shared.words import Phrase, say
 
 _NUMBER_MAX = 1e6  # largest absolute value of seconds, points and event numbers
@@ -79,6 +79,23 @@ class DecisionDesk:
             said = say("refused.decision", decision=name, why=why)
             return self._refuse(Why.OUT_OF_RANGE, said)
         return Decide(request.by.strip(), request.reason, request.decision)
+
+    def outlook(self, payload: bytes) -> OutlookRequest | Refusal:
+        """Check a request for an outlook: its token, form and numbers.
+
+        Args:
+            payload: should be an `OutlookRequest`.
+        """
+        refusal = self._check_token(payload, _Token)
+        if refusal is not None:
+            return refusal
+        try:
+            request = codec.decode(payload, OutlookRequest)
+        except codec.BadMessage as error:
+            return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
+        if request.decision is not None and not _numbers_are_sane(request.decision):
+            return self._refuse(Why.OUT_OF_RANGE, say("why.number-too-large"))
+        return request
 
     def _check_token(self, payload: bytes, kind: type[_Token] | type[Enter]) -> Refusal | None:
         try:

@@ -23,6 +23,8 @@ from lacoc_shared.messages import (
     Health,
     Joined,
     Outcome,
+    Outlook,
+    OutlookRequest,
     Refusal,
     Scene,
     SeatHealth,
@@ -40,12 +42,18 @@ _REQUESTS_PER_BEAT = 4  # refused ones; at most one request of a desk enters a b
 _FETCHES_PER_BEAT = 8
 
 
-_Told = Done | Copied | Whereabouts
+_Told = Done | Copied | Whereabouts | Outlook
 """Answers that do not concern the match."""
 _Judged = Input | _Told | Refusal
 _Later = Callable[[], _Judged | None]
 """A function that is called in each beat until it returns what became of a request."""
 _Judge = Callable[[Request], _Judged | _Later]
+
+LookAhead = Callable[[OutlookRequest], Callable[[], Outlook | Refusal | None]]
+"""Starts to play a copy of the match, beside the beats.
+
+It returns a function that is called in each beat until it returns the outlook, or a refusal.
+"""
 
 
 class Arrival(NamedTuple):
@@ -67,6 +75,7 @@ class CourtNetwork:
         protection: the court's certificate and users; None: anybody may connect, and nothing is
             encrypted.
         office_desk: checks what comes from the office; None: the court has no office.
+        look_ahead: answers referees who ask for an outlook; None: nobody answers them.
 
     Raises:
         UserError: if the court can't listen on an address.
@@ -80,6 +89,7 @@ class CourtNetwork:
         decision_desk: DecisionDesk,
         protection: Protection | None = None,
         office_desk: OfficeDesk[Any] | None = None,
+        look_ahead: LookAhead | None = None,
     ) -> None:
         self._inbox = inbox
         self._decision_desk = decision_desk
@@ -101,6 +111,9 @@ class CourtNetwork:
             for index, seat in enumerate(inbox.seats)
         ]
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
+        if look_ahead is not None:
+            judge = _outlook_judge(decision_desk, look_ahead)
+            self._desks.append((session.desk(keys.outlook, _DESK), judge))
         if office_desk is not None:
             self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
             self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(office_desk)))
@@ -283,6 +296,14 @@ class CourtNetwork:
 
 def _seat_judge(judge: Callable[[int, bytes], _Judged | _Later], seat: int) -> _Judge:
     return lambda request: judge(seat, request.payload)
+
+
+def _outlook_judge(desk: DecisionDesk, look_ahead: LookAhead) -> _Judge:
+    def judge(request: Request) -> Refusal | _Later:
+        asked = desk.outlook(request.payload)
+        return asked if isinstance(asked, Refusal) else look_ahead(asked)
+
+    return judge
 
 
 def _office_judge(desk: OfficeDesk[Any]) -> _Judge:

@@ -5,7 +5,7 @@ program. All are frozen structs, encoded as msgpack by `codec`. `Frame` and `Com
 arrays on the wire, because they are sent 50 and 10 times a second; all others are maps.
 """
 
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 
@@ -18,6 +18,9 @@ PROTOCOL = 2
 
 MARKER_STATES = ("neutral", "left", "right", "down")
 """The states of a marker; a frame carries the index in two bits."""
+
+OUTLOOK_MOST_S = 30.0
+"""Longest outlook that a referee may ask for [s]."""
 
 ROOT_FLOATS = 7
 """Numbers of a robot's root in `Frame.poses`: x, y, z, then its quaternion w, x, y, z."""
@@ -205,6 +208,35 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     """Index of the seat that the event is about; -1: none."""
     data: dict[str, Any] = {}
     """Details by name, for programs."""
+
+
+class OutlookRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A referee's question during a halt: what would happen if play went on?"""
+
+    token: str
+    decision: Decision | None = None
+    """A decision that would be taken before play goes on; None: none."""
+    seconds: Annotated[float, msgspec.Meta(gt=0, le=OUTLOOK_MOST_S)] = 10.0
+    """How long play would go on [s]."""
+
+
+class Outlook(msgspec.Struct, frozen=True, kw_only=True):
+    """What would happen if play went on, and nobody pressed another key or decided anything."""
+
+    beat: int
+    """The match's beat from which play would go on."""
+    clock_ticks: int
+    """The clock when play would go on."""
+    before: tuple[int, ...]
+    """For each seat the score when play would go on, after the decision."""
+    scores: tuple[int, ...]
+    """For each seat the score at the end."""
+    seconds: float
+    """How long play would go on [s]: less than was asked for if the match ended."""
+    phase: int
+    """The phase at the end."""
+    events: tuple[Event, ...]
+    """What would happen, in order. In the match itself these numbers may go to other events."""
 
 
 class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):

@@ -50,7 +50,8 @@ def access_control(protection: Protection | None) -> dict[str, Any]:
             tokens and seals show whose they are.
     """
     if protection is None:
-        requests = ["lacoc/*/seat/*/*", "lacoc/*/referee/*", "lacoc/*/office/*", "lacoc/*/where"]
+        requests = ["lacoc/*/seat/*/*", "lacoc/*/referee/*", "lacoc/*/office/*"]
+        requests += ["lacoc/*/outlook", "lacoc/*/where"]
         anyone = _acting(["lacoc/*/seat/*/key"], requests)
         groups: dict[str, tuple[dict[str, Any], Rules]] = {"anyone": ({}, _watching() | anyone)}
     else:
@@ -146,7 +147,7 @@ def _actors(protection: Protection) -> dict[str, Rules]:
         )
         for seat, user in protection.seats.items()
     }
-    return seats | {protection.referee: _acting([], [keys.decision("*")])}
+    return seats | {protection.referee: _acting([], [keys.decision("*"), keys.outlook])}
 
 
 def _acting(commands: list[str], requests: list[str]) -> Rules:

@@ -261,6 +261,16 @@ export interface DecisionReply {
   changes: Phrase[];
 }
 
+export interface Outlook {
+  beat: number;
+  clock_ticks: number;
+  before: number[];
+  scores: number[];
+  seconds: number;
+  phase: number;
+  events: Event[];
+}
+
 export interface Mistake {
   file: string;
   found: Phrase | string;

@@ -223,6 +223,7 @@ export type Request =
   | "key"
   | "enter"
   | "take_over"
+  | "outlook"
   | "decide"
   | DesignRequest
   | ClassRequest

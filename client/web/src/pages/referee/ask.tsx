@@ -3,11 +3,12 @@
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Phrase } from "../../core/phrase";
-import { type DecisionReply, NEED_A_REASON } from "../../core/wire";
+import { type DecisionName, type DecisionReply, NEED_A_REASON } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { type Desk, reasonOf } from "./desk";
 import type { Draft } from "./drafts";
+import { Outlook } from "./outlook";
 
 const OTHER = "other";
 /** Codes of the table; with "other" the words alone are the reason. */
@@ -19,6 +20,9 @@ const REASONS = [
   OTHER,
 ] as const;
 type Reason = (typeof REASONS)[number];
+
+/** Decisions after which play can go on. */
+const GOES_ON = new Set<DecisionName>(["take-back", "restart", "freeze", "adjust", "set", "clock"]);
 
 const WORDS_MOST = 200;
 
@@ -63,6 +67,9 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
         <p>{draft.text}</p>
         {draft.event !== undefined && <Preview desk={desk} event={draft.event} />}
         {draft.amount && <AmountField amount={draft.amount} typed={typed} />}
+        {GOES_ON.has(draft.name) && !(draft.amount && wrongAmount(draft.amount, amount)) && (
+          <Outlook desk={desk} decision={draft.build(amount)} />
+        )}
         {needsReason && (
           <fieldset class="reasons">
             <legend>{t("ask.reason")}</legend>

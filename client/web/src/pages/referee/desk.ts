@@ -11,6 +11,7 @@ import {
   type Decision,
   type DecisionName,
   type DecisionReply,
+  type Outlook,
   Phase,
   SeatFlag,
 } from "../../core/wire";
@@ -169,6 +170,15 @@ export class Desk {
   tryTakeBack(event: number): Promise<DecisionReply> {
     const decision: Decision = { type: "take-back", event, dry_run: true };
     return this.court.ask<DecisionReply>("decide", { decision, reason: "" });
+  }
+
+  /**
+   * What would happen if play went on; nothing is changed. Rejects with `Refused`.
+   *
+   * @param decision What would be decided before; null: nothing.
+   */
+  lookAhead(decision: Decision | null): Promise<Outlook> {
+    return this.court.ask<Outlook>("outlook", { decision });
   }
 
   /** Why this page can't decide anything now; "" if it can. */

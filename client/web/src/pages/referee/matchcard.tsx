@@ -12,6 +12,7 @@ import { Act } from "./act";
 import type { Answer, Desk, Step } from "./desk";
 import * as drafts from "./drafts";
 import { Advice } from "./health";
+import { Outlook } from "./outlook";
 
 const CLOCK_S = 10;
 const OVER = new Set<number>([Phase.FINISHED, Phase.OFFICIAL]);
@@ -45,6 +46,7 @@ export function MatchCard({ desk }: { desk: Desk }) {
       </div>
       <WhyHalted desk={desk} />
       <BigButton desk={desk} />
+      <Outlook desk={desk} decision={null} />
       <Missing desk={desk} />
       <ReplayAdvice desk={desk} />
       <LastAnswer desk={desk} />

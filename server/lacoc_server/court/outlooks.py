@@ -1,0 +1,46 @@
+"""What would happen if play went on: a copy of the open match is played beside the beats."""
+
+from collections.abc import Callable
+from concurrent.futures import Future
+
+from lacoc_server.match.match import Match
+from lacoc_server.match.outlook import look_ahead
+from lacoc_server.world.world import World
+from lacoc_shared.messages import Outlook, OutlookRequest, Refusal
+from lacoc_shared.mistakes import UserError
+
+Seen = Outlook | Refusal
+
+
+class Outlooks:
+    """Answers referees who ask for an outlook on the open match.
+
+    Args:
+        aside: calls a function on another thread than the beat's.
+    """
+
+    def __init__(self, aside: Callable[[Callable[[], Seen]], Future[Seen]]) -> None:
+        self._aside = aside
+        self._match: Match
+
+    def hold(self, match: Match) -> None:
+        """Take note of the open match."""
+        self._match = match
+
+    def __call__(self, request: OutlookRequest) -> Callable[[], Seen | None]:
+        """Begin to play a copy of the match; the returned function returns None until it is done.
+
+        Called between two beats, because only then the match is whole.
+        """
+        setup, folder, saved = self._match.setup, self._match.arena.folder, self._match.save()
+
+        def look() -> Seen:
+            copy = Match(setup, World, folder)
+            copy.load(saved)
+            try:
+                return look_ahead(copy, request.decision, request.seconds)
+            except UserError as error:  # the world can't be built with the robots
+                return Refusal(error.phrase)
+
+        future = self._aside(look)
+        return lambda: future.result() if future.done() else None
