@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from chromium import OpenPage
 from msgspec.structs import replace
+from playwright.sync_api import expect
 from show import Show, violations
 from venue import Venue
 
@@ -107,3 +108,30 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
     assert violations(page) == []
     show.find(".fork-note button").click()
     show.misses(".scene.two")
+
+
+def test_a_page_with_the_key_goes_on_from_where_it_is(library: Venue, open_page: OpenPage) -> None:
+    """The page plays a fork from the beat that it shows, and shows it beside its match."""
+    page = open_page(viewport={"width": 1366, "height": 768})
+    show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=3&q=low#key={library.key}")
+    page.get_by_role("button", name="What if, from here").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("from beat 150")
+    expect(dialog.locator(".why")).to_have_text("Change something first")
+    expect(dialog.locator("option", has_text="the bot straight")).to_have_count(2)
+    assert violations(page) == []
+    dialog.locator("select[name=player-right]").select_option("straight")
+    dialog.locator("input[name=restart-left]").check()
+    dialog.get_by_role("button", name="Play on").click()
+    show.sees(".fork-note", f"a fork of {MATCH} at beat 150")
+    show.sees(".scene.two .line:nth-child(2) .line-score", "The match")
+    with page.expect_download() as coming:
+        page.get_by_text("Save the fork's record").click()
+    assert coming.value.suggested_filename.startswith("fork-")
+    page.go_back()  # to the match
+    show.misses(".fork-note")
+
+    page = open_page(viewport={"width": 1366, "height": 768})  # no key in this profile
+    show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=3&q=low")
+    show.sees(".position")
+    show.misses("button[aria-label='What if, from here']")

@@ -160,5 +160,6 @@ def _tell(home: Home, address: str, *, office: bool) -> None:
     screen.show(say("web.spectators", url=f"{address}/watch"))
     screen.show(say("web.broadcast", url=f"{address}/overlay"))
     screen.show(say("web.recordings", url=f"{address}/replay"))
+    screen.show(say("web.forks", url=f"{address}/replay#key={home.key}"))
     screen.show(say("web.contestants", url=f"{address}/play#key={home.key}"))
     screen.show(say("web.referee", url=f"{address}/referee#key={home.key}"))

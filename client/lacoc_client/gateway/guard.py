@@ -15,6 +15,7 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from lacoc_shared.words import LANGUAGES, Phrase, render, say
+from lacoc_shared.words.render import Language
 
 _POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
@@ -77,11 +78,15 @@ class Guard:
 
 def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:
     """Answer a browser with a sentence in its language, instead of a page."""
+    return PlainTextResponse(f"{render(said, language_of(scope))}\n", status_code=status)
+
+
+def language_of(scope: Scope) -> Language:
+    """Return the language that a browser wants most, of those that LACOC speaks."""
     wanted = Headers(scope=scope).get("accept-language", "").lower()
     # Browsers list the preferred language first.
     found = ((wanted.find(language), language) for language in LANGUAGES if language in wanted)
-    chosen = min(found, default=(0, LANGUAGES[0]))[1]
-    return PlainTextResponse(f"{render(said, chosen)}\n", status_code=status)
+    return min(found, default=(0, LANGUAGES[0]))[1]
 
 
 def _add_headers(headers: MutableHeaders, path: str) -> None:

@@ -1,4 +1,4 @@
-"""The recordings that a gateway serves: finished ones, and copies of matches just over.
+"""The recordings that a gateway serves: finished ones, copies of matches just over, and forks.
 
 A court packs the record of a match when the next one opens. Until then the match that everybody has
 just seen would be missing, so the gateway packs a copy of what is there.
@@ -48,6 +48,8 @@ class Recordings:
         self._folder = folder
         self._over = over
         self._copies = tempfile.TemporaryDirectory(prefix="lacoc-recordings-")
+        self.own = Path(self._copies.name)
+        """Folder of the gateway's own records: copies, and forks that pages ask for."""
         self._copying: dict[str, subprocess.Popen[bytes]] = {}
         self._summaries: dict[tuple[Path, int, int], Summary | None] = {}
         self._lock = Lock()
@@ -86,7 +88,7 @@ class Recordings:
         return None
 
     def close(self) -> None:
-        """Delete the copies."""
+        """Delete the copies and forks."""
         for copying in self._copying.values():
             copying.terminate()
             copying.wait()
@@ -95,7 +97,7 @@ class Recordings:
     def _paths(self) -> dict[str, Path]:
         if self._folder is None:
             return {}
-        copies = Path(self._copies.name).glob(f"*{_RECORDING}")
+        copies = self.own.glob(f"*{_RECORDING}")
         packed = self._folder.glob(f"*{_RECORDING}")
         return {
             path.name: path
@@ -111,7 +113,7 @@ class Recordings:
             segments = files.segment_paths(folder, match_id)
             if match_id in self._copying or not segments:
                 continue
-            out = files.packed_path(Path(self._copies.name), match_id)
+            out = files.packed_path(self.own, match_id)
             with contextlib.suppress(OSError):  # no resources for a process: it is packed later
                 self._copying[match_id] = copy_in_background(segments, out)
 

@@ -1,6 +1,7 @@
 """The gateway's paths: of pages (all are one HTML file), files, recordings and the WebSocket."""
 
 import asyncio
+import hmac
 from collections.abc import AsyncIterator, Iterable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -16,16 +17,22 @@ from starlette.websockets import WebSocket
 
 from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles
-from lacoc_client.gateway.guard import Guard, answer
+from lacoc_client.gateway.forks import ForkAsk, Forks, bots
+from lacoc_client.gateway.guard import Guard, answer, language_of
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.scores import scores_route
+from lacoc_client.gateway.wire import REQUEST_BYTES, too_long
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest")
 """Paths that all serve index.html; the page itself looks at its path."""
+
+KEY_HEADER = "X-Lacoc-Key"
+"""HTTP header with the page key."""
 
 _FOR_EVER = "public, max-age=31536000, immutable"  # names of assets contain their hash
 _MCAP = "application/octet-stream"
@@ -55,6 +62,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     """
     courts = Courts(home)
     shelf = Recordings(home.recordings, courts.over)
+    forks = Forks(shelf.own)
     if home.exporter is not None:
         home.exporter.registry.register(GatewayMetrics(courts))
 
@@ -67,6 +75,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         await courts.close()
         if more is not None:
             await more.close()
+        forks.close()
         await asyncio.to_thread(shelf.close)
 
     async def page(websocket: WebSocket) -> None:
@@ -74,6 +83,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
 
     others = [
         *recording_routes(shelf),
+        *fork_routes(shelf, forks, home.key),
         sheet_route(home.sheet),
         scores_route(courts),
         WebSocketRoute("/ws", page),
@@ -105,6 +115,54 @@ def recording_routes(shelf: Recordings) -> list[BaseRoute]:
         Route("/recordings/{name}", one_recording),
         Route("/recordings/{name}/odds", odds),
     ]
+
+
+def fork_routes(shelf: Recordings, forks: Forks, key: str) -> list[BaseRoute]:
+    """Return the route on which a page asks for forks of a recording.
+
+    A request needs the page key in a header, which no page of another site can send.
+
+    Args:
+        shelf: the recordings.
+        forks: plays the forks.
+        key: the page key.
+    """
+
+    async def fork(request: Request) -> Response:
+        given = request.headers.get(KEY_HEADER, "").encode("utf-8", "surrogatepass")
+        if not hmac.compare_digest(given, key.encode()):
+            return answer(request.scope, say("gateway.fork-key"), 403)
+        record = await asyncio.to_thread(shelf.find, request.path_params["name"])
+        if record is None:
+            return _not_found(request)
+        try:
+            found: object
+            if request.method == "POST":
+                asked = msgspec.json.decode(await _body(request), type=ForkAsk)
+                found = await forks.play(record, asked, language_of(request.scope))
+            else:
+                found = {"bots": await asyncio.to_thread(bots, record)}
+        except msgspec.MsgspecError as error:
+            return answer(request.scope, say("gateway.bad-message", error=str(error)), 400)
+        except UserError as error:
+            return answer(request.scope, error.phrase, 409)
+        return Response(msgspec.json.encode(found), media_type="application/json")
+
+    return [Route("/recordings/{name}/forks", fork, methods=["GET", "POST"])]
+
+
+async def _body(request: Request) -> bytes:
+    """Read the body of a request.
+
+    Raises:
+        UserError: if it is too long.
+    """
+    data = b""
+    async for part in request.stream():
+        data += part
+        if len(data) > REQUEST_BYTES:
+            raise too_long(len(data), REQUEST_BYTES)
+    return data
 
 
 def sheet_route(path: Path | None) -> BaseRoute:

@@ -41,6 +41,31 @@ export function whyHalted(events: readonly Event[]): Event | null {
   );
 }
 
+/**
+ * Whether an event is of a kind that can be taken back (rules 4): captures, flips, strikes, `adjust`
+ * and `set`; events of other games name a marker.
+ */
+export function canGo(event: Event): boolean {
+  const decision = event.data.decision;
+  if (event.kind === "decision") return decision === "adjust" || decision === "set";
+  return typeof event.data.marker === "string";
+}
+
+/** Events that do not stand any more, and how they went. */
+export function goneEvents(events: readonly Event[]): Map<number, "takenBack" | "vanished"> {
+  const gone = new Map<number, "takenBack" | "vanished">();
+  for (const event of events) {
+    if (event.data.decision !== "take-back") continue;
+    const { arguments: given, vanished } = event.data as {
+      arguments?: { event?: number };
+      vanished?: number[];
+    };
+    for (const number of vanished ?? []) gone.set(number, "vanished");
+    if (given?.event) gone.set(given.event, "takenBack");
+  }
+  return gone;
+}
+
 /** The decision of an event, with its arguments; null for any other event. */
 export function decisionOf({ data }: Event): Decision | null {
   if (typeof data.decision !== "string") return null;

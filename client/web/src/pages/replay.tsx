@@ -4,6 +4,7 @@ import { effect, signal, useComputed } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { ownPage, setting } from "../core/address";
 import { followColours } from "../core/colours";
+import { mayFork } from "../core/forks";
 import type { Note, RecordFile } from "../core/record";
 import { BadRecord, dropped, fetched, oddsOf, readBeside } from "../core/record_files";
 import { Recording } from "../core/recording";
@@ -25,6 +26,7 @@ import { Toasts, toast } from "../ui/toasts";
 import { SeekBar, seconds } from "./replay/bar";
 import { Chooser, troubleText } from "./replay/chooser";
 import { ForkNote, LineScore } from "./replay/fork";
+import { ForkHere } from "./replay/fork_here";
 import { ReplayLog } from "./replay/log";
 import { ChancesNow, Highlights } from "./replay/odds";
 import { Player, SPEEDS } from "./replay/player";
@@ -35,6 +37,8 @@ import "./watch/frame.css";
 import "./replay/replay.css";
 
 const WIDE_PX = 1280;
+/** A new fork is shown from so long before its first own beat. */
+const SEEN_BEFORE_BEATS = BEATS_PER_S;
 
 /** What the page is about now. */
 type State =
@@ -54,6 +58,8 @@ const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("replay.panel", innerWidth >= WIDE_PX);
 const dragging = signal(false);
+/** The beat from which the open dialog goes on; null: it is closed. */
+const forking = signal<number | null>(null);
 /** Counts what was opened, so that an older one that arrives late is not shown. */
 let opening = 0;
 let unfollow = () => {};
@@ -68,11 +74,13 @@ effect(() => {
  *
  * @param get Gets the files; its argument tells whether they are still wanted.
  * @param server Name of the recording on the server; null: it is from this machine.
+ * @param beside Whether the origin of a fork is shown beside it.
  */
 async function show(
   get: (fresh: () => boolean) => Promise<RecordFile[]>,
   server: string | null,
   beat: number | null,
+  beside = false,
 ) {
   const mine = ++opening;
   const fresh = () => mine === opening;
@@ -94,7 +102,8 @@ async function show(
       if (!fresh()) return;
       player.odds.value = odds;
     }
-    if (beat === null) player.play();
+    if (beside) await showBeside(player);
+    if (beat === null || beside) player.play();
   } catch (error) {
     if (!fresh()) return;
     const trouble =
@@ -125,14 +134,14 @@ function seatTitle(recording: Recording, index: number): string {
   return team(last, index);
 }
 
-function openServer(name: string, beat: number | null, push: boolean): void {
+function openServer(name: string, beat: number | null, push: boolean, beside = false): void {
   if (push) history.pushState(null, "", `?file=${encodeURIComponent(name)}`);
   state.value = { is: "loading", name, part: 0 };
   const get = (fresh: () => boolean) =>
     fetched(name, (part) => {
       if (fresh()) state.value = { is: "loading", name, part };
     });
-  void show(get, name, beat);
+  void show(get, name, beat, beside);
 }
 
 function openFiles(files: readonly File[]): void {
@@ -245,6 +254,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
           <ForkNote
             recording={recording}
             beside={player.beside}
+            server={server}
             {...(server !== null && { onBeside: () => void showBeside(player) })}
           />
           <Notes notes={recording.record.notes} />
@@ -252,6 +262,16 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         </header>
       </div>
       <Corner panel={panel}>
+        {server !== null && mayFork() && (
+          <IconButton
+            name="fork"
+            label={t("fork.here")}
+            onClick={() => {
+              player.pause();
+              forking.value = Math.floor(recording.beat.value);
+            }}
+          />
+        )}
         <IconButton name="link" label={t("replay.share")} onClick={() => share(player, server)} />
       </Corner>
       <div class="middle-stage">
@@ -274,6 +294,21 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         </aside>
       )}
       <CornerSettings />
+      {server !== null && forking.value !== null && (
+        <ForkHere
+          recording={recording}
+          name={server}
+          beat={forking.value}
+          onMade={(name) => {
+            const beat = forking.value;
+            forking.value = null;
+            openServer(name, beat === null ? null : beat - SEEN_BEFORE_BEATS, true, true);
+          }}
+          onClose={() => {
+            forking.value = null;
+          }}
+        />
+      )}
     </main>
   );
 }

@@ -1,6 +1,7 @@
 /** The log of the match: filtered, numbered, and the place to take an event back. */
 
 import { useSignal } from "@preact/signals";
+import { canGo, goneEvents } from "../../core/rulings";
 import type { Event } from "../../core/wire";
 import { t } from "../../i18n";
 import { EventLog } from "../../ui/log";
@@ -87,26 +88,4 @@ function passes(event: Event, filter: Filter): boolean {
     default:
       return true;
   }
-}
-
-/** Captures, flips, strikes, `adjust` and `set` (rules 4); those of other games name a marker. */
-function canGo(event: Event): boolean {
-  const decision = event.data.decision;
-  if (event.kind === "decision") return decision === "adjust" || decision === "set";
-  return typeof event.data.marker === "string";
-}
-
-/** Events that do not stand any more, and how they went. */
-function goneEvents(events: readonly Event[]): Map<number, "takenBack" | "vanished"> {
-  const gone = new Map<number, "takenBack" | "vanished">();
-  for (const event of events) {
-    if (event.data.decision !== "take-back") continue;
-    const { arguments: given, vanished } = event.data as {
-      arguments?: { event?: number };
-      vanished?: number[];
-    };
-    for (const number of vanished ?? []) gone.set(number, "vanished");
-    if (given?.event) gone.set(given.event, "takenBack");
-  }
-  return gone;
 }

@@ -2,6 +2,7 @@
 
 import type { ReadonlySignal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
+import { ownPage } from "../../core/address";
 import { type Match, scoresOf } from "../../core/match";
 import type { Recording } from "../../core/recording";
 import { t } from "../../i18n";
@@ -10,12 +11,14 @@ interface Props {
   recording: Recording;
   /** The origin, while it is shown. */
   beside: ReadonlySignal<Recording | null>;
+  /** Name of the recording at the gateway; null: it is from this machine. */
+  server: string | null;
   /** Shows the origin, or puts it away; absent where it can't be got. */
   onBeside?: () => void;
 }
 
 /** A note that the recording is a fork; nothing for other recordings. */
-export function ForkNote({ recording, beside, onBeside }: Props) {
+export function ForkNote({ recording, beside, server, onBeside }: Props) {
   const { origin } = recording.record.header.setup;
   if (!origin) return null;
   return (
@@ -30,6 +33,15 @@ export function ForkNote({ recording, beside, onBeside }: Props) {
         >
           {t(beside.value ? "replay.alone" : "replay.beside")}
         </button>
+      )}
+      {server !== null && !ownPage && (
+        <a
+          class="button quiet"
+          href={`/recordings/${encodeURIComponent(server)}`}
+          download={server}
+        >
+          {t("replay.save")}
+        </a>
       )}
     </div>
   );
