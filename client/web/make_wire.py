@@ -147,6 +147,7 @@ DESK_STRUCTS = (
     desk.OfficeView,
     desk.Overviewed,
     desk.Effect,
+    desk.CourtPlan,
     desk.Said,
     links.TeamLink,
     links.RefereeLink,

@@ -14,7 +14,7 @@ from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, Played, new
+from lacoc_server.contest.league.facts import AnyFact, Called, Closed, Drawn, Played, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due, playable
 from lacoc_server.contest.live.calling import Seen
@@ -30,6 +30,8 @@ from lacoc_shared.messages.desk import (
     Approve,
     Change,
     CloseEntries,
+    CourtDay,
+    CourtPlan,
     Decline,
     Effect,
     EventInfo,
@@ -289,6 +291,37 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
     assert len(room.facts) == count
     room.ask(TakeOut(secret=KEY, team=first, reason="left early", really=True))
     assert room.states()[first] == "withdrawn"
+
+
+def test_a_referee_sees_what_comes_and_what_a_result_changes(room: Room) -> None:
+    """The token of a court's referee shows the court's next games and the effect of a result."""
+    room.enter("Ann", "Ben", "Cyd", "Dan")
+    room.draw()
+    token = room.where.contest.courts["north"].referee.token
+    assert room.ask(CourtDay(secret="x", court="north")) == Refusal(say("refused.no-referee-token"))
+    assert room.ask(CourtDay(secret=token, court="south")) == Refusal(
+        say("refused.no-referee-token")
+    )
+    room.draw()  # closes entries first
+    match = playable(compute(room.facts, FORMATS))[0]
+    assert match.next_seats is not None
+    left, right = match.next_seats
+    call = {"pairing": match.pairing.id, "game": 1, "teams": (left, right)}
+    room.store.append(new(Called, court="north", **call))
+    facts = room.facts
+    plan = room.ask(CourtDay(secret=token, court="north"))
+    assert isinstance(plan, CourtPlan)
+    assert plan.changes == ()
+    assert {slot.court for slot in plan.coming} == {"north"}
+    assert match.pairing.id not in {slot.pairing for slot in plan.coming}
+    plan = room.ask(CourtDay(secret=token, court="north", scores=(1, 5), outcome="right"))
+    assert isinstance(plan, CourtPlan)
+    assert plan.changes[0].code == "decide.match"
+    assert dict(plan.changes[0].values)["winner"] == right
+    ranks = {one.values["team"]: one.values["after"] for one in plan.changes[1:]}
+    assert ranks.get(right, 1) == 1  # it may have been first before
+    assert left in ranks
+    assert room.facts == facts
 
 
 def test_a_match_is_moved(room: Room) -> None:

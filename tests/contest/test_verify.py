@@ -36,7 +36,16 @@ from lacoc_server.contest.verify.games import check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, check_history, decisions, files_of
 from lacoc_server.contest.verify.published import check_published, read
 from lacoc_server.contest.verify.sampling import CONFIDENCE, least_forged, missed, sample
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.replay import resume
+from lacoc_shared.codec import decode
+from lacoc_shared.decisions import Abort
+from lacoc_shared.inputs import Decide
+from lacoc_shared.messages import Frame
+from lacoc_shared.record.pack import Message, write
+from lacoc_shared.record.pack import read as packed
 from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
 
 
 def findings(folder: Path, proven: bool = False) -> list[str]:
@@ -108,6 +117,38 @@ def test_an_honest_contest_with_decisions_passes(copied: Path) -> None:
     assert found.findings == ()
     kinds = [dict(one.values)["kind"] for one in found.decisions]
     assert kinds == ["replay", "files-changed", "replaced", "withdrawn"]
+
+
+@pytest.mark.slow
+def test_a_game_that_was_voided_in_play_passes(copied: Path) -> None:
+    """A game that a referee aborted is void for the office; its record has the score until then."""
+    folder = copied.parent / "published"
+    facts = [*read(folder)]
+    at = next(n for n, fact in enumerate(facts) if isinstance(fact, Played) and any(fact.scores))
+    played = facts[at]
+    assert isinstance(played, Played)
+    path = folder / "records" / played.record
+    messages: list[Message] = []
+    record = Record.read(path, lambda *message: messages.append(message))
+    frames = {beat: decode(data, Frame) for beat, data in record.frames}
+    playing = [beat for beat, frame in frames.items() if frame.phase == Phase.PLAYING]
+    match = resume(record.until(playing[-1])).match
+    journal = Journal(match, copied.parent / "scratch", segment=1)
+    journal.beat([Decide("Kim", "the net fell", Abort())])
+    journal.close()
+    assert journal.writer is not None
+    before = [one for one in messages if one[1] <= playing[-1] and one[0] != "/lacoc/result"]
+    path.unlink()
+    write([*before, *packed([journal.writer.path])], path)
+    shown = Record.read(path).result
+    assert shown is not None
+    assert (shown.official, any(shown.scores)) == ("void", True)
+    facts[at] = replace(played, outcome="void", scores=(0, 0), record_hash=file_hash(path))
+    game = next(game for game in games_of(facts) if game.played is facts[at])
+    assert [one.code for one in check_game(folder, game, proven=True)] == []
+    facts[at] = replace(facts[at], scores=(1, 0))
+    game = next(game for game in games_of(facts) if game.played is facts[at])
+    assert [one.code for one in check_game(folder, game, proven=False)] == ["verify.other-game"]
 
 
 @pytest.mark.slow

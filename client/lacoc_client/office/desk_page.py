@@ -20,7 +20,13 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 _ASKS_HZ, _ASKS_BURST = 20.0, 60
-_WRONG = ("desk.wrong-code", "desk.no-such-team", "desk.not-organiser", "desk.slower")
+_WRONG = (
+    "desk.wrong-code",
+    "desk.no-such-team",
+    "desk.not-organiser",
+    "desk.slower",
+    "refused.no-referee-token",
+)
 """Codes with which the desk refuses a secret."""
 
 

@@ -76,6 +76,19 @@ class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
     """Ask how the team's own entry stands."""
 
 
+# With the token of a court's referee
+
+
+class CourtDay(DeskRequest, frozen=True, kw_only=True, tag="court_day"):
+    """Ask what comes next at a court, and what a result of its game would change."""
+
+    court: _Name
+    scores: tuple[int, int] | None = None
+    """Points of the left and of the right seat with which the game would end; None: do not ask."""
+    outcome: Literal["left", "right", "draw"] = "draw"
+    """Who would win, for `scores`."""
+
+
 # With the organiser's key
 
 
@@ -151,6 +164,7 @@ AnyRequest = (
     | Apply
     | Change
     | Own
+    | CourtDay
     | Overview
     | Approve
     | Decline
@@ -272,6 +286,16 @@ class Effect(msgspec.Struct, frozen=True, kw_only=True):
     done: bool
 
 
+class CourtPlan(msgspec.Struct, frozen=True, kw_only=True):
+    """The answer to `CourtDay`."""
+
+    coming: tuple[Slot, ...]
+    """What is probably played next at the court, by time; not the game that is on."""
+    changes: tuple[Phrase, ...]
+    """What the result would change in matches and ranks (`decide.*`); empty: there was no result in
+    the request, or the court has no game."""
+
+
 class Said(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to a request that was carried out: what was done."""
 
@@ -287,5 +311,5 @@ class TokenList(msgspec.Struct, frozen=True, kw_only=True):
     """Tokens of the referees, by the names of their courts."""
 
 
-Answer = EventInfo | OwnEntry | Overviewed | Effect | Said | TokenList
+Answer = EventInfo | OwnEntry | CourtPlan | Overviewed | Effect | Said | TokenList
 """Every answer of the desk; which one it is follows from the request."""

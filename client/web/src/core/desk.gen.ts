@@ -33,6 +33,14 @@ export interface Own {
   secret?: string;
 }
 
+export interface CourtDay {
+  do: "court_day";
+  secret?: string;
+  court: string;
+  scores?: [number, number] | null;
+  outcome?: "left" | "right" | "draw";
+}
+
 export interface Overview {
   do: "overview";
   secret?: string;
@@ -158,6 +166,11 @@ export interface Effect {
   done: boolean;
 }
 
+export interface CourtPlan {
+  coming: Slot[];
+  changes: Phrase[];
+}
+
 export interface Said {
   said: Phrase[];
 }
@@ -190,4 +203,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = Look | Apply | Change | Own | Overview | Approve | Decline | CloseEntries | TakeOut | Rule | Move | Tokens;
+export type AnyRequest = Look | Apply | Change | Own | CourtDay | Overview | Approve | Decline | CloseEntries | TakeOut | Rule | Move | Tokens;

@@ -84,6 +84,11 @@ export function keepGiven(files: Readonly<Record<Slot, SentFile | null>>): void 
   kept.value = Object.fromEntries(given);
 }
 
+/** Forget all files. */
+export function forgetAll(): void {
+  kept.value = {};
+}
+
 /** Forget a file. */
 export function forget(slot: Slot): void {
   const { [slot]: _, ...others } = kept.value;

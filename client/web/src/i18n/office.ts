@@ -3,6 +3,10 @@ export const office = {
   "office.title": ["The office", "大会本部"],
   "office.open": ["Entries are open", "参加受付中"],
   "office.closed": ["Entries are closed", "参加は締め切り済み"],
+  "office.isOver": [
+    "The contest is over: print results and certificates, publish with 'lacoc contest publish'",
+    "大会は終了しました。結果と賞状を印刷し、'lacoc contest publish' で公開できます",
+  ],
   "office.closesAt": ["until {time}", "{time} まで"],
   "office.enterAt": ["Teams enter at", "チームの登録ページ"],
   "office.code": ["Event code", "イベントコード"],

@@ -102,16 +102,16 @@ export const referee = {
   "decide.next": ["Next match", "次の試合へ"],
   "ask.confirm": ["Confirm", "決定"],
   "ask.official": [
-    "The result becomes final: {result}. You can't change it afterwards.",
-    "次の結果を確定します：{result}。以後、取り消しはできません。",
+    "The result becomes final: {result}. No referee can change it afterwards; in a contest, only the organiser.",
+    "次の結果を確定します：{result}。以後、審判は変更できません（大会では主催者だけが変更できます）。",
   ],
   "ask.next": [
     "This match closes, and the next one opens. The teams stay, unless they leave.",
     "この試合を終え、次の試合に移ります。退出しないチームはそのまま参加します。",
   ],
   "ask.abort": [
-    "The match ends without a winner. This can't be undone.",
-    "勝者なしで試合を打ち切ります。元に戻せません。",
+    "The match ends without a winner. This can't be undone. In a contest, the office lets the game be played again.",
+    "勝者なしで試合を打ち切ります。元に戻せません。大会では、本部がこの試合をやり直させます。",
   ],
   "ask.declare": [
     "Your decision replaces the computed result. The record keeps both. A halted match ends.",
@@ -149,6 +149,10 @@ export const referee = {
   "ask.scoreNow": ["Score now", "現在の得点"],
   "ask.scoreThen": ["Score after that", "取り消し後の得点"],
   "ask.noChanges": ["No other event changes.", "ほかのイベントは変わりません。"],
+  "day.title": ["Next at this court", "このコートの予定"],
+  "day.nothing": ["Nothing is planned yet.", "まだ予定はありません。"],
+  "day.late": ["Not here for {minutes} min: {teams}", "{minutes} 分たっても来ていません：{teams}"],
+  "day.changes": ["If this result counts:", "この結果が確定すると："],
   "outlook.ask": ["If play went on …", "もし続けたら…"],
   "outlook.askAfter": ["… and if play went on", "さらに、もし続けたら…"],
   "outlook.playing": ["The court tries it …", "コートで試しています…"],

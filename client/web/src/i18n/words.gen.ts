@@ -728,7 +728,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "match-state.off": ["not needed", "行う必要がありません"],
   "desk.not-organiser": ["This link does not open the organiser's page. Use the link that 'lacoc contest run' prints.", "このリンクでは主催者のページを開けません。'lacoc contest run' が表示するリンクを使ってください。"],
   "desk.wrong-code": ["This is not the code of the event. Ask the organiser for it.", "イベントコードが違います。主催者に確認してください。"],
-  "desk.no-such-team": ["No team has this link. Ask the organiser for a new one.", "このリンクに当たるチームはありません。主催者から新しいリンクを受け取ってください。"],
+  "desk.no-such-team": ["No team has this link: the organiser has not accepted the team, or has made a new link. Ask the organiser.", "このリンクに当たるチームはありません。主催者がチームを受け付けなかったか、新しいリンクを作りました。主催者に確認してください。"],
   "desk.slower": ["Too many wrong codes and links just now. Try again in a moment.", "間違ったコードやリンクが続いています。少し待ってからもう一度試してください。"],
   "desk.busy": ["The office has much to do. Try again in a moment.", "大会本部の処理が混み合っています。少し待ってからもう一度試してください。"],
   "desk.bad-request": ["The office can't read this request ({error}). Reload the page.", "大会本部が要求を読み取れませんでした（{error}）。ページを再読み込みしてください。"],

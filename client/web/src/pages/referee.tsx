@@ -16,6 +16,7 @@ import { Toasts, toast } from "../ui/toasts";
 import "./referee.css";
 import { Reasons } from "./referee/act";
 import { AskDialog } from "./referee/ask";
+import { DayCard } from "./referee/day";
 import { Desk } from "./referee/desk";
 import * as drafts from "./referee/drafts";
 import { ActingBar, EnterCard } from "./referee/enter";
@@ -60,6 +61,7 @@ export default function Referee() {
           <EnterCard desk={desk} />
           <ActingBar desk={desk} />
           <MatchCard desk={desk} />
+          <DayCard desk={desk} />
         </div>
         <div class="column middle">
           <FieldCard desk={desk} picked={picked} />

@@ -64,6 +64,20 @@ class Admission:
             raise self._wrong(say("desk.no-such-team"), now_s)
         return found
 
+    def referee(self, secret: str, token: str | None, now_s: float) -> None:
+        """Let the referee of a court in.
+
+        Args:
+            secret: what was shown.
+            token: the token of the court's referee; None: there is no such court.
+            now_s: monotonic time [s].
+
+        Raises:
+            UserError: if this is not the token.
+        """
+        if not _same(secret, token or "") or not token:
+            raise self._wrong(say("refused.no-referee-token"), now_s)
+
     def _wrong(self, why: Phrase, now_s: float) -> UserError:
         self.refused += 1
         if not self._guesses.take(1, now_s):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import msgspec
 
-from lacoc_server.contest.desk import entering, organising, overview
+from lacoc_server.contest.desk import entering, organising, overview, refereeing
 from lacoc_server.contest.desk.admission import Admission, Slower
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.kept.entries import Entry, weigh
@@ -20,6 +20,7 @@ from lacoc_shared.messages.desk import (
     Approve,
     Change,
     CloseEntries,
+    CourtDay,
     Decline,
     Files,
     Look,
@@ -95,6 +96,11 @@ class Desk:
             entry = self._weighed(team, asked.files)
             with self._one:
                 return entering.change(self._book, team, entry)
+        if isinstance(asked, CourtDay):
+            court = self._book.where.contest.courts.get(asked.court)
+            self.admission.referee(asked.secret, court.referee.token if court else None, now_s)
+            with self._one:
+                return refereeing.plan(self._book, self._known(), asked)
         self.admission.organiser(asked.secret, now_s)
         with self._one:
             return self._organise(asked)

@@ -41,7 +41,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
             CourtRow(court=court, here=known.pace.now_ms - seen.heard_ms < LOST_MS)
             for court, seen in known.seen.items()
         ),
-        slots=tuple(sorted(_slots(contest, known), key=lambda slot: (slot.court, slot.at_ms))),
+        slots=tuple(sorted(slots(contest, known), key=lambda slot: (slot.court, slot.at_ms))),
     )
     version = codec.message_hash(codec.encode(made)).hex()
     return msgspec.structs.replace(made, version=version)
@@ -76,7 +76,7 @@ def _state(team: Team) -> Literal["in", "withdrawn", "disqualified"]:
     return "withdrawn" if team.withdrawn else "in"
 
 
-def _slots(contest: Contest, known: Known) -> Iterator[Slot]:
+def slots(contest: Contest, known: Known) -> Iterator[Slot]:
     """Yield the matches that are at a court, then those that can be played."""
     places = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     moves = {move.pairing: move for move in contest.moves}

@@ -134,7 +134,10 @@ def _differences(folder: Path, game: Game, plan: Planned, record: Record) -> Ite
         yield say("verify.of-teams")
         return
     seats = tuple(seat.id for seat in arena.seats)
-    if result.scores != played.scores or outcome(seats, result.official) != played.outcome:
+    # A game that a referee voided in play has no score for the office, but one in its record.
+    no_score = played.outcome == "void" and not any(played.scores)
+    same_score = no_score or result.scores == played.scores
+    if not same_score or outcome(seats, result.official) != played.outcome:
         yield say("verify.of-result")
     entries = EntryFolder(folder / ENTRIES)
     for seat, team in enumerate(played.teams):

@@ -10,7 +10,7 @@ import {
   type OwnEntry,
   type TeamLink,
 } from "../../core/desk";
-import { checkSizes, chosenFiles, keepGiven } from "../../core/files";
+import { checkSizes, chosenFiles, forgetAll, keepGiven } from "../../core/files";
 import { filesOf } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
 import type { Mistake } from "../../core/wire";
@@ -53,8 +53,13 @@ export class Entrant {
     return this.send((files) => ({ do: "change", secret, files }));
   }
 
-  /** Forget the team here: somebody else enters at this computer. */
-  forget(): void {
+  /** Make room for another team at this computer: it has files of its own. */
+  makeRoom(): void {
+    forgetAll();
+    this.forget();
+  }
+
+  private forget(): void {
     keepTeamToken(null);
     this.entry.value = null;
     this.link.value = null;

@@ -123,7 +123,7 @@ export function EntryCard({ entrant, entry }: CardProps) {
           </form>
         </details>
       )}
-      <button class="button quiet small" type="button" onClick={() => entrant.forget()}>
+      <button class="button quiet small" type="button" onClick={() => entrant.makeRoom()}>
         {t("enter.other")}
       </button>
     </section>

@@ -1,5 +1,6 @@
 /** The head of the office: the contest, how teams enter, what to print, and the next step. */
 
+import { stateOf } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
 import { language, t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
@@ -13,13 +14,15 @@ interface Props {
 
 export function Head({ organiser, view, onSettings }: Props) {
   const { event, code } = view;
+  const sheet = organiser.feed.sheet.value;
+  const isOver = sheet !== null && stateOf(sheet) === "over";
   const here = view.teams.filter(({ state }) => state === "in" || state === "late").length;
   return (
     <header class="head">
       <div class="title">
         <h1>{event.name}</h1>
         <p class="muted">
-          {t(event.open ? "office.open" : "office.closed")} ·{" "}
+          {t(isOver ? "office.isOver" : event.open ? "office.open" : "office.closed")} ·{" "}
           {t("contest.teamCount", { count: here })}
           {event.open && event.closes_ms > 0 && (
             <> · {t("office.closesAt", { time: dayTime(event.closes_ms) })}</>

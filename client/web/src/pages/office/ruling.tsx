@@ -91,8 +91,9 @@ function Line({ sheet, view, match }: LineProps) {
   const how = howEnded(match);
   return (
     <span class="line">
-      <b>{match.teams[0]}</b> <span class="score">{points ? points.join(" : ") : "–"}</span>{" "}
-      <b>{match.teams[1]}</b>{" "}
+      <Side match={match} place={0} />{" "}
+      <span class="score">{points ? points.join(" : ") : "–"}</span>{" "}
+      <Side match={match} place={1} />{" "}
       <span class="muted">
         {matchTitle(sheet, match.pairing.id)}
         {how && ` · ${t(`contest.how.${how}`)}`}
@@ -251,4 +252,10 @@ function seatsOf(match: Match, number: number): readonly [string, string] {
 
 function isPoints(value: number): boolean {
   return Number.isInteger(value) && value >= 0;
+}
+
+/** A team of a match; bold if it has won. */
+function Side({ match, place }: { match: Match; place: 0 | 1 }) {
+  const team = match.teams[place];
+  return team && match.winner === team ? <b class="won">{team}</b> : <span>{team}</span>;
 }

@@ -6,6 +6,7 @@ import type { Phrase } from "../../core/phrase";
 import { type DecisionName, type DecisionReply, NEED_A_REASON } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
+import { Standings } from "./day";
 import { type Desk, reasonOf } from "./desk";
 import type { Draft } from "./drafts";
 import { Outlook } from "./outlook";
@@ -66,6 +67,7 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
       >
         <p>{draft.text}</p>
         {draft.event !== undefined && <Preview desk={desk} event={draft.event} />}
+        {draft.winner !== undefined && <Standings desk={desk} winner={draft.winner} />}
         {draft.amount && <AmountField amount={draft.amount} typed={typed} />}
         {GOES_ON.has(draft.name) && !(draft.amount && wrongAmount(draft.amount, amount)) && (
           <Outlook desk={desk} decision={draft.build(amount)} />

@@ -1,6 +1,7 @@
 /** Decisions that are asked about before they are taken: what the dialog says and collects. */
 
 import type { Court } from "../../core/court";
+import { declaration } from "../../core/rulings";
 import {
   BEATS_PER_S,
   type Decision,
@@ -34,6 +35,8 @@ export interface Draft {
   /** It can't be undone. */
   final?: boolean;
   amount?: Amount;
+  /** Of a decision about the result: who wins; null: whoever has won by the rules. */
+  winner?: string | null;
   /** Of a take-back: the event. */
   event?: number;
   build: (amount: number) => Decision;
@@ -55,6 +58,10 @@ export function official(court: Court): Draft {
     },
     confirm: t("decide.official"),
     final: true,
+    get winner() {
+      const declared = declaration(court.events.value)?.data.arguments as { winner?: string };
+      return declared?.winner ?? null;
+    },
     build: () => ({ type: "official" }),
   };
 }
@@ -90,6 +97,7 @@ export function declare(court: Court, seat: number | null): Draft {
     text: t("ask.declare"),
     confirm: t("ask.confirm"),
     final: true,
+    winner: winner?.id ?? "draw",
     build: () => ({ type: "declare", winner: winner?.id ?? "draw" }),
   };
 }

@@ -1,0 +1,142 @@
+/** The court's part of a contest: what comes next, who is late, and what a result changes. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import { refereeToken } from "../../core/address";
+import { type CourtPlan, Desk as OfficeDesk } from "../../core/desk";
+import { part } from "../../core/match";
+import { BEATS_PER_S, Phase, SeatFlag } from "../../core/wire";
+import { language, said, t } from "../../i18n";
+import { team } from "../../i18n/words";
+import type { Desk } from "./desk";
+
+const AGAIN_MS = 5000;
+/** A team that has not come is shown as late after this time. */
+const LATE_S = 60;
+
+let office: OfficeDesk | null = null;
+
+/**
+ * The connection to the contest's office; null while there is none: the gateway has no office, the
+ * court plays for itself, or the connection is not open.
+ */
+function officeOf(desk: Desk): OfficeDesk | null {
+  const { welcome, sheet } = desk.court;
+  if (!welcome.value?.desk || !sheet.value?.call || !desk.entered.value) return null;
+  office ??= new OfficeDesk();
+  return office.connection.state.value.open ? office : null;
+}
+
+function ask(from: OfficeDesk, court: string, result: Result | null): Promise<CourtPlan> {
+  const secret = refereeToken() ?? "";
+  return from.ask<CourtPlan>({ do: "court_day", secret, court, ...result });
+}
+
+interface Result {
+  scores: [number, number];
+  outcome: "left" | "right" | "draw";
+}
+
+/** What is played next at this court, and which team has not come. */
+export function DayCard({ desk }: { desk: Desk }) {
+  const from = officeOf(desk);
+  const court = desk.court.sheet.value?.court ?? "";
+  const plan = useSignal<CourtPlan | null>(null);
+  useEffect(() => {
+    if (!from) return;
+    const look = () =>
+      ask(from, court, null).then(
+        (found) => {
+          plan.value = found;
+        },
+        () => undefined, // the card keeps what it has; the office may come back
+      );
+    void look();
+    const timer = setInterval(look, AGAIN_MS);
+    return () => clearInterval(timer);
+  }, [from, court, plan]);
+  const coming = plan.value?.coming ?? [];
+  if (!from || !plan.value) return null;
+  return (
+    <section class="card day" aria-labelledby="day-title">
+      <h2 id="day-title">{t("day.title")}</h2>
+      <Late desk={desk} />
+      {coming.length === 0 && <p class="muted">{t("day.nothing")}</p>}
+      <ol>
+        {coming.map((slot) => (
+          <li key={slot.pairing}>
+            <time>{timeOf(slot.at_ms)}</time>
+            <span>
+              <b>{slot.teams.join(" – ")}</b> <small class="muted">{said(slot.fixture)}</small>
+              {slot.held && <small class="warning"> {said(slot.held)}</small>}
+            </span>
+          </li>
+        ))}
+      </ol>
+    </section>
+  );
+}
+
+/** The teams of this game that have not taken their seats, and since when they are awaited. */
+function Late({ desk }: { desk: Desk }) {
+  const { court } = desk;
+  const state = useMemo(
+    () =>
+      part(
+        court,
+        ({ phase, beat, seats }) => {
+          const away = seats.map((seat) => !(seat.flags & SeatFlag.JOINED));
+          const isOpen = phase === Phase.LOBBY && away.includes(true);
+          return isOpen ? `${Math.floor(beat / BEATS_PER_S)} ${away.map(Number).join(" ")}` : "";
+        },
+        "",
+      ),
+    [court],
+  ).value;
+  const sheet = court.sheet.value;
+  const [waitedS = 0, ...away] = state.split(" ").map(Number);
+  if (!sheet || !state || waitedS < LATE_S) return null;
+  const teams = sheet.seats.map((_, index) => team(sheet, index)).filter((_, index) => away[index]);
+  return (
+    <p class="warning">
+      {t("day.late", { teams: teams.join(", "), minutes: Math.floor(waitedS / 60) })}
+    </p>
+  );
+}
+
+/** What the result would change in the contest, before it is made. */
+export function Standings({ desk, winner }: { desk: Desk; winner: string | null }) {
+  const from = officeOf(desk);
+  const { frame, sheet } = desk.court;
+  const scores = (frame.value?.seats.map((seat) => seat.score) ?? []).join(" ");
+  const court = sheet.value?.court ?? "";
+  const lines = useSignal<readonly string[] | null>(null);
+  useEffect(() => {
+    const [left, right] = scores.split(" ").map(Number);
+    if (!from || left === undefined || right === undefined) return;
+    const byScore = left > right ? "left" : right > left ? "right" : "draw";
+    const outcome = (winner ?? byScore) as Result["outcome"];
+    ask(from, court, { scores: [left, right], outcome }).then(
+      ({ changes }) => {
+        lines.value = changes.map(said);
+      },
+      () => undefined,
+    );
+  }, [from, court, scores, winner, lines]);
+  if (!from || !lines.value?.length) return null;
+  return (
+    <div class="preview standings" aria-live="polite">
+      <p>{t("day.changes")}</p>
+      <ul>
+        {lines.value.map((line) => (
+          <li key={line}>{line}</li>
+        ))}
+      </ul>
+    </div>
+  );
+}
+
+function timeOf(timeMs: number): string {
+  const options = { hour: "2-digit", minute: "2-digit", hourCycle: "h23" } as const;
+  return new Date(timeMs).toLocaleTimeString(language.value, options);
+}

@@ -1,0 +1,43 @@
+"""What the referee of a court asks the desk: what comes next, and what a result would change."""
+
+from lacoc_server.contest.desk import deciding, overview
+from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.league.facts import Replaced, new
+from lacoc_server.contest.live.whereabouts import Known
+from lacoc_shared.messages.desk import CourtDay, CourtPlan
+from lacoc_shared.words import Phrase
+
+_COMING_MOST = 4
+
+
+def plan(book: Book, known: Known, asked: CourtDay) -> CourtPlan:
+    """Return what comes next at a court, and what a result of its game would change.
+
+    Args:
+        book: the contest.
+        known: what the office knows besides the facts.
+        asked: the court, and perhaps a result.
+
+    Raises:
+        UserError: if the facts can't be read.
+    """
+    slots = overview.slots(book.contest, known)
+    coming = [slot for slot in slots if slot.court == asked.court and not slot.running]
+    coming.sort(key=lambda slot: slot.at_ms)
+    return CourtPlan(coming=tuple(coming[:_COMING_MOST]), changes=_changes(book, asked))
+
+
+def _changes(book: Book, asked: CourtDay) -> tuple[Phrase, ...]:
+    call = next((one for one in book.contest.running if one.court == asked.court), None)
+    if call is None or asked.scores is None:
+        return ()
+    result = new(
+        Replaced,
+        pairing=call.pairing,
+        game=call.game,
+        teams=call.teams,
+        scores=asked.scores,
+        outcome=asked.outcome,
+        reason="preview",
+    )
+    return deciding.effect(book.facts, [result])
