@@ -20,6 +20,8 @@ import { toast } from "../../ui/toasts";
 import type { Draft } from "./drafts";
 
 const RETRY_MS = 1500;
+/** Decisions that need a halt, or are mostly made in one. */
+const FOR_HALTS = new Set<DecisionName>(["take-back", "restart", "freeze", "set", "adjust"]);
 
 /** The court's newest answer to a decision: done, refused, or no answer. */
 export interface Answer {
@@ -216,11 +218,14 @@ export class Desk {
     const health = this.court.health.value;
     if (!health) return { code: "hold.lost" };
     const why = health.decisions[name] ?? "";
-    // Legality comes twice a second; where the phase is newer, its one next step is open already.
+    // Legality comes twice a second. Where the phase is newer, its one next step is open already, and
+    // in a halt what referees halt for; the court itself still judges each decision.
     const [match, beat] = this.since.value;
     const outdated = health.match !== match || health.beat < beat;
     const phase = this.phase.value;
-    return outdated && phase >= Phase.READY && this.next.value === name ? "" : why;
+    const isNext = phase >= Phase.READY && this.next.value === name;
+    const isForHalt = phase === Phase.HALTED && FOR_HALTS.has(name);
+    return outdated && (isNext || isForHalt) ? "" : why;
   }
 
   private async again(token: string): Promise<void> {
