@@ -79,10 +79,10 @@ def sample(change: bytes = b"") -> Files:
 class Room:
     """A contest with its desk."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, more: str = "") -> None:
         self.file = folder / "contest.toml"
         tokens = {name: new_token() for name in ("token", "referee", "other")}
-        self.file.write_text(_FILE.format(**tokens))
+        self.file.write_text(_FILE.format(**tokens) + more)
         self.where = ContestFolder(self.file)
         self.store = FactStore(self.where.facts)
         note_plans(self.store, self.where.plans)
@@ -291,6 +291,42 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
     assert len(room.facts) == count
     room.ask(TakeOut(secret=KEY, team=first, reason="left early", really=True))
     assert room.states()[first] == "withdrawn"
+
+
+def test_a_team_that_is_in_with_the_same_files_waits_for_nothing(room: Room) -> None:
+    """A team that applied by page and was entered by command is in; only other files wait."""
+    room.enter("Ants")
+    applied = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(applied, OwnEntry)
+    entry = room.applications.waiting["Bees"].entry
+    organiser.enter_weighed(room.where, room.store, "Bees", entry, "")
+    assert room.states() == {"Ants": "in", "Bees": "in"}
+    room.ask(CloseEntries(secret=KEY))
+    room.ask(Change(secret=applied.token, files=sample(b"\n\n")))
+    assert room.states()["Bees"] == "late"
+
+
+def test_a_stage_that_is_drawn_keeps_its_teams(tmp_path: Path) -> None:
+    """A preview says that a later stage is drawn already if ranks before it would change."""
+    final = '[stage.final]\nformat = "single-knockout"\nafter = "cup"\nteams = 2\n'
+    room = Room(tmp_path, final)
+    room.enter("Ann", "Ben", "Cyd")
+    room.draw()
+    room.draw()
+    while matches := playable(room.book.contest):
+        pairing, seats = matches[0].pairing.id, matches[0].next_seats
+        assert seats is not None
+        facts = {"pairing": pairing, "game": 1, "teams": seats}
+        room.store.append(new(Played, scores=(10, 2), outcome="left", **facts))
+    changed = {"kind": "void", "pairing": pairing, "reason": "the net fell"}
+    seen = room.ask(Rule(secret=KEY, **changed))
+    assert isinstance(seen, Effect)
+    assert "decide.drawn" not in [line.code for line in seen.lines]
+    room.draw()
+    assert [view.name for view in room.book.contest.stages] == ["cup", "final"]
+    seen = room.ask(Rule(secret=KEY, **changed))
+    assert isinstance(seen, Effect)
+    assert seen.lines[-1] == say("decide.drawn", stage="final")
 
 
 def test_a_referee_sees_what_comes_and_what_a_result_changes(room: Room) -> None:

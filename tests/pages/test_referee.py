@@ -658,12 +658,13 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     assert len(on.locator(".then").inner_text().split(" : ")) == 2
     expect(strike.locator(".act")).not_to_have_attribute("aria-disabled", "true")
     strike.locator(".act").click()
-    preview = page.locator(".preview")
+    preview = page.get_by_role("dialog").locator(".preview")
     expect(preview).to_contain_text("is removed: strike flag")
-    then = preview.locator(".then").inner_text().split(" : ")
+    then = preview.first.locator(".then").inner_text().split(" : ")
     assert then != before == scores(page)
     page.get_by_role("button", name="and if play went on").click()
-    on = page.get_by_role("dialog").locator(".outlook")
+    on = page.get_by_role("dialog").locator(".outlook .preview")
+    expect(on).to_be_visible()
     assert on.locator("dd").first.inner_text().split(" : ") == then
     confirm(page, "rule")
     has_scores(page, *map(int, then))

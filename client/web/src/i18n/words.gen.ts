@@ -720,6 +720,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "decide.no-game": ["{pairing} has no game {game}. Games: {known}.", "{pairing} に第 {game} ゲームはありません。あるゲーム：{known}"],
   "decide.match": ["{pairing} ({teams}): {state:match-state.*}<, winner {winner}>", "{pairing}（{teams}）：{state:match-state.*}<、勝者 {winner}>"],
   "decide.rank": ["{stage}: {team} from rank {before} to {after}", "{stage}：{team} は {before} 位から {after} 位へ"],
+  "decide.drawn": ["{stage} is drawn already: its teams stay the same.", "{stage} は組み合わせが決まっているため、出場チームは変わりません。"],
   "decide.nothing": ["This decision changes no match and no rank.", "この決定で変わる試合や順位はありません。"],
   "decide.done": ["Decided. The schedule is changed accordingly.", "決定しました。日程に反映されます。"],
   "match-state.waits": ["waits for its teams", "チーム未定"],

@@ -40,7 +40,7 @@ class Wanted(NamedTuple):
 
 
 def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
-    """Say what further facts would change: matches, then ranks.
+    """Say what further facts would change: matches, ranks, and that stages after them stay.
 
     Args:
         facts: the facts of a contest, in their order.
@@ -51,7 +51,8 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         msgspec.structs.replace(fact, id=f"preview-{number}", number=number)
         for number, fact in enumerate(more, last + 1)
     ]
-    found = changes(compute(facts, FORMATS), compute((*facts, *placed), FORMATS))
+    then = compute((*facts, *placed), FORMATS)
+    found = changes(compute(facts, FORMATS), then)
     lines: list[Phrase] = []
     for before, after in found.matches:
         match = after or before
@@ -67,6 +68,9 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         )
     for stage, team, old, now in found.ranks:
         lines.append(say("decide.rank", stage=stage, team=team, before=old, after=now))
+    changed = {stage for stage, *_ in found.ranks}
+    drawn = (view.name for view in then.stages if view.plan.after in changed)
+    lines += (say("decide.drawn", stage=stage) for stage in drawn)
     return (*lines,) or (say("decide.nothing"),)
 
 

@@ -49,8 +49,13 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
 
 def _teams(book: Book) -> Iterator[TeamRow]:
     """Yield the teams; those that wait or were refused come first."""
-    waiting = book.applications.waiting
     known = {team.name: team for team in book.contest.teams}
+    waiting = {
+        team: there
+        for team, there in book.applications.waiting.items()
+        # A team that was also entered by command, with the same files, waits for nothing.
+        if team not in known or known[team].files != there.entry.hash
+    }
     for team, mistakes in book.refused.items():
         if team not in known and team not in waiting:
             yield TeamRow(team=team, state="refused", mistakes=mistakes)
