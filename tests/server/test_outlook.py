@@ -1,17 +1,19 @@
 """Tests of the outlook: what would happen if play went on after a halt."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from stage import FORWARD, LEFT, QUICK, RIGHT, Stage, key
 
+from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.match.match import Match
 from lacoc_server.match.outlook import look_ahead
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import SilentSeat
-from lacoc_shared.messages import Outlook, Refusal
+from lacoc_shared.messages import Outlook, OutlookRequest, Refusal
 from lacoc_shared.seat import BEATS_PER_S, Phase
 
 
@@ -130,3 +132,17 @@ def test_a_decision_that_the_match_refuses(walking: bytes) -> None:
     refused = look_ahead(copy(begun(walking)), d.TakeBack(9999), 4.0)
     assert isinstance(refused, Refusal)
     assert "9999" in str(refused.why.values)
+
+
+def test_a_game_whose_rules_fail_stops_no_beat(walking: bytes) -> None:
+    """If the copy fails, the referee is told so, and the court goes on."""
+    stage = begun(walking)
+    with ThreadPoolExecutor(1) as aside:
+        outlooks = Outlooks(aside.submit)
+        outlooks.hold(stage.match)
+        stage.match.save = lambda: b"broken"  # type: ignore[method-assign,assignment,misc]
+        answer = outlooks(OutlookRequest(token="x"))
+        while (seen := answer()) is None:
+            pass
+    assert isinstance(seen, Refusal)
+    assert seen.why.code == "refused.outlook"

@@ -7,7 +7,7 @@ from lacoc_server.match.match import Match
 from lacoc_server.match.outlook import look_ahead
 from lacoc_server.world.world import World
 from lacoc_shared.messages import Outlook, OutlookRequest, Refusal
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 Seen = Outlook | Refusal
 
@@ -35,12 +35,16 @@ class Outlooks:
         setup, folder, saved = self._match.setup, self._match.arena.folder, self._match.save()
 
         def look() -> Seen:
-            copy = Match(setup, World, folder)
-            copy.load(saved)
             try:
+                copy = Match(setup, World, folder)
+                copy.load(saved)
                 return look_ahead(copy, request.decision, request.seconds)
-            except UserError as error:  # the world can't be built with the robots
-                return Refusal(error.phrase)
+            except (
+                Exception
+            ) as error:  # code of another package; a beat must not fail because of it
+                return Refusal(
+                    say("refused.outlook", why=f"{type(error).__name__}: {error!s:.200}")
+                )
 
         future = self._aside(look)
         return lambda: future.result() if future.done() else None

@@ -205,6 +205,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "refused.wrong-version": ["This court uses version {court} of the protocol, and your program uses version {program}. Install the version of lacoc that the organiser uses.", "コートの通信方式は第 {court} 版、お使いのプログラムは第 {program} 版です。主催者と同じ版の lacoc を入れてください。"],
   "refused.request-old": ["The court already has this request, or a newer one from you.", "コートには、この要求か、より新しい要求がすでに届いています。"],
   "refused.bad-join": ["The court could not read the request to join ({error}).", "参加の要求を読み取れませんでした（{error}）。"],
+  "refused.outlook": ["The court could not try it. The match is as it was. {why}", "試せませんでした。試合には影響ありません。{why}"],
   "refused.bad-request": ["The request could not be read ({error}).", "要求を読み取れませんでした（{error}）。"],
   "refused.wrong-token": ["This token is not valid for the {seat:seat.*} seat. Check the seat and the token that the organiser gave you.", "このトークンでは{seat:seat.*}の席に着けません。主催者から渡された席とトークンを確かめてください。"],
   "refused.too-many-joins": ["You tried to join too often. Wait a few seconds.", "参加の要求が多すぎます。数秒お待ちください。"],
