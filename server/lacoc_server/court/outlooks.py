@@ -39,12 +39,9 @@ class Outlooks:
                 copy = Match(setup, World, folder)
                 copy.load(saved)
                 return look_ahead(copy, request.decision, request.seconds)
-            except (
-                Exception
-            ) as error:  # code of another package; a beat must not fail because of it
-                return Refusal(
-                    say("refused.outlook", why=f"{type(error).__name__}: {error!s:.200}")
-                )
+            except Exception as error:  # another package's code; no beat may fail by it
+                why = f"{type(error).__name__}: {error!s:.200}"
+                return Refusal(say("refused.outlook", why=why))
 
         future = self._aside(look)
         return lambda: future.result() if future.done() else None

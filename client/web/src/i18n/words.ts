@@ -2,7 +2,7 @@
 
 import type { Match } from "../core/match";
 import { BEATS_PER_S, type Event, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
-import { type MessageName, said, t } from "./index";
+import { language, type MessageName, said, t } from "./index";
 
 export { BEATS_PER_S };
 
@@ -137,4 +137,10 @@ function missing(frame: Frame, sheet: Sheet): string {
     if (!(seat.flags & SeatFlag.READY)) return t("hint.notReady", { team: name });
   }
   return t("hint.opens");
+}
+
+/** A time of day, such as 16:05. */
+export function timeOf(timeMs: number): string {
+  const options = { hour: "2-digit", minute: "2-digit", hourCycle: "h23" } as const;
+  return new Date(timeMs).toLocaleTimeString(language.value, options);
 }

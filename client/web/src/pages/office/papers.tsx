@@ -7,11 +7,11 @@ import type { ContestSheet } from "../../core/contest/sheet";
 import { type OfficeView, pictureUrl } from "../../core/desk";
 import { columns } from "../../core/timetable";
 import { language, said, t } from "../../i18n";
+import { timeOf } from "../../i18n/words";
 import { Schedule } from "../contest/schedule";
 import { Tables } from "../contest/standings";
 import { stageTitle } from "../contest/words";
 import type { Organiser, Paper } from "./organiser";
-import { timeOf } from "./timetable";
 
 interface Props {
   organiser: Organiser;

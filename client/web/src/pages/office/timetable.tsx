@@ -3,7 +3,8 @@
 import { type Signal, useSignal } from "@preact/signals";
 import type { OfficeView, Slot } from "../../core/desk";
 import { type Column, canMove, columns, dropped } from "../../core/timetable";
-import { language, said, t } from "../../i18n";
+import { said, t } from "../../i18n";
+import { timeOf } from "../../i18n/words";
 import type { Organiser } from "./organiser";
 
 /** Most matches of a court that are shown at first. */
@@ -142,9 +143,4 @@ function Card({ organiser, slot }: { organiser: Organiser; slot: Slot }) {
       )}
     </>
   );
-}
-
-export function timeOf(timeMs: number): string {
-  const options = { hour: "2-digit", minute: "2-digit", hourCycle: "h23" } as const;
-  return new Date(timeMs).toLocaleTimeString(language.value, options);
 }

@@ -6,8 +6,8 @@ import { refereeToken } from "../../core/address";
 import { type CourtPlan, Desk as OfficeDesk } from "../../core/desk";
 import { part } from "../../core/match";
 import { BEATS_PER_S, Phase, SeatFlag } from "../../core/wire";
-import { language, said, t } from "../../i18n";
-import { team } from "../../i18n/words";
+import { said, t } from "../../i18n";
+import { team, timeOf } from "../../i18n/words";
 import type { Desk } from "./desk";
 
 const AGAIN_MS = 5000;
@@ -134,9 +134,4 @@ export function Standings({ desk, winner }: { desk: Desk; winner: string | null 
       </ul>
     </div>
   );
-}
-
-function timeOf(timeMs: number): string {
-  const options = { hour: "2-digit", minute: "2-digit", hourCycle: "h23" } as const;
-  return new Date(timeMs).toLocaleTimeString(language.value, options);
 }
