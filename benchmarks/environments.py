@@ -1,7 +1,7 @@
 """What environments cost: a step against bare physics, rows on two cores, loads, proven records.
 
 python -m benchmarks.environments steps      # a step against mj_step along the same path
-python -m benchmarks.environments rows       # rows on two cores against one
+python -m benchmarks.environments rows       # rows on two cores against one, and bare physics
 python -m benchmarks.environments loads      # episodes that go on from a save, equal to the end
 python -m benchmarks.environments records    # random episodes written as records and proven
 """
@@ -12,6 +12,7 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,12 @@ from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.record.reader import Record
 
 GAMES = ("othello", "flag-strike")
-_BLOCK = 100
-"""Steps of a block; environment and bare physics take turns block by block."""
+BEATS = (1, 10, 50)
+"""Beats in a step."""
+_BLOCK = 200
+"""Beats of a block; environment and bare physics take turns block by block."""
+_KEPT = 50
+"""Beats for which a key is held at least."""
 
 
 def main() -> None:
@@ -41,74 +46,109 @@ def main() -> None:
 
 
 def steps(game: str, rounds: int) -> dict[str, Any]:
-    """Time steps against `mj_step` alone, which takes the same path with the same controls."""
-    env = LacocParallelEnv(game)
+    """Time steps of some beats against `mj_step` alone, along the same path."""
+    return {f"{beats} beats": _steps(game, rounds, beats) for beats in BEATS}
+
+
+def _steps(game: str, rounds: int, beats: int) -> float:
+    """Return how many times as long as bare physics a step takes: the median of some rounds."""
+    env = LacocParallelEnv(game, beats=beats)
     env.reset(seed=1)
     chance = np.random.default_rng(1)
-    world: Any = env._episode.match.physics
-    bare = mujoco.MjData(world.model)
-    ratios, step_us, bare_us = [], [], []
+    ratios: list[float] = []
     clock = time.thread_time  # a busy machine stops the thread, but that does not count
-    key = {"left": 2, "right": 2}
-    for _ in range(rounds):
+    while len(ratios) < rounds:
+        saved = env.save()
+        actions = [
+            {agent: int(key) for agent, key in zip(env.possible_agents, keys, strict=True)}
+            for keys in chance.integers(1, 4, (_BLOCK // _KEPT, 2))
+            for _ in range(_KEPT // min(beats, _KEPT))
+        ]
+        took_s = 0.0
+        for action in actions:
+            begin = clock()
+            env.step(action)
+            took_s += clock() - begin
         if not env.agents:
             env.reset()
-            world = env._episode.match.physics
-            bare = mujoco.MjData(world.model)
-        state = np.frombuffer(world.save()[8:]).copy()
-        controls = []
-        took_s = 0.0
-        for number in range(_BLOCK):
-            if number % 25 == 0:
-                key = {agent: int(chance.integers(1, 4)) for agent in env.possible_agents}
-            begin = clock()
-            env.step(key)
-            took_s += clock() - begin
-            controls.append(world.data.ctrl.copy())
-        mujoco.mj_setState(world.model, bare, state, int(mujoco.mjtState.mjSTATE_INTEGRATION))
-        alone_s = 0.0
-        for control in controls:
-            bare.ctrl[:] = control
-            begin = clock()
-            mujoco.mj_step(world.model, bare, nstep=SUBSTEPS)
-            alone_s += clock() - begin
-        if env.agents:
-            assert (bare.qpos == world.data.qpos).all(), "bare physics took another path"
-        ratios.append(took_s / alone_s)
-        step_us.append(took_s / _BLOCK * 1e6)
-        bare_us.append(alone_s / _BLOCK * 1e6)
-    return {
-        "ratio": round(statistics.median(ratios), 3),
-        "step_us": round(min(step_us), 1),
-        "bare_us": round(min(bare_us), 1),
-    }
+            continue
+        after = env.save()
+        env.load(saved)
+        ratios.append(took_s / _bare_s(env, actions))
+        assert env.save() == after
+    return round(statistics.median(ratios), 3)
+
+
+def _bare_s(env: LacocParallelEnv, actions: list[dict[str, int]]) -> float:
+    """Take some steps, then time bare physics along their path [s]; it must end in the same bits.
+
+    The environment has taken them then, too.
+    """
+    world: Any = env._episode.match.physics
+    state = np.frombuffer(world.save()[8:]).copy()
+    advance, controls = world._advance, []
+
+    def noting() -> None:
+        controls.append(world.data.ctrl.copy())
+        advance()
+
+    world._advance = noting
+    for action in actions:
+        env.step(action)
+    del world._advance
+    bare = mujoco.MjData(world.model)
+    mujoco.mj_setState(world.model, bare, state, int(mujoco.mjtState.mjSTATE_INTEGRATION))
+    alone_s = 0.0
+    for control in controls:
+        bare.ctrl[:] = control
+        begin = time.thread_time()
+        mujoco.mj_step(world.model, bare, nstep=SUBSTEPS)
+        alone_s += time.thread_time() - begin
+    assert (bare.qpos == world.data.qpos).all(), "bare physics took another path"
+    return alone_s
 
 
 def rows(game: str, rounds: int) -> dict[str, Any]:
-    """Time the steps of 16 environments on one core and on two, in turns."""
+    """Time the steps of 16 environments on one core and on two, in turns, and bare physics too."""
     cores = sorted(os.sched_getaffinity(0))
     if len(cores) < 2:
         return {"cores": len(cores)}
-    rates: dict[int, list[float]] = {1: [], 2: []}
     environments = {}
     for used in (1, 2):
         many = LacocVectorEnv(16, game, threads=used)
         many.reset(seed=1)
         environments[used] = many
-    for _ in range(rounds):
-        for used, many in environments.items():
-            for task in os.listdir("/proc/self/task"):
-                os.sched_setaffinity(int(task), cores[:used])
-            begin = time.perf_counter()
-            for _ in range(_BLOCK):
-                many.step(np.full(16, 2))
-            rates[used].append(16 * _BLOCK / (time.perf_counter() - begin))
-    ratios = [two / one for one, two in zip(rates[1], rates[2], strict=True)]
+    ratios: list[float] = []
+    bare: list[float] = []
+    with ThreadPoolExecutor(2) as threads:
+        for _ in range(rounds):
+            rates, bare_rates = {}, {}
+            for used, many in environments.items():
+                for task in os.listdir("/proc/self/task"):
+                    os.sched_setaffinity(int(task), cores[:used])
+                begin = time.perf_counter()
+                for _ in range(_BLOCK):
+                    many.step(np.full(16, 2))
+                rates[used] = 16 * _BLOCK / (time.perf_counter() - begin)
+                worlds = [row.episode.match.physics for row in many.rows[:used]]
+                begin = time.perf_counter()
+                list(threads.map(_physics_alone, worlds))
+                bare_rates[used] = used / (time.perf_counter() - begin)
+            ratios.append(rates[2] / rates[1])
+            bare.append(bare_rates[2] / bare_rates[1])
     return {
         "ratio": round(statistics.median(ratios), 2),
-        "best": round(max(rates[2]) / max(rates[1]), 2),
-        "steps_per_s": {used: round(max(found)) for used, found in rates.items()},
+        "best": round(max(ratios), 2),
+        "bare_ratio": round(statistics.median(bare), 2),
     }
+
+
+def _physics_alone(world: Any) -> None:
+    """Let ten blocks of ticks pass from a world's state, in a copy."""
+    data = mujoco.MjData(world.model)
+    mujoco.mj_copyData(data, world.model, world.data)
+    for _ in range(10 * _BLOCK):
+        mujoco.mj_step(world.model, data, nstep=SUBSTEPS)
 
 
 def loads(game: str, forks: int) -> dict[str, Any]:

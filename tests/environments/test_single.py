@@ -10,12 +10,10 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.match.entry import weigh_in
-from lacoc_server.match.physics import Fault
 from lacoc_server.simulate.environments import (
     LacocEnv,
     LacocParallelEnv,
@@ -23,8 +21,6 @@ from lacoc_server.simulate.environments import (
     WalkEnv,
     register,
 )
-from lacoc_server.world.batch import WorldBatch
-from lacoc_server.world.world import World
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
@@ -219,30 +215,6 @@ def test_rows_of_the_library() -> None:
     assert [picture.shape for picture in pictures] == [(480, 640, 3)] * 3
     with pytest.raises(UserError, match="at least 1"):
         LacocVectorEnv(0)
-
-
-def test_a_row_whose_physics_stops_is_as_it_was_before() -> None:
-    """If physics fails in a row, it fails as in a single world, and the other rows go on."""
-    arena = arenas.load("othello")
-    entry = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    entries = [entry, entry]
-    single = World(arena, entries)
-    batch = WorldBatch(World(arena, entries), 3, 2)
-    worlds = [batch.row(index, World(arena, entries), single.save()) for index in range(3)]
-    start = [entry.robot.start_posture] * 2
-    broken = [(float("nan"), *start[0][1:]), start[1]]
-    assert batch.step([0, 1, 2], [start] * 3) == [None] * 3
-    single.step(start)
-    faults = batch.step([0, 2], [start, broken])
-    assert faults[0] is None
-    assert isinstance(faults[1], Fault)
-    assert faults[1] == single.step(broken)
-    assert worlds[1].save() == worlds[2].save() == single.save()
-    batch.step([2], [start])
-    single.step(start)
-    assert worlds[2].save() == single.save() == worlds[0].save()
-    with pytest.raises(ValueError, match="numbers"):
-        worlds[0].load(b"12345678")
 
 
 def test_a_robot_walks_by_angles() -> None:

@@ -128,7 +128,7 @@ class Network:
         def see(frame: Frame) -> Key | None:
             if (frame.clock_ticks - 1) % self.every_ticks:
                 return None
-            return press(frame, seat, self.keys[self.choose(senses.see(frame)[seat])])
+            return press(frame, seat, self.keys[self.choose(senses.see(frame, seat))])
 
         return see
 

@@ -9,7 +9,7 @@ bit, while it learns and while it plays (docs/environments.md).
 
 from collections.abc import Sequence
 from struct import Struct
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -84,34 +84,41 @@ class Senses:
         self._orders = [(seat, *(s for s in seats if s != seat)) for seat in seats]
         self._packed: bytes | None = None
         self._boards: list[bytes] = []
+        self._frame: Frame | None = None
+        self._parts: tuple[Any, ...] = ()
 
-    def see(self, frame: Frame) -> list[Numbers]:
-        """Return what each seat sees of a frame: an array of `size` numbers for each seat.
+    def see(self, frame: Frame, seat: int) -> Numbers:
+        """Return what a seat sees of a frame: an array of `size` numbers.
 
         The frame must be of phase READY or later.
         """
+        if frame is not self._frame:
+            self._frame, self._parts = frame, self._read(frame)
+        bodies, angles, commands, clock = self._parts
+        turns = seat == 1 and self._turned is not None
+        parts: list[bytes] = []
+        for robot in self._orders[seat]:
+            parts += (bodies[robot][turns], angles[robot])
+        parts += [commands[robot] for robot in self._orders[seat]]
+        parts += (clock, self._boards[seat])
+        return np.frombuffer(bytearray().join(parts), _FLOAT)
+
+    def _read(self, frame: Frame) -> tuple[Any, ...]:
+        """Return the packed numbers of a frame: bodies, angles and commands by seat, the clock."""
         if frame.markers != self._packed:
             self._packed, self._boards = frame.markers, self._read_board(frame.markers)
         poses = frame.poses
-        bodies = [_body(poses, robot.pose) for robot in self._robots]
-        angles = [poses[first:end] for first, end in self._angles]
-        commands = [
-            _FOUR(seat.score, seat.key, seat.posture, seat.locked_ticks / BEATS_PER_S)
-            for seat in frame.seats
-        ]
         played = frame.clock_ticks
         left = max(0, self._duration_ticks - played) if self._duration_ticks else 0
-        clock = _TWO(left / BEATS_PER_S, played / BEATS_PER_S)
-        seen = []
-        for seat, order in enumerate(self._orders):
-            turns = seat == 1 and self._turned is not None
-            parts: list[bytes] = []
-            for robot in order:
-                parts += (bodies[robot][turns], angles[robot])
-            parts += [commands[robot] for robot in order]
-            parts += (clock, self._boards[seat])
-            seen.append(np.frombuffer(bytearray().join(parts), _FLOAT))
-        return seen
+        return (
+            [_body(poses, robot.pose) for robot in self._robots],
+            [poses[first:end] for first, end in self._angles],
+            [
+                _FOUR(seat.score, seat.key, seat.posture, seat.locked_ticks / BEATS_PER_S)
+                for seat in frame.seats
+            ],
+            _TWO(left / BEATS_PER_S, played / BEATS_PER_S),
+        )
 
     def _read_board(self, packed: bytes) -> list[bytes]:
         states = unpack_states(packed, self._markers)

@@ -13,6 +13,9 @@ from lacoc_shared.gait.motion import toward
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.seat import BEAT_US
 
+_MOST_KEPT = 4096
+"""A drive keeps the results of so many ticks, about 2 MB."""
+
 
 class DriveState(msgspec.Struct, frozen=True):
     """State of a drive between two ticks."""
@@ -61,6 +64,8 @@ class Drive:
         self._hold_us = hold_us
         self._rest_ticks = 1 - (-hold_us // BEAT_US)  # 1 + ceil(hold / 20 ms)
         self._repeat = repeat
+        self._following: dict[DriveState, DriveState] = {}
+        """The state after a tick, for the states that came so far."""
 
     def begin(self, level: Level) -> DriveState:
         """Return the state of a robot that stands at a level.
@@ -95,6 +100,15 @@ class Drive:
 
     def tick(self, state: DriveState) -> DriveState:
         """Return the state after one tick of 20 ms."""
+        # A gait repeats itself, so nearly every state has come before.
+        following = self._following.get(state)
+        if following is None:
+            if len(self._following) >= _MOST_KEPT:
+                self._following.clear()
+            following = self._following[state] = self._tick(state)
+        return following
+
+    def _tick(self, state: DriveState) -> DriveState:
         sequence = self._gait.sequence(state.level, state.digit) or (self._start,)
         if state.stands:
             sequence = sequence[:1]

@@ -16,12 +16,10 @@ import msgspec
 
 from lacoc_robots.standing import FARTHEST_M
 from lacoc_server.match import contestant, referee
-from lacoc_server.match.drive import DriveState
 from lacoc_server.match.kept import saved
 from lacoc_server.match.physics import Fault, MakePhysics
 from lacoc_server.match.state import MatchState
 from lacoc_shared.codec import pack_states
-from lacoc_shared.gait.tables import Posture
 from lacoc_shared.inputs import (
     Advice,
     Decide,
@@ -66,9 +64,6 @@ class Match(MatchState):
     def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
         super().__init__(setup, make_physics, folder)
         self._touch: Touch | None = None
-        self._outcomes: tuple[Outcome, ...] = ()
-        self._moved: list[DriveState] | None = None
-        """The drives' states after the tick of this beat; None: it has no tick."""
         self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
         """The last game state that was packed, its board as in frames, and each seat's points."""
 
@@ -110,21 +105,24 @@ class Match(MatchState):
         Returns:
             The results of the beat, with an outcome for each input.
         """
-        angles = self.open_beat(inputs)
-        fault = None if angles is None else self.physics.step(angles)
-        return self.close_beat(fault)
+        outcomes, ticked = self._pass(inputs)
+        sheet_changed, self.sheet_is_new = self.sheet_is_new, False
+        return Beat(
+            self.frame(),
+            tuple(self._events),
+            outcomes,
+            ticked,
+            self._touch,
+            self.result() if self._result_changed else None,
+            sheet_changed,
+        )
 
-    def open_beat(self, inputs: Sequence[Input] = ()) -> list[Posture] | None:
-        """Let the first half of a beat pass, up to its tick of physics.
+    def skip(self) -> None:
+        """Let one beat without inputs pass, whose results nobody needs."""
+        self._pass(())
 
-        `beat` calls both halves. Others call them to step the physics of many matches at once.
-
-        Args:
-            inputs: inputs of the beat, as in `beat`.
-
-        Returns:
-            The commanded angles of each seat [rad] for the tick; None: no tick passes.
-        """
+    def _pass(self, inputs: Sequence[Input]) -> tuple[tuple[Outcome, ...], bool]:
+        """Let one beat pass; return the outcomes, and whether a tick of physics passed."""
         self.beats += 1
         self._events = []
         self._touch = None
@@ -133,37 +131,10 @@ class Match(MatchState):
             self.enter(Phase.LOBBY)
         if self.phase is Phase.COUNTDOWN:
             self.countdown_beats -= 1
-        self._outcomes = self._take_all(inputs) if inputs else ()
+        outcomes = self._take_all(inputs) if inputs else ()
         self.staging.put_back(self.seats)
         self._move_on()
-        self._moved = None
-        if self.phase not in PHYSICS_RUNS:
-            return None
-        self._moved = [
-            seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state
-        ]
-        return [state.angles for state in self._moved]
-
-    def close_beat(self, fault: Fault | None = None) -> Beat:
-        """Let the second half of a beat pass, after its tick of physics.
-
-        Args:
-            fault: why the tick did not pass; None if it passed, or if the beat has no tick.
-
-        Returns:
-            The results of the beat, as in `beat`.
-        """
-        ticked = self._moved is not None and self._ticked(self._moved, fault)
-        sheet_changed, self.sheet_is_new = self.sheet_is_new, False
-        return Beat(
-            self.frame(),
-            tuple(self._events),
-            self._outcomes,
-            ticked,
-            self._touch,
-            self.result() if self._result_changed else None,
-            sheet_changed,
-        )
+        return outcomes, self.phase in PHYSICS_RUNS and self._tick()
 
     def _take_all(self, inputs: Sequence[Input]) -> tuple[Outcome, ...]:
         """Apply a beat's inputs by rank; return the outcomes in the order of the inputs."""
@@ -227,19 +198,16 @@ class Match(MatchState):
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
 
-    def _ticked(self, states: list[DriveState], fault: Fault | None) -> bool:
-        """Take over a tick of physics; in PLAYING, let the rules judge it.
-
-        Args:
-            states: the drives' states after the tick.
-            fault: why the tick did not pass; None: it passed.
+    def _tick(self) -> bool:
+        """Let a tick of physics pass; in PLAYING, let the rules judge it.
 
         Returns:
-            Whether the tick passed.
+            Whether the tick passed; False after a fault.
         """
-        self.fault = fault
-        if fault is not None:
-            self._fail(fault)
+        states = [seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state]
+        self.fault = self.physics.step([state.angles for state in states])
+        if self.fault is not None:
+            self._fail(self.fault)
             return False
         for seat, state in zip(self.seats, states, strict=True):
             seat.state = state

@@ -68,10 +68,10 @@ class TouchTest:
         self._model, self._data = model, data
         mujoco.mj_kinematics(model, data)
         probes = list(_probes(model, data, markers))
-        self.can_touch = bool(probes)
+        self._can_touch = bool(probes)
         """False if no marker has a probe: then robots touch nothing."""
         self._robots = [_Outline(model, data, robot, probes) for robot in robots]
-        self.none: list[tuple[int, ...]] = [()] * len(robots)
+        self._none: list[tuple[int, ...]] = [()] * len(robots)
         """The answer when no robot touches anything."""
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
@@ -80,11 +80,11 @@ class TouchTest:
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
-        if not self.can_touch:
-            return self.none
+        if not self._can_touch:
+            return self._none
         near = [robot.probes_near(gap_m) for robot in self._robots]
         if not any(near):
-            return self.none
+            return self._none
         # After mj_step the geoms are still where the last step began.
         mujoco.mj_kinematics(self._model, self._data)
         return [

@@ -127,11 +127,7 @@ class World:
 
     def poses(self) -> bytes:
         """Return the poses of the robots, in the form of `Frame.poses`."""
-        return self.poses_of(self._qpos)
-
-    def poses_of(self, qpos: npt.NDArray[np.float64]) -> bytes:
-        """Return the poses at given positions of this model, in the form of `Frame.poses`."""
-        return qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
+        return self._qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """Return for each seat the indices of the markers that its robot touches, ascending.
@@ -144,16 +140,6 @@ class World:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
         return self._touch(gap_m)
-
-    def touched_in(self, state: npt.NDArray[np.float64]) -> Sequence[tuple[int, ...]]:
-        """Return which markers are touched in a given state of this model, as `touched` does.
-
-        This call changes the state of the world itself: call `load` before the next `step`.
-        """
-        if not self._touch.can_touch:
-            return self._touch.none
-        mujoco.mj_setState(self.model, self.data, state, STATE)
-        return self._touch()
 
     # Snapshots
 

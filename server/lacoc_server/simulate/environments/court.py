@@ -15,11 +15,9 @@ from lacoc_arenas.bot import Key
 from lacoc_arenas.learned.network import press
 from lacoc_arenas.learned.senses import BODY, CLOCK, SEAT, Senses
 from lacoc_server.match.entry import weigh_in
-from lacoc_server.match.physics import MakePhysics
 from lacoc_server.simulate.environments.episode import Begun, Episode
 from lacoc_server.simulate.environments.opening import Opening, draw, places
 from lacoc_server.simulate.headless import seated
-from lacoc_server.world.world import World
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
@@ -97,9 +95,9 @@ class Court:
         if arena.match.start != "referee" or not arena.match.duration_s:
             raise UserError(say("environment.no-end", arena=arena.name))
 
-    def episode(self, make_physics: MakePhysics = World) -> Episode:
+    def episode(self) -> Episode:
         """Return a new episode that has begun at the first start place, with no seat late."""
-        episode = Episode(self.begun, make_physics)
+        episode = Episode(self.begun)
         episode.begin(Opening())
         return episode
 

@@ -16,7 +16,6 @@ from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import Key
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
-from lacoc_server.match.physics import Fault, MakePhysics
 from lacoc_server.simulate.environments.opening import Opening, begun_at, places
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.simulate.headless import closing, to_play
@@ -107,12 +106,10 @@ class Episode:
 
     Args:
         begun: matches at their first beat of play.
-        make_physics: makes the physics of the episode's matches.
     """
 
-    def __init__(self, begun: Begun, make_physics: MakePhysics = World) -> None:
+    def __init__(self, begun: Begun) -> None:
         self.begun = begun
-        self._make_physics = make_physics
         self._matches: dict[int, Match] = {}
         self.opening = Opening()
         self.late_ticks: tuple[int, ...] = ()
@@ -165,18 +162,12 @@ class Episode:
         """
         match = self.match
         self.frame = match.beat(self._inputs(keys)).frame
-        for _ in range(beats - 1):
-            if match.phase is not Phase.PLAYING:
-                return
-            self.frame = match.beat().frame
-
-    def open_beat(self, keys: Sequence[Key | None]) -> list[Posture] | None:
-        """Let the first half of a beat pass; see `Match.open_beat` and `pass_beats`."""
-        return self.match.open_beat(self._inputs(keys))
-
-    def close_beat(self, fault: Fault | None) -> None:
-        """Let the second half of a beat pass; see `Match.close_beat`."""
-        self.frame = self.match.close_beat(fault).frame
+        if beats > 1 and match.phase is Phase.PLAYING:
+            for _ in range(beats - 1):
+                match.skip()
+                if match.phase is not Phase.PLAYING:
+                    break
+            self.frame = match.frame()
 
     def outcome(self, seat: int) -> dict[str, Any]:
         """Return how the match ended: "scores", "winner", and whether the seat has "won".
@@ -312,7 +303,7 @@ class Episode:
     def _match(self, place: int) -> Match:
         if place not in self._matches:
             folder = self.begun.arena.folder
-            self._matches[place] = Match(self.begun.setup(place), self._make_physics, folder)
+            self._matches[place] = Match(self.begun.setup(place), World, folder)
         return self._matches[place]
 
 

@@ -178,7 +178,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
     def observe(self, agent: str) -> Numbers:
         """Return what an agent sees now, such as after `load`."""
-        return self._senses.see(self._episode.frame)[self.possible_agents.index(agent)]
+        return self._senses.see(self._episode.frame, self.possible_agents.index(agent))
 
     def write_record(self, file: str | Path) -> None:
         """Write the record of the episode so far; see `Episode.write_record`."""
@@ -194,4 +194,6 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self._drawn.close()
 
     def _seen(self) -> dict[str, Numbers]:
-        return dict(zip(self.possible_agents, self._senses.see(self._episode.frame), strict=True))
+        left, right = self.possible_agents
+        frame, senses = self._episode.frame, self._senses
+        return {left: senses.see(frame, 0), right: senses.see(frame, 1)}

@@ -10,13 +10,10 @@ import numpy.typing as npt
 from lacoc_arenas import brains
 from lacoc_arenas.bot import Brain, Key
 from lacoc_arenas.learned.senses import Numbers, Senses
-from lacoc_server.match.physics import MakePhysics
 from lacoc_server.simulate.environments.court import Actions, Court, lead
 from lacoc_server.simulate.environments.drawn import Drawn
 from lacoc_server.simulate.environments.opening import Opening
-from lacoc_server.world.world import World
 from lacoc_shared.codec import decode, encode
-from lacoc_shared.gait.tables import Posture
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -39,7 +36,6 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         beats: beats of 20 ms in a step.
         court: the game, if several environments share one; `arena`, `settings`, `robots`, `restart`
             and `beats` are then not used.
-        make_physics: makes the physics of the matches.
 
     Raises:
         UserError: if one of these is wrong.
@@ -61,7 +57,6 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         restart: bool = False,
         beats: int = 1,
         court: Court | None = None,
-        make_physics: MakePhysics = World,
     ) -> None:
         if actions != "keys":
             raise UserError(say("environment.bot-keys"))
@@ -70,7 +65,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         if len(self.court.seats) != 2:
             raise UserError(say("environment.two-seats", arena=self.court.arena.name))
         self.render_mode = render_mode
-        self.episode = self.court.episode(make_physics)
+        self.episode = self.court.episode()
         self._sheet = self.episode.match.sheet()
         self._senses = Senses(self._sheet)
         self._bot = brains.find(self.court.arena, opponent)
@@ -132,32 +127,10 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """
         if not self.episode.is_on:
             raise UserError(say("environment.over"))
-        physics = self.episode.match.physics
         for beat in range(self.court.beats):
-            angles = self.open_beat(action if beat == 0 else None)
-            self.episode.close_beat(None if angles is None else physics.step(angles))
+            self._pass_beat(action if beat == 0 else None)
             if not self.episode.is_on:
                 break
-        return self.close_step()
-
-    def open_beat(self, action: Any) -> list[Posture] | None:
-        """Let the first half of a beat pass; see `Match.open_beat`.
-
-        Args:
-            action: the learner's action; None: it keeps its key.
-        """
-        episode, seat = self.episode, self.seat
-        other = 1 - seat
-        keys: list[Key | None] = [None, None]
-        if action is not None:
-            keys[seat] = self.court.act(episode, seat, action)
-        if episode.match.ticks > episode.late_ticks[other]:
-            self._shown.append(encode(episode.frame))
-            keys[other] = self._brain(episode.frame)
-        return episode.open_beat(keys)
-
-    def close_step(self) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
-        """Return the results of a step after its last beat; see `step`."""
         episode, seat = self.episode, self.seat
         now = lead(episode.frame, seat)
         gain, self._lead = float(now - self._lead), now
@@ -167,7 +140,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     def observe(self) -> Numbers:
         """Return what the learner sees now, such as after `load`."""
-        return self._senses.see(self.episode.frame)[self.seat]
+        return self._senses.see(self.episode.frame, self.seat)
 
     def save(self) -> bytes:
         """Return the whole environment between two steps, but not what `reset` will draw next.
@@ -209,6 +182,22 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Begin an episode with an opening."""
         self.episode.begin(opening)
         self._start()
+
+    def _pass_beat(self, action: Any) -> None:
+        """Let one beat pass.
+
+        Args:
+            action: the learner's action; None: it keeps its key.
+        """
+        episode, seat = self.episode, self.seat
+        other = 1 - seat
+        keys: list[Key | None] = [None, None]
+        if action is not None:
+            keys[seat] = self.court.act(episode, seat, action)
+        if episode.match.ticks > episode.late_ticks[other]:
+            self._shown.append(encode(episode.frame))
+            keys[other] = self._brain(episode.frame)
+        episode.pass_beats(keys)
 
     def _start(self) -> None:
         """Make a new brain for the bot, which has seen nothing."""

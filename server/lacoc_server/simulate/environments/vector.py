@@ -1,8 +1,8 @@
-"""Many environments against a bot at once; physics runs on all cores (`mujoco.batch`)."""
+"""Many environments against a bot at once, on all cores."""
 
+import os
 from collections.abc import Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from functools import cache, partial
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any
 
 import numpy as np
@@ -10,36 +10,28 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from lacoc_arenas.arena import Arena
 from lacoc_arenas.learned.senses import Numbers
-from lacoc_server.match.entry import Entry
-from lacoc_server.match.physics import Fault, Physics
 from lacoc_server.simulate.environments.court import Court
 from lacoc_server.simulate.environments.drawn import Drawn
 from lacoc_server.simulate.environments.single import LacocEnv
-from lacoc_server.world.batch import WorldBatch
-from lacoc_server.world.world import World
-from lacoc_shared.gait.tables import Posture
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-_Angles = list[Posture]
-
 
 class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
-    """Several environments, called rows; each gives the bits that a single `LacocEnv` would give.
+    """Several environments, called rows; each is a `LacocEnv`.
 
     A row whose episode is over begins the next one in the next step (`AutoresetMode.NEXT_STEP`).
 
-    The rows lie in two halves. While the physics of one half runs, rules, bots and observations of
-    the other are computed.
+    In a step each thread takes the next row that no thread has taken yet. MuJoCo lets the other
+    threads run while it computes, so only what Python does takes turns.
 
     Args:
         num_envs: number of rows.
         arena: as in `LacocEnv`.
         opponent: as in `LacocEnv`.
         render_mode: "rgb_array", or None.
-        threads: number of threads that step physics; 0: one for each core.
+        threads: number of threads that step the rows; 0: one for each core.
         settings: as in `LacocEnv`.
         robots: as in `LacocEnv`.
         restart: as in `LacocEnv`.
@@ -73,21 +65,17 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         self.render_mode = render_mode
         court = Court(arena, settings, robots, "keys", restart, beats)
         self.metadata = {**type(self).metadata, "render_fps": 50 / beats}
-        self._court, self._beats = court, beats
-        middle = (num_envs + 1) // 2
-        self._halves = [
-            _Half(court, opponent, rows, threads)
-            for rows in (range(middle), range(middle, num_envs))
-            if rows
-        ]
-        self.rows = [row for half in self._halves for row in half.rows]
+        self._court = court
+        self.rows = [LacocEnv(opponent=opponent, court=court) for _ in range(num_envs)]
         """The environments."""
         self.single_observation_space = self.rows[0].observation_space
         self.single_action_space = self.rows[0].action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._over = np.zeros(num_envs, bool)
-        self._physics = ThreadPoolExecutor(1, "environment-physics")
+        # The thread that calls `step` is one of them.
+        self._others = min(threads or os.cpu_count() or 1, num_envs) - 1
+        self._threads = ThreadPoolExecutor(max(1, self._others), "environment-rows")
         self._drawn = Drawn(render_mode)  # its camera fits all rows: they have the same model
 
     def reset(
@@ -151,29 +139,28 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         seen = np.empty((self.num_envs, *size), np.float32)
         rewards = np.zeros(self.num_envs)
         ended, stopped = np.zeros(self.num_envs, bool), np.zeros(self.num_envs, bool)
+        told: list[dict[str, Any]] = [{}] * self.num_envs
+        untaken = iter(range(self.num_envs))  # all threads take from it
+
+        def step_rows() -> None:
+            for index in untaken:
+                if self._over[index]:
+                    seen[index], told[index] = self.rows[index].reset()
+                else:
+                    result = self.rows[index].step(actions[index])
+                    seen[index], rewards[index], ended[index], stopped[index], told[index] = result
+
+        others = [self._threads.submit(step_rows) for _ in range(self._others)]
+        try:
+            step_rows()
+        finally:
+            wait(others)
+        for other in others:
+            other.result()
         infos: dict[str, Any] = {}
-        begun = self._over.copy()
-        for index in np.flatnonzero(begun).tolist():
-            seen[index], info = self.rows[index].reset()
-            infos = self._add_info(infos, info, index)
-        going = [half.going(begun) for half in self._halves]
-        flying: list[Future[list[Fault | None]] | None] = [None] * len(going)
-        for beat in range(self._beats):
-            for number, half in enumerate(self._halves):
-                if beat:
-                    half.close(flying[number])
-                flying[number] = half.open(
-                    self._physics,
-                    [row for row in going[number] if half.is_on(row)],
-                    actions if beat == 0 else None,
-                )
-        for number, half in enumerate(self._halves):
-            half.close(flying[number])
-            for index in going[number]:
-                result = self.rows[index].close_step()
-                seen[index], rewards[index], ended[index], stopped[index], info = result
-                if info:
-                    infos = self._add_info(infos, info, index)
+        for index, info in enumerate(told):
+            if info:
+                infos = self._add_info(infos, info, index)
         self._over = ended | stopped
         return seen, rewards, ended, stopped, infos
 
@@ -190,75 +177,6 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         return tuple(pictures)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Free what draws pictures, and the thread that steps physics."""
+        """Free what draws pictures, and the threads."""
         self._drawn.close()
-        self._physics.shutdown()
-
-
-class _Half:
-    """Rows whose physics is one batch.
-
-    Args:
-        court: the game.
-        opponent: name of the bot.
-        indices: indices of the rows.
-        threads: number of threads that step the batch.
-    """
-
-    def __init__(self, court: Court, opponent: str, indices: range, threads: int) -> None:
-        self._first = indices.start
-        self._court = court
-        self._batch = WorldBatch(World(court.arena, court.entries), len(indices), threads)
-        self._open: list[int] = []
-        # No match steps the empty field or these worlds, so all rows can share them.
-        self._empty, self._worlds = cache(_empty_field), cache(self._world)
-        self.rows = [
-            LacocEnv(
-                opponent=opponent,
-                court=court,
-                make_physics=partial(self._make, row),
-            )
-            for row in range(len(indices))
-        ]
-
-    def going(self, begun: npt.NDArray[np.bool_]) -> list[int]:
-        """Return the indices of this half's rows that did not begin an episode in this step."""
-        return [i for i in range(self._first, self._first + len(self.rows)) if not begun[i]]
-
-    def is_on(self, index: int) -> bool:
-        """Return whether the match of a row is in play."""
-        return self.rows[index - self._first].episode.is_on
-
-    def open(
-        self, threads: ThreadPoolExecutor, indices: Sequence[int], actions: Any
-    ) -> "Future[list[Fault | None]] | None":
-        """Let the first half of a beat pass in some rows, and let a thread step their physics."""
-        self._open = [index - self._first for index in indices]
-        if not indices:
-            return None
-        angles: list[_Angles] = []
-        for index, row in zip(indices, self._open, strict=True):
-            commanded = self.rows[row].open_beat(None if actions is None else actions[index])
-            assert commanded is not None, "a match in play has a tick in each beat"
-            angles.append(commanded)
-        return threads.submit(self._batch.step, self._open, angles)
-
-    def close(self, stepped: "Future[list[Fault | None]] | None") -> None:
-        """Let the second half of the beat pass in the rows that `open` was called with."""
-        if stepped is None:
-            return
-        for row, fault in zip(self._open, stepped.result(), strict=True):
-            self.rows[row].episode.close_beat(fault)
-
-    def _make(self, row: int, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Make the physics of a row's match: the empty field, or its row of the batch."""
-        return self._batch.row(row, *self._worlds(arena)) if entries else self._empty(arena)
-
-    def _world(self, arena: Arena) -> tuple[World, bytes]:
-        """Return a world of the robots, and the state in which it begins."""
-        world = World(arena, self._court.entries)
-        return world, world.save()
-
-
-def _empty_field(arena: Arena) -> World:
-    return World(arena, ())
+        self._threads.shutdown()
