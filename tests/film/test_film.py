@@ -18,9 +18,10 @@ from chromium import FLAGS
 from playwright.sync_api import sync_playwright
 from waiting import until
 
-from lacoc_client.film import contest, film, plan
+from lacoc_client.film import camera_page, contest, film, plan
 from lacoc_client.film.chromium import find
 from lacoc_client.film.look import Look, Quality, View
+from lacoc_client.film.site import served
 from lacoc_shared.command import cli
 from lacoc_shared.mistakes import UserError
 
@@ -66,6 +67,31 @@ def test_two_browsers_make_the_same_film(
     # The robots walk: pictures of play differ from each other.
     middle = pictures[len(pictures) // 3 : len(pictures) // 2]
     assert len({picture.tobytes() for picture in middle}) == len(middle)
+
+
+def test_a_browser_that_makes_its_own_frames_draws_the_same(
+    recorded: Path, with_browser: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A Chromium that can't be told when to make a frame draws the same pictures."""
+    look = Look(width=WIDTH, height=HEIGHT, quality=Quality.LOW)
+    part = film.part(recorded)
+    way = plan.pictures([plan.Shot(100, 130)], FPS)
+
+    def drawn() -> tuple[bool, list[bytes]]:
+        with served(part.paths) as site:
+            address = site.address(look)
+            with camera_page.camera_page(address, look) as page:
+                return page.paced, [page.picture([step]) for step in way]
+
+    told = aside(drawn)
+    monkeypatch.setattr(camera_page, "PACED", ())
+    monkeypatch.setattr(
+        camera_page, "empty_page", lambda browser, context, look: (context.new_page(), False)
+    )
+    by_itself = aside(drawn)
+    assert [told[0], by_itself[0]] == [True, False]
+    assert told[1] == by_itself[1]
+    assert len(set(told[1])) == len(way)
 
 
 def test_a_film_is_as_long_as_the_replay(

@@ -1,10 +1,20 @@
 """The page /film in a Chromium of its own: it is told a beat, and gives the picture of it."""
 
 import base64
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
-from playwright.sync_api import Browser, Error, Page, Playwright, sync_playwright
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    Error,
+    Page,
+    Playwright,
+    TimeoutError,
+    sync_playwright,
+)
 
 from lacoc_client.film.chromium import FLAGS, find
 from lacoc_client.film.look import Look
@@ -12,29 +22,49 @@ from lacoc_client.film.plan import Picture
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
 
-_WAIT_MS = 120_000
+_WAIT_S = 120.0
 """A slow machine loads the page and compiles its shaders for many seconds."""
+_LOOK_S = 0.02
+PACED = ("--enable-begin-frame-control", "--run-all-compositor-stages-before-draw")
+"""Options with which `chromium-headless-shell` puts a page together only when it is told to."""
+_SHOT = {"format": "png", "optimizeForSpeed": True}
 # A string that the page evaluates by itself would need a weaker content security policy: the
 # protocol of the browser's developer tools does it from outside.
-_OPEN = """async () => {
-  while (!window.__film) await new Promise((resolve) => setTimeout(resolve, 20));
-  const ends = await window.__film.open();
-  return [...ends, window.__film.quality()];
+_OPEN = """() => {
+  const open = async () => {
+    while (!window.__film) await new Promise((resolve) => setTimeout(resolve, 20));
+    const ends = await window.__film.open();
+    window.__opened = [...ends, window.__film.quality()];
+  };
+  open().catch((error) => { window.__opened = String(error); });
 }"""
+_OPENED = "window.__opened"
 _SHOW = "(steps) => window.__film.show(steps)"
+_SHOW_AND_HAND_OVER = """async (steps) => {
+  await window.__film.show(steps);
+  await new Promise(requestAnimationFrame);
+}"""
 
 
 class CameraPage:
     """An open page; only the thread that opened it may use it.
 
+    `chromium-headless-shell` puts the page together once for each picture, when it is told to.
+    Other programs also do so whenever they show a frame, which takes a third more time.
+
     Args:
-        page: the page of a record, which has loaded.
+        page: an empty page.
+        address: address of the page of a record.
+        paced: whether the browser makes a frame only at `HeadlessExperimental.beginFrame`.
     """
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, address: str, paced: bool) -> None:
         self._page = page
+        self.paced = paced
+        """Whether frames are made only when they are asked for."""
         self._tools = page.context.new_cdp_session(page)
-        first, last, quality = page.evaluate(_OPEN)
+        page.goto(address, wait_until="commit")
+        first, last, quality = self._opened()
         self.quality: str = quality
         """How the page draws: "low" or "high", or "map" without WebGL."""
         self.first, self.last = int(first), int(last)
@@ -48,12 +78,33 @@ class CameraPage:
                 moving parts and the automatic camera are where they must be in the last.
         """
         told = [{"beat": step.beat, "cut": step.cut} for step in steps]
-        self._page.evaluate(_SHOW, told)
-        # The screenshot of Playwright waits for fonts and hides a caret, each time.
-        shot = self._tools.send(
-            "Page.captureScreenshot", {"format": "png", "optimizeForSpeed": True}
-        )
-        return base64.b64decode(shot["data"])
+        self._page.evaluate(_SHOW if self.paced else _SHOW_AND_HAND_OVER, told)
+        if self.paced:
+            found = self._frame(screenshot=_SHOT)["screenshotData"]
+        else:
+            # The screenshot of Playwright waits for fonts and hides a caret, each time.
+            found = self._tools.send("Page.captureScreenshot", _SHOT)["data"]
+        return base64.b64decode(found)
+
+    def _frame(self, **wanted: Any) -> dict[str, Any]:
+        """Let the browser put the page together once."""
+        found: dict[str, Any] = self._tools.send("HeadlessExperimental.beginFrame", wanted)
+        return found
+
+    def _opened(self) -> tuple[int, int, str]:
+        """Wait until the page can show the record; return its ends, and how the page draws."""
+        self._page.evaluate(_OPEN)
+        end_s = time.monotonic() + _WAIT_S
+        while time.monotonic() < end_s:
+            if found := self._page.evaluate(_OPENED):
+                if isinstance(found, str):
+                    raise Error(found)
+                first, last, quality = found
+                return first, last, quality
+            if self.paced:
+                self._frame()
+            time.sleep(_LOOK_S)
+        raise TimeoutError(f"the page did not open in {_WAIT_S:.0f} s")
 
 
 @contextmanager
@@ -71,18 +122,36 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
         program = find(playwright.chromium.executable_path)
         browser = _launched(playwright, program)
         try:
-            page = browser.new_page(
+            context = browser.new_context(
                 viewport={"width": look.width, "height": look.height},
                 device_scale_factor=1,
                 reduced_motion="no-preference",  # else the automatic camera would stand still
             )
-            page.set_default_timeout(_WAIT_MS)
-            page.goto(address)
-            yield CameraPage(page)
+            context.set_default_timeout(1000 * _WAIT_S)
+            page, paced = empty_page(browser, context, look)
+            yield CameraPage(page, address, paced)
         except Error as error:
             raise UserError(say("film.page-failed", error=_told(error))) from None
         finally:
             browser.close()
+
+
+def empty_page(browser: Browser, context: BrowserContext, look: Look) -> tuple[Page, bool]:
+    """Open an empty page; return it, and whether its frames are made only when they are asked for.
+
+    Only the old headless mode of Chromium can do so; it is a program of its own now.
+    """
+    tools = browser.new_browser_cdp_session()
+    (own,) = tools.send("Target.getBrowserContexts")["browserContextIds"]
+    wanted = {"width": look.width, "height": look.height, "enableBeginFrameControl": True}
+    try:
+        with context.expect_page() as opened:
+            made = {"url": "about:blank", "browserContextId": own, **wanted}
+            tools.send("Target.createTarget", made)
+        context.new_cdp_session(opened.value).send("HeadlessExperimental.enable")
+    except Error:
+        return context.new_page(), False
+    return opened.value, True
 
 
 def _launched(playwright: Playwright, program: str) -> Browser:
@@ -90,7 +159,7 @@ def _launched(playwright: Playwright, program: str) -> Browser:
         return playwright.chromium.launch(
             executable_path=program,
             # A part of the page that is painted again alone can differ in a last bit.
-            args=[*FLAGS, "--disable-partial-raster"],
+            args=[*FLAGS, *PACED, "--disable-partial-raster"],
             handle_sigint=False,  # the command ends the browser itself
             handle_sigterm=False,
             handle_sighup=False,

@@ -28,7 +28,7 @@ interface Step {
 interface Film {
   /** The first and the last beat of the recording, once it is open and can be drawn. */
   open(): Promise<[number, number]>;
-  /** Go through some pictures in order; the last one is drawn when it resolves. */
+  /** Go through some pictures in order; the last one is in the browser's next frame. */
   show(steps: Step[]): Promise<void>;
   /** How the page draws: "low" or "high", or "map" without WebGL. */
   quality(): string;
@@ -74,7 +74,6 @@ window.__film = {
       if (cut) shutter.cut();
       shutter.expose(beat * MS_PER_BEAT, index === steps.length - 1);
     }
-    await drawn(); // what was painted is handed over with the browser's next picture
   },
   quality: () => window.__lacoc?.view?.quality ?? "",
 };
