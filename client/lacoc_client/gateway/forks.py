@@ -17,6 +17,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_shared.command import plugins
 from lacoc_shared.command.child import apart, command_line
+from lacoc_shared.command.priority import TO_ALL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.words import render, say
@@ -27,7 +28,6 @@ RECORDED = "-"
 _MOST_WAITING = 4
 _LIMIT_S = 120.0
 """Longest time that a fork may take [s]; one of three minutes takes some 10 s."""
-_NICE = 10
 
 _Name = Annotated[str, msgspec.Meta(max_length=64, pattern="^[A-Za-z0-9][A-Za-z0-9_-]*$")]
 _Player = Annotated[str, msgspec.Meta(max_length=64)]
@@ -113,7 +113,7 @@ class Forks:
         self._process = process
         if hasattr(os, "setpriority"):
             with contextlib.suppress(OSError):  # it has ended already
-                os.setpriority(os.PRIO_PROCESS, process.pid, _NICE)
+                os.setpriority(os.PRIO_PROCESS, process.pid, TO_ALL)
         try:
             out, errors = await asyncio.wait_for(_output(process), _LIMIT_S)
         except TimeoutError:

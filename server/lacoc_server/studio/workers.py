@@ -12,12 +12,12 @@ from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
 from typing import Any, NamedTuple, ParamSpec, Self, TypeVar
 
+from lacoc_shared.command.priority import TO_ALL, give_way
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
 _SPAWN = get_context("spawn")
-_NICE = 10
-"""How much lower the priority of background processes is (`os.nice`), on systems that have this."""
 _END_S = 5.0
 
 
@@ -171,8 +171,8 @@ class _Child:
 def _work(connection: "Connection[Any, Any]", background: bool) -> None:
     """Run the functions that come through the pipe until its other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
-    if background and hasattr(os, "nice"):
-        os.nice(_NICE)
+    if background:
+        give_way(TO_ALL)
     with contextlib.suppress(EOFError, OSError):
         while True:
             function, arguments = connection.recv()

@@ -14,6 +14,7 @@ from pathlib import Path
 from mcap.writer import Writer
 
 from lacoc_shared import __version__
+from lacoc_shared.command.priority import TO_ALL, give_way
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.reader import Record
@@ -190,8 +191,7 @@ def main(folder: str, *match_ids: str) -> int:
     With "--copy" in place of the folder, the other arguments are the path of a packed file and the
     segments of one match. The segments are packed into that file, and stay.
     """
-    if hasattr(os, "nice"):
-        os.nice(10)  # lower priority: the next match is running
+    give_way(TO_ALL)  # the next match is running
     if folder == "--copy":
         return _copy(*map(Path, match_ids))
     code = 0
