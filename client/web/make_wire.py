@@ -18,6 +18,7 @@ from typing import Any
 
 import msgspec
 
+from lacoc_arenas import brains
 from lacoc_client import simulation
 from lacoc_client.classroom import cards, tournament
 from lacoc_client.design import folder, requests
@@ -165,6 +166,7 @@ CONSTANTS: dict[str, float | str] = {
     "REPEATS_HZ": REPEATS_HZ,
     "SILENT_AFTER_S": SILENT_AFTER_S,
     "RESTART_KEY": RESTART_KEY,
+    "RECORDED": brains.RECORDED,
     "ROOT_FLOATS": messages.ROOT_FLOATS,
     "HASH_BYTES": len(message_hash(b"")),
     "JOIN_MAX_BYTES": JOIN_MAX_BYTES,

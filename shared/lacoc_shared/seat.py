@@ -32,6 +32,10 @@ class Phase(IntEnum):
         return self.name.lower()
 
 
+IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
+"""Phases of a match that goes on by itself; a halt ends them."""
+
+
 class SeatFlag(IntFlag):
     """Properties of a seat at a beat."""
 

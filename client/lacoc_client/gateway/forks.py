@@ -23,8 +23,6 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import render, say
 from lacoc_shared.words.render import Language
 
-RECORDED = "-"
-"""In place of a bot's name: the seat goes on with its recorded keys."""
 _MOST_WAITING = 4
 _LIMIT_S = 120.0
 """Longest time that a fork may take [s]; one of three minutes takes some 10 s."""
@@ -43,7 +41,7 @@ class ForkAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     restart: tuple[_Name, ...] = ()
     """Ids of the seats whose robots are put back at their start place."""
     players: tuple[_Player, ...] = ()
-    """For each seat a bot, or `RECORDED`; empty: all seats go on with their recorded keys."""
+    """For each seat a bot, or `brains.RECORDED`; empty: all seats keep their recorded keys."""
 
 
 class ForkMade(msgspec.Struct, frozen=True):
@@ -149,7 +147,7 @@ def _check_players(record: Path, players: tuple[str, ...]) -> None:
         return
     known = bots(record)
     for name in players:
-        if name not in (RECORDED, *known):
+        if name not in (brains.RECORDED, *known):
             raise UserError(say("gateway.no-bot", name=name, bots=known))
 
 

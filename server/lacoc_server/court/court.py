@@ -25,7 +25,7 @@ from lacoc_server.court.pace import Pace
 from lacoc_server.doors.network import Arrival, CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk, Wanted
 from lacoc_server.journal.journal import Journal
-from lacoc_server.journal.recovery import IN_PLAY, Unfinished
+from lacoc_server.journal.recovery import Unfinished
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
 from lacoc_shared.contest.health_limits import HealthLimits
@@ -37,7 +37,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
 from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.schema import Setup
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S, IN_PLAY, Phase
 from lacoc_shared.words import Phrase, say
 
 HEALTH_BEATS = BEATS_PER_S // 2

@@ -16,10 +16,9 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import is_held, packed_path
 from lacoc_shared.record.matches import MatchName, court_matches, is_over
 from lacoc_shared.record.reader import NoMatch, Record
-from lacoc_shared.seat import Phase
+from lacoc_shared.seat import IN_PLAY
 from lacoc_shared.words import Phrase, say
 
-IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """Phases in which a court halts its match after a restart, and when its disk fails or recovers."""
 _OPENING_BYTES = ASSIGN_MAX_BYTES + (1 << 14)
 """A file smaller than this [bytes] that holds no match is skipped: its court was killed while it

@@ -8,11 +8,10 @@ from lacoc_server.match.match import Match
 from lacoc_shared.decisions import Decision, Resume
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import Event, Outlook, Refusal
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S, IN_PLAY, Phase
 
 _BY = "outlook"
 """Referee and reason in the copy, which has no record."""
-_IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 
 
 def look_ahead(copy: Match, decision: Decision | None, seconds: float) -> Outlook | Refusal:
@@ -36,7 +35,7 @@ def look_ahead(copy: Match, decision: Decision | None, seconds: float) -> Outloo
     before = copy.scores()
     end_tick = first_tick + round(seconds * BEATS_PER_S)
     events: list[Event] = []
-    while copy.phase in _IN_PLAY and copy.ticks < end_tick:
+    while copy.phase in IN_PLAY and copy.ticks < end_tick:
         passed = copy.beat()
         if copy.ticks > first_tick:
             events += (event for event in passed.events if not _is_begin(event))

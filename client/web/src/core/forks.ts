@@ -14,9 +14,6 @@ export interface ForkAsk {
   players: string[];
 }
 
-/** In place of a bot's name: the seat goes on with its recorded keys. */
-export const RECORDED = "-";
-
 /** Whether this page may ask for forks: it was opened with the page key. */
 export function mayFork(): boolean {
   return ownPage === null && runKey() !== null;

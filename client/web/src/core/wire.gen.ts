@@ -11,6 +11,7 @@ export const BEATS_PER_S = 50;
 export const REPEATS_HZ = 10;
 export const SILENT_AFTER_S = 1;
 export const RESTART_KEY = 10;
+export const RECORDED = "-";
 export const ROOT_FLOATS = 7;
 export const HASH_BYTES = 8;
 export const JOIN_MAX_BYTES = 65536;

@@ -8,8 +8,9 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
+from lacoc_arenas import brains
 from lacoc_server.simulate.forks.fork import Forked
-from lacoc_server.simulate.forks.jobs import RECORDED, ForkJob, attempt, opened, play
+from lacoc_server.simulate.forks.jobs import ForkJob, attempt, opened, play
 from lacoc_server.simulate.forks.origin import Source
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import options, screen
@@ -105,7 +106,7 @@ def fork_command(
     """
     source = opened(str(record_paths(file)[0]))
     bots = tuple(players.split(",")) if players else ()
-    if times > 1 and not any(name != RECORDED for name in bots):
+    if times > 1 and not any(name != brains.RECORDED for name in bots):
         raise UserError(say("fork.times-need-bots"))
     base = ForkJob(
         file=str(record_paths(file)[0]),

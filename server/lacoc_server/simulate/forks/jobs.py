@@ -16,9 +16,6 @@ from lacoc_server.simulate.forks.script import of_script
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
-RECORDED = "-"
-"""In place of a bot's name: the seat goes on with its recorded keys."""
-
 
 class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     """A fork to play."""
@@ -31,7 +28,7 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     scripts: dict[str, tuple[str, ...]] = {}
     """Lines of a key script, by seat id."""
     bots: tuple[str, ...] = ()
-    """The bot of each seat, or `RECORDED`; empty: all seats go on with their recorded keys."""
+    """The bot of each seat, or `brains.RECORDED`; empty: all seats keep their recorded keys."""
     variant: int = 0
     """See `line.of_bot`."""
     seconds: float | None = None
@@ -102,7 +99,7 @@ def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
     _check_event(job, source)
     players: dict[int, Callable[[], Press]] = {}
     for index, name in enumerate(job.bots):
-        if name != RECORDED:
+        if name != brains.RECORDED:
             (bot,) = bots_of(source, (name,), folder)
             players[index] = of_bot(bot, index, job.variant)
     for seat, lines in job.scripts.items():

@@ -14,7 +14,7 @@ from lacoc_shared.decisions import Decision, Halt, Restart, Resume, TakeBack
 from lacoc_shared.inputs import Advice, Decide, HeardSeat, Input, KeySeat, SilentSeat
 from lacoc_shared.messages import Frame
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S, IN_PLAY, Phase
 from lacoc_shared.words import say
 
 REFEREE = "fork"
@@ -28,7 +28,6 @@ _LATE_TICKS = BEATS_PER_S
 """Longest time before a bot sees its first frame, in a variant."""
 _REACTION_TICKS = BEATS_PER_S // 5
 """Longest time from a bot's choice of a key to its press, in a variant."""
-_IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 Press = Callable[[Match, Frame], Key | None]
@@ -97,7 +96,7 @@ class Line:
         if match.beats < self._last_recorded + self._shift:
             return match.phase in _OVER and not self._change.is_none
         ends = bool(match.duration_ticks) or self._limit is not None
-        return match.phase not in _IN_PLAY or not ends
+        return match.phase not in IN_PLAY or not ends
 
     def inputs(self) -> list[Input]:
         """Return the inputs of the next beat."""
@@ -172,7 +171,7 @@ class Line:
         """
         match, change = self.match, self._change
         decisions: list[Decision] = []
-        halts = change.take_back is not None and match.phase in _IN_PLAY
+        halts = change.take_back is not None and match.phase in IN_PLAY
         if halts:
             decisions.append(Halt())
             countdown = round(match.rules.countdown_s * BEATS_PER_S)

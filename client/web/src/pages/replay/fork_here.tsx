@@ -2,10 +2,10 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { botsFor, fork, RECORDED } from "../../core/forks";
+import { botsFor, fork } from "../../core/forks";
 import type { Recording } from "../../core/recording";
 import { canGo, goneEvents } from "../../core/rulings";
-import type { Event } from "../../core/wire";
+import { type Event, RECORDED } from "../../core/wire";
 import { language, said, t } from "../../i18n";
 import { eventClock, team } from "../../i18n/words";
 import { Dialog } from "../../ui/dialog";
