@@ -1,6 +1,7 @@
 """Tests of the drive: commanded angles tick by tick, compared with tables (rules 3)."""
 
 import math
+import struct
 from itertools import pairwise
 
 import pytest
@@ -280,3 +281,12 @@ def test_angles_end_exactly_at_the_target(
     needed = math.ceil(math.radians(300) / it._step_rad) + 1
     held = ticks(it, state, needed)[-1]
     assert held.angles == it._gait.sequence(A, digit)[0]  # type: ignore[index]
+
+
+@given(drives(), presses)
+def test_a_kept_tick_is_the_tick(it: Drive, script: list[tuple[int, Level, int]]) -> None:
+    """A result that the drive has kept has the bits of a new one."""
+    for state in path(it, script):
+        kept, new = it.tick(state), it._tick(state)
+        assert kept == new
+        assert struct.pack("2d", *kept.angles) == struct.pack("2d", *new.angles)

@@ -13,8 +13,8 @@ from lacoc_shared.gait.motion import toward
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.seat import BEAT_US
 
-_MOST_KEPT = 4096
-"""A drive keeps the results of so many ticks, about 2 MB."""
+_MOST_KEPT = 1024
+"""A drive keeps the results of at most so many ticks, less than 1 MB."""
 
 
 class DriveState(msgspec.Struct, frozen=True):
