@@ -22,8 +22,10 @@ from lacoc_client.film import camera_page, contest, film, plan
 from lacoc_client.film.chromium import find
 from lacoc_client.film.look import Look, Quality, View
 from lacoc_client.film.site import served
+from lacoc_server.simulate.forks.jobs import ForkJob, play
 from lacoc_shared.command import cli
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import BEATS_PER_S
 
 pytestmark = pytest.mark.slow
 
@@ -97,13 +99,12 @@ def test_a_browser_that_makes_its_own_frames_draws_the_same(
 def test_a_film_is_as_long_as_the_replay(
     recorded: Path, alone: tuple[Path, list[np.ndarray]]
 ) -> None:
-    """The film shows the replay from its first beat to its last, at the replay's speed."""
+    """The film shows the replay at its speed; the result stays longer than in the record."""
     out, pictures = alone
     part = film.part(recorded)
-    last = part.record.last_beat
-    begin = next(
-        event.beat for event in part.record.events if event.data.get("after") == "COUNTDOWN"
-    )
+    phases = {event.data.get("after"): event.beat for event in part.record.events}
+    begin, last = phases["COUNTDOWN"], phases["OFFICIAL"] + 5 * BEATS_PER_S
+    assert part.record.last_beat < last
 
     assert len(pictures) == len(plan.pictures(plan.whole(max(0, begin - 150), last), FPS))
     with av.open(str(out)) as opened:
@@ -208,6 +209,44 @@ def test_a_kill_leaves_no_half_film(recorded: Path, with_browser: str, tmp_path:
         process.kill()
         process.wait()
     assert not out.exists()
+
+
+@pytest.mark.long
+def test_a_request_to_end_leaves_nothing(
+    recorded: Path, with_browser: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """SIGTERM leaves no part of a film, and no copy of the record."""
+    films, temporary = tmp_path / "films", tmp_path / "temporary"
+    films.mkdir()
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    words = [sys.executable, "-m", "lacoc_shared", "film", str(recorded), str(films / "a.mp4")]
+    process = subprocess.Popen(words, stderr=subprocess.DEVNULL)
+    try:
+        until(lambda: any(part.stat().st_size > 40 for part in films.glob(".a.mp4.*")), 120)
+        process.terminate()
+        assert process.wait(60) != 0
+    finally:
+        process.kill()
+    assert not list(films.iterdir())
+    assert not list(temporary.glob("lacoc-film-*"))
+
+
+@pytest.mark.long
+def test_a_film_of_a_fork_is_marked(recorded: Path, with_browser: str, tmp_path: Path) -> None:
+    """A film of a fork says on each picture that it is one, also without the overlay."""
+    job = ForkJob(file=str(recorded), beat=200, bots=("straight", "-"), folder=str(tmp_path))
+    play(job)
+    look = Look(width=WIDTH, height=HEIGHT, quality=Quality.LOW)
+    yellow = []
+    for record in (recorded, tmp_path / "fork.mcap"):
+        film.still(film.part(record), out := tmp_path / f"{record.stem}.png", look)
+        with av.open(str(out)) as opened:
+            (picture,) = [frame.to_ndarray(format="rgb24") for frame in opened.decode(video=0)]
+        corner = picture[HEIGHT * 3 // 4 :, WIDTH * 3 // 4 :].astype(int)
+        yellow.append(int((np.abs(corner - (0xF2, 0xC9, 0x4C)).max(axis=2) < 8).sum()))
+    assert yellow[0] == 0
+    assert yellow[1] > 50
 
 
 def test_a_missing_extra_is_told(tmp_path: Path) -> None:

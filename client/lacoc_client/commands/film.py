@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import time
 from dataclasses import replace
 from enum import StrEnum
@@ -72,7 +73,10 @@ def film_command(
     ] = None,
     size: Annotated[
         str,
-        typer.Option(metavar="WIDTHxHEIGHT", help="Size of the film in pixels: two even numbers."),
+        typer.Option(
+            metavar="WIDTHxHEIGHT",
+            help="Size of the film in pixels: two even numbers from 160 to 3840.",
+        ),
     ] = "1280x720",
     fps: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 30,
     quality: Annotated[
@@ -96,6 +100,7 @@ def film_command(
     Chromium draws picture by picture, however long each takes, so no picture is missing. The
     command needs Chromium and the extra "film".
     """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that nothing is left behind
     look = _look(size, view, quality, overlay, language)
     _check(record, out, highlights, moments)
     # Only now: without the extra, the help of this command must still be shown.

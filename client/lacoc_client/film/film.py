@@ -62,11 +62,13 @@ class Part:
     def still(self, first: int, last: int) -> int:
         """Return the beat of the match's still: just after its largest moment.
 
-        Without a moment it is the middle of the match.
+        Without a moment it is the middle of play.
         """
         best = moments.largest(self.moments, 1)
-        beat = best[0].beat + _AFTER_BEATS if best else (first + last) // 2
-        return min(last, max(first, beat))
+        if best:
+            return min(last, max(first, best[0].beat + _AFTER_BEATS))
+        played = moments.played(self.record) or [first, last]
+        return (played[0] + played[-1]) // 2
 
 
 def part(path: Path, count: int | None = None, *, opening: bool = False) -> Part:

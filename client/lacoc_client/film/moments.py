@@ -48,12 +48,24 @@ def by_score(record: Record) -> list[Moment]:
     Raises:
         UserError: if a frame of the record can't be read.
     """
+    return of_frames(_frames(record))
+
+
+def played(record: Record) -> list[int]:
+    """Return the beats of a record's frames of play, in order.
+
+    Raises:
+        UserError: if a frame of the record can't be read.
+    """
+    return [beat for beat, frame in _frames(record) if frame.phase == Phase.PLAYING]
+
+
+def _frames(record: Record) -> list[tuple[int, Frame]]:
     try:
-        frames = [(beat, codec.decode(data, Frame)) for beat, data in record.frames]
+        return [(beat, codec.decode(data, Frame)) for beat, data in record.frames]
     except codec.BadMessage as error:
         match, told = record.header.match_id[:80], str(error)[:80]
         raise UserError(say("replay.damaged-copy", match=match, error=told)) from None
-    return of_frames(frames)
 
 
 def of_frames(frames: Iterable[tuple[int, Frame]]) -> list[Moment]:

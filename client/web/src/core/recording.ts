@@ -25,12 +25,15 @@ export class Recording implements Match {
   /** Where play begins and ends: without the wait in the lobby, and without what came after. */
   readonly firstBeat: number;
   readonly lastBeat: number;
+  /** Until when the last picture must stay, so that the result can be read; `lastBeat` or later. */
+  readonly heldUntil: number;
   private readonly frames: FrameStore;
 
   constructor(readonly record: MatchRecord) {
     this.frames = new FrameStore(record.frames);
     this.firstBeat = firstBeatOf(record);
-    this.lastBeat = Math.max(this.firstBeat + 1, lastBeatOf(record));
+    this.heldUntil = Math.max(this.firstBeat + 1, heldUntilOf(record));
+    this.lastBeat = Math.min(this.heldUntil, Math.max(this.firstBeat + 1, record.lastBeat));
     const whole = computed(() => Math.floor(this.beat.value));
     this.sheet = recoloured(computed(() => newest(record.sheets, whole.value)));
     this.scene = computed(() => newest(record.scenes, whole.value));
@@ -113,9 +116,9 @@ function firstBeatOf({ frames, phases }: MatchRecord): number {
   return Math.max(first, (countdown?.beat ?? first) - LEAD_IN_BEATS);
 }
 
-function lastBeatOf({ events, lastBeat }: MatchRecord): number {
+function heldUntilOf({ events, lastBeat }: MatchRecord): number {
   const over = events.findLast(({ kind }) => kind === "phase" || kind === "decision");
   const ended = over?.data.after;
   const isOver = ended === "OFFICIAL" || ended === "VOID" || ended === "FINISHED";
-  return isOver ? Math.min(lastBeat, over!.beat + LEAD_OUT_BEATS) : lastBeat;
+  return isOver ? over!.beat + LEAD_OUT_BEATS : lastBeat;
 }

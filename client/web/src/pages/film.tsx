@@ -10,6 +10,7 @@ import { flag } from "../core/address";
 import { followColours } from "../core/colours";
 import { fetched, readBeside } from "../core/record_files";
 import { Recording } from "../core/recording";
+import { t } from "../i18n";
 import { BEATS_PER_S } from "../i18n/words";
 import { Shutter } from "../scene/View";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
@@ -26,7 +27,7 @@ interface Step {
 
 /** What `lacoc film` does with the page. */
 interface Film {
-  /** The first and the last beat of the recording, once it is open and can be drawn. */
+  /** The first and the last beat of the film, once the recording is open and can be drawn. */
   open(): Promise<[number, number]>;
   /** Go through some pictures in order; the last one is in the browser's next frame. */
   show(steps: Step[]): Promise<void>;
@@ -64,7 +65,7 @@ window.__film = {
     await document.fonts.ready;
     while (!shutter.count) await drawn();
     await shutter.prepare();
-    return [opened.firstBeat, opened.lastBeat];
+    return [opened.firstBeat, opened.heldUntil];
   },
   async show(steps) {
     for (const [index, { beat, cut }] of steps.entries()) {
@@ -99,7 +100,8 @@ export default function Film() {
   const match = recording.value;
   return (
     <main class="overlay" style={`--scale: ${scale.value}`}>
-      {match && <Broadcast match={match} style={style} scale={scale} />}
+      {match && <Broadcast match={match} style={style} scale={scale} isLast />}
+      {match?.record.header.setup.origin && <p class="what-if">{t("replay.forkShort")}</p>}
     </main>
   );
 }

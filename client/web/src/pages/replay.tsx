@@ -276,7 +276,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
       </Corner>
       <div class="middle-stage">
         <Countdown match={recording} />
-        <ResultCard match={recording} />
+        <ResultCard match={recording} isLast />
       </div>
       <div class="lower">
         <Thirds match={recording} />

@@ -15,9 +15,11 @@ import { Hint, ScoreBug } from "../../ui/score";
 import { Thirds } from "../../ui/thirds";
 import "./broadcast.css";
 
-/** What is drawn has this size; on another screen it is scaled. */
+/** What lies over the picture is made for this size; on another screen it is scaled. */
 const WIDTH_PX = 1920;
 const HEIGHT_PX = 1080;
+/** In a tall window the score is as wide as the window: so many of these pixels. */
+const SCORE_PX = 1560;
 
 /** How a broadcast is shown. */
 export interface Style {
@@ -35,7 +37,7 @@ export interface Style {
 interface Props {
   match: Match;
   style: Style;
-  /** Pixels of the window for each pixel of the 1920 x 1080 that are drawn. */
+  /** Pixels of the window for each pixel of a screen of 1920 x 1080. */
   scale: ReadonlySignal<number>;
 }
 
@@ -43,11 +45,17 @@ interface Props {
 interface More {
   belowScore?: ComponentChildren;
   inCentre?: ComponentChildren;
+  /** Whether no other match follows. */
+  isLast?: boolean;
 }
 
-/** The scale that fits 1920 x 1080 pixels into the window. */
+/** The scale at which what lies over the picture fits into the window. */
 export function scaleOfWindow(): number {
-  return Math.min(innerWidth / WIDTH_PX, innerHeight / HEIGHT_PX);
+  const [width, height] = [innerWidth, innerHeight];
+  return Math.max(
+    Math.min(width / WIDTH_PX, height / HEIGHT_PX),
+    Math.min(width, height) / SCORE_PX,
+  );
 }
 
 export function Broadcast({ match, style, scale, ...more }: Props & More) {
@@ -114,9 +122,9 @@ function Windows({ match, style, scale }: Props) {
   );
 }
 
-function Hud({ match, belowScore, inCentre }: { match: Match } & More) {
+function Hud({ match, belowScore, inCentre, isLast = false }: { match: Match } & More) {
   return (
-    <div class="sheet-of-1080">
+    <div class="hud">
       <header class="head">
         <ScoreBug match={match} />
         <Hint match={match} />
@@ -124,7 +132,7 @@ function Hud({ match, belowScore, inCentre }: { match: Match } & More) {
       </header>
       <div class="centre">
         <Countdown match={match} />
-        <ResultCard match={match} />
+        <ResultCard match={match} isLast={isLast} />
         {inCentre}
       </div>
       <div class="before">
