@@ -30,6 +30,21 @@ test("a contest is over when all its stages are, and then it has a winner", () =
   assert.equal(done, all);
 });
 
+test("teams that have left are named, and do not count", () => {
+  const [one, two, three, ...others] = groups.teams;
+  const teams = [
+    { ...one, withdrawn: true },
+    { ...two, disqualified: true },
+    { ...three, withdrawn: true, disqualified: true },
+    ...others,
+  ];
+  assert.deepEqual(c.teamsOf({ ...groups, teams }), {
+    here: others.length,
+    gone: [one.name],
+    expelled: [two.name, three.name],
+  });
+});
+
 test("rounds have the matches of all groups, and no byes in a bracket", () => {
   const view = groups.stages[0];
   const rounds = c.rounds(view);

@@ -14,6 +14,7 @@ import {
 import { said, t } from "../i18n";
 import { Big } from "./contest/big";
 import { BracketView } from "./contest/bracket";
+import { Decisions } from "./contest/decisions";
 import { Head, Parts } from "./contest/head";
 import { Now } from "./contest/now";
 import { addressed } from "./contest/parts";
@@ -72,6 +73,7 @@ function Whole({ sheet }: { sheet: ContestSheet }) {
         <ToCome key={plan.stage} plan={plan} />
       ))}
       <Teams sheet={sheet} />
+      <Decisions sheet={sheet} />
       <Unused sheet={sheet} />
       <TeamDialog sheet={sheet} />
     </main>

@@ -11,11 +11,13 @@ from lacoc_server.contest.league.facts import (
     Closed,
     Moved,
     NoShow,
+    OfDecision,
     OfMatch,
     Planned,
     Played,
     Recalled,
     Replaced,
+    decisions,
     ordered,
 )
 from lacoc_server.contest.league.formats.format import Format, Pair, Stage
@@ -96,6 +98,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Games that are on a court now."""
     moves: tuple[Moved, ...]
     """The newest move of each match that was moved, in the order in which they were made."""
+    decisions: tuple[OfDecision, ...]
+    """What people decided, in the order in which they did."""
     ended_ms: dict[str, tuple[str, int]]
     """By team: the pairing of its newest game, and when that ended."""
     unused: tuple[Unused, ...]
@@ -187,6 +191,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         planned=tuple(planned),
         running=_running(known, matches),
         moves=_moves(known),
+        decisions=decisions(known),
         ended_ms=_ended(known),
         unused=tuple(
             Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused

@@ -211,6 +211,8 @@ class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
     """It is not called before this time, in milliseconds since 1970, UTC."""
 
 
+OfDecision = Withdrawn | Disqualified | FilesChanged | NoShow | Replaced | Replay | Voided
+"""What people decide, with a reason; no record can prove it."""
 OfTeam = Entered | Closed | Withdrawn | Disqualified | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Drawn | RoundDrawn
@@ -223,6 +225,21 @@ _Kind = TypeVar("_Kind", bound=Fact)
 def new(kind: type[_Kind], **values: Any) -> _Kind:
     """Make a fact that has no place among the facts yet; a store gives it one."""
     return kind(id="new", number=0, **values)
+
+
+def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:
+    """Return what people decided; other files are a decision once entries are closed.
+
+    Args:
+        facts: in their order.
+    """
+    found: list[OfDecision] = []
+    closed = False
+    for fact in facts:
+        closed = closed or isinstance(fact, Closed)
+        if isinstance(fact, OfDecision) and (closed or not isinstance(fact, FilesChanged)):
+            found.append(fact)
+    return tuple(found)
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True):

@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 1;
+export const VERSION = 2;
 
 export interface Team {
   name: string;
@@ -141,6 +141,14 @@ export interface Unused {
   why: Phrase;
 }
 
+export interface Decided {
+  fact: string;
+  at_ms: number;
+  what: Phrase;
+  pairing: string;
+  reason: string;
+}
+
 export interface Rating {
   team: string;
   elo: number;
@@ -163,6 +171,7 @@ export interface ContestSheet {
   planned: Planned[];
   running: Called[];
   coming: Coming[];
+  decided: Decided[];
   ratings: Rating[];
   side_elo: number;
   unused: Unused[];

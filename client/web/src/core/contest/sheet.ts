@@ -46,6 +46,21 @@ export function isOver(view: StageView): boolean {
   return view.rounds_to_draw === 0 && view.matches.every(isDecided);
 }
 
+/** How many teams take part, and the names of those that have left. */
+export function teamsOf({ teams }: ContestSheet): {
+  here: number;
+  gone: string[];
+  expelled: string[];
+} {
+  const expelled = teams.filter((team) => team.disqualified);
+  const gone = teams.filter((team) => team.withdrawn && !team.disqualified);
+  return {
+    here: teams.length - gone.length - expelled.length,
+    gone: gone.map(({ name }) => name),
+    expelled: expelled.map(({ name }) => name),
+  };
+}
+
 export function stateOf(sheet: ContestSheet): "waiting" | "running" | "over" {
   if (!sheet.stages.length) return "waiting";
   return !sheet.planned.length && sheet.stages.every(isOver) ? "over" : "running";
