@@ -287,7 +287,9 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
 
     out = TakeOut(secret=KEY, team=first, reason="left early")
     count = len(room.facts)
-    assert isinstance(room.ask(out), Effect)
+    seen = room.ask(out)
+    assert isinstance(seen, Effect)
+    assert seen.lines[0] == say("decide.leaves", team=first, left=1)
     assert len(room.facts) == count
     room.ask(TakeOut(secret=KEY, team=first, reason="left early", really=True))
     assert room.states()[first] == "withdrawn"

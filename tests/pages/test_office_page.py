@@ -108,6 +108,8 @@ def test_an_event_from_its_file_to_its_first_game(
     for team in TEAMS[1:-1]:
         enter(open_page, event, team)
     enter_a_workbook(open_page, event, TEAMS[-1])
+    enter(open_page, event, "Nobody")
+    decline(office, "Nobody")
     rows = office.locator(".entries li")
     expect(rows).to_have_count(len(TEAMS))
     assert violations(office) == []
@@ -161,6 +163,21 @@ def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
     expect(page.locator(".files li b").last).to_have_text("made from Loco-data.xlsx")
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible()
+
+
+def decline(office: Page, team: str) -> None:
+    """Decline a team; the page asks first, and Escape declines nobody."""
+    row = office.locator(".entries li", has_text=team)
+    dialog = office.get_by_role("dialog", name=f"Decline {team}")
+    office.get_by_role("button", name=f"Decline {team}").click()
+    expect(dialog).to_contain_text("forgets this application")
+    assert violations(office) == []
+    office.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    expect(row).to_have_attribute("data-state", "waits")
+    office.get_by_role("button", name=f"Decline {team}").click()
+    dialog.get_by_role("button", name="Decline").click()
+    expect(row).to_have_count(0)
 
 
 def approve_and_draw(office: Page) -> None:

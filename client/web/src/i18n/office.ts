@@ -34,6 +34,14 @@ export const office = {
   "office.done": ["{count} teams are in.", "{count} チームの参加が決まりました。"],
   "office.decline": ["Decline", "断る"],
   "office.declineOf": ["Decline {team}", "{team} を断る"],
+  "office.decline.text": [
+    "The office forgets this application, and the team's link opens nothing any more. While entries are open, the team can apply again.",
+    "この申し込みは消え、チームのリンクは使えなくなります。締め切り前なら、チームはもう一度申し込めます。",
+  ],
+  "office.decline.late": [
+    "The office forgets these files. The team stays in, with the files that it has.",
+    "このファイルは消えます。チームは今のファイルのまま参加します。",
+  ],
   "office.state.refused": ["Files have mistakes", "ファイルに誤り"],
   "office.state.waits": ["Weighed in, waits for you", "検査済み・承認待ち"],
   "office.state.late": ["In; late files wait for you", "参加・締め切り後のファイルが承認待ち"],

@@ -727,6 +727,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "decide.no-match": ["There is no match {pairing:quoted}<; there are {known}>.", "試合{pairing:quoted}はありません<。あるのは {known} です>。"],
   "decide.no-game": ["{pairing} has no game {game}. Games: {known}.", "{pairing} に第 {game} ゲームはありません。あるゲーム：{known}"],
   "decide.match": ["{pairing} ({teams}): {state:match-state.*}<, winner {winner}>", "{pairing}（{teams}）：{state:match-state.*}<、勝者 {winner}>"],
+  "decide.leaves": ["{team} leaves the contest. Then {left} {left:plural team is|teams are} left.", "{team} が大会から外れ、残りは {left} チームになります。"],
   "decide.rank": ["{stage}: {team} from rank {before} to {after}", "{stage}：{team} は {before} 位から {after} 位へ"],
   "decide.drawn": ["{stage} is drawn already: its teams stay the same.", "{stage} は組み合わせが決まっているため、出場チームは変わりません。"],
   "decide.nothing": ["This decision changes no match and no rank.", "この決定で変わる試合や順位はありません。"],

@@ -7,7 +7,7 @@ import { Banner, waitsForGateway } from "../ui/banner";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
 import { CloseDialog } from "./office/closing";
-import { ApproveDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
+import { ApproveDialog, DeclineDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
 import { Entries } from "./office/entries";
 import { Head } from "./office/head";
 import { MoveDialog } from "./office/moving";
@@ -57,6 +57,7 @@ export default function Office() {
       {over?.is === "team" && <TeamDialog organiser={organiser} team={over.team} />}
       {over?.is === "leave" && <LeaveDialog organiser={organiser} team={over.team} />}
       {over?.is === "approve" && <ApproveDialog organiser={organiser} team={over.team} />}
+      {over?.is === "decline" && <DeclineDialog organiser={organiser} team={over.team} />}
       {over?.is === "move" && view && (
         <MoveDialog organiser={organiser} view={view} pairing={over.pairing} />
       )}

@@ -22,7 +22,7 @@ for command in (
     setting_up.show,
     playing.enter,
     inviting.invite,
-    playing.withdraw,
+    deciding.withdraw,
     playing.run,
     elsewhere.courts,
     playing.standings,

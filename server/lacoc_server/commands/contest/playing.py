@@ -21,14 +21,14 @@ Contest = Annotated[
     Path,
     typer.Option("--contest", envvar="LACOC_CONTEST", metavar="FILE", help="The contest file."),
 ]
-_Team = Annotated[str, typer.Argument(metavar="TEAM", help="Name of the team.")]
-_Reason = Annotated[
+Team = Annotated[str, typer.Argument(metavar="TEAM", help="Name of the team.")]
+Reason = Annotated[
     str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
 ]
 
 
 def enter(
-    team: _Team,
+    team: Team,
     folder: Annotated[
         Path | None,
         typer.Argument(
@@ -42,7 +42,7 @@ def enter(
         typer.Option(metavar="BOT", help="The bot that plays: an installed one, or your_bot.py."),
     ] = "",
     contest: Contest = FILE,
-    reason: _Reason = "",
+    reason: Reason = "",
 ) -> None:
     """Enter a team with its files; they are weighed in at once, and frozen.
 
@@ -66,20 +66,6 @@ def _tell_found(handed: "HandedIn") -> None:
         screen.warn(note)
     if handed.made and handed.gaits.postures is not None:
         screen.note(say("contest.made-level-b", file=handed.gaits.postures.name))
-
-
-def withdraw(
-    team: _Team,
-    contest: Contest = FILE,
-    reason: _Reason = "",
-    disqualify: Annotated[
-        bool, typer.Option("--disqualify", help="Expel the team: it is ranked last.")
-    ] = False,
-) -> None:
-    """Take a team out of the contest: what it has played counts, and opponents win the rest."""
-    from lacoc_server.contest import organiser
-
-    screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify))
 
 
 def run(

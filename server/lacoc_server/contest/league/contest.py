@@ -124,6 +124,8 @@ class Changes(msgspec.Struct, frozen=True, kw_only=True):
     """Each match that has other teams, another state or another winner: before and after."""
     ranks: tuple[tuple[str, str, int, int], ...]
     """Each team with another rank: stage, team, rank before and after."""
+    leaving: tuple[str, ...]
+    """The teams that play no more."""
 
 
 def changes(before: Contest, after: Contest) -> Changes:
@@ -139,7 +141,14 @@ def changes(before: Contest, after: Contest) -> Changes:
         ranks=tuple(
             (*key, old[key], new[key]) for key in old if key in new and old[key] != new[key]
         ),
+        leaving=tuple(
+            team.name for team in after.teams if team.gone and team.name in _here(before)
+        ),
     )
+
+
+def _here(contest: Contest) -> set[str]:
+    return {team.name for team in contest.teams if not team.gone}
 
 
 def _by_pairing(contest: Contest) -> dict[str, Match]:

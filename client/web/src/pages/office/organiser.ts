@@ -28,6 +28,7 @@ export type Over =
   | { is: "team"; team: string }
   | { is: "leave"; team: string }
   | { is: "approve"; team: string }
+  | { is: "decline"; team: string }
   | { is: "move"; pairing: string }
   | { is: "rule"; pairing: string }
   | { is: "close" }
