@@ -1,5 +1,6 @@
 """Enter teams, play the matches of a contest, and print its standings."""
 
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from lacoc_server.contest.kept.sheet_writer import Progress
     from lacoc_server.contest.live.run import Opened
     from lacoc_server.contest.sheet import ContestSheet
+    from lacoc_shared.words import Phrase
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
 
@@ -173,11 +175,17 @@ def _live(
         opened,
         changed,
         screen.note,
+        news=(lambda _: None) if json else _tell_news,
         speed=speed,
         listen=listen,
         show=browser,
         entering=entries,
     )
+
+
+def _tell_news(what: "Phrase") -> None:
+    """Print what has happened in the contest, with the time of day."""
+    screen.show(f"{datetime.now():%H:%M} {render(what)}", screen.stderr)
 
 
 def standings(file: FileToRead = FILE, json: options.Json = False) -> None:

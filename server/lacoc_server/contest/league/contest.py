@@ -104,6 +104,11 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """By team: the pairing of its newest game, and when that ended."""
     unused: tuple[Unused, ...]
 
+    @property
+    def over(self) -> bool:
+        """Whether nothing is left to play or to draw."""
+        return not self.planned and all(view.over for view in self.stages)
+
     def stage(self, name: str) -> StageView:
         """Return a stage.
 

@@ -2,7 +2,7 @@
 
 import msgspec
 
-from lacoc_server.contest.league.contest import Contest, StageView
+from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import (
     Disqualified,
     FilesChanged,
@@ -13,8 +13,7 @@ from lacoc_server.contest.league.facts import (
     Voided,
     Withdrawn,
 )
-from lacoc_server.contest.league.fixture import fixture, match_fixture
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.fixture import named
 from lacoc_shared.words import Phrase, say
 
 
@@ -32,12 +31,11 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
 
 def decided(contest: Contest) -> tuple[Decided, ...]:
     """Say what people decided, in the order in which they did."""
-    places = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     return tuple(
         Decided(
             fact=fact.id,
             at_ms=fact.at_ms,
-            what=_what(contest, places, fact),
+            what=_what(contest, fact),
             pairing=getattr(fact, "pairing", ""),
             reason=fact.reason,
         )
@@ -45,7 +43,7 @@ def decided(contest: Contest) -> tuple[Decided, ...]:
     )
 
 
-def _what(contest: Contest, places: dict[str, tuple[StageView, Match]], fact: OfDecision) -> Phrase:
+def _what(contest: Contest, fact: OfDecision) -> Phrase:
     match fact:
         case Withdrawn():
             return say("decided.withdrawn", team=fact.team)
@@ -53,25 +51,21 @@ def _what(contest: Contest, places: dict[str, tuple[StageView, Match]], fact: Of
             return say("decided.disqualified", team=fact.team)
         case FilesChanged():
             return say("decided.files-changed", team=fact.team)
-    place = places.get(fact.pairing)
-    said = say("fixture.named", name=fact.pairing)
-    if place is not None:
-        said = match_fixture(contest, *place)
-        if isinstance(fact, Replaced | Replay):
-            said = fixture(contest, *place, fact.game)
-    match fact:
         case NoShow():
+            said = named(contest, fact.pairing)
             return say("decided.no-show", match=said, team=fact.team)
         case Voided():
+            said = named(contest, fact.pairing)
             return say("decided.voided", match=said, teams=fact.teams)
         case Replay():
+            said = named(contest, fact.pairing, fact.game)
             return say("decided.replay", match=said, teams=fact.teams)
         case Replaced():
             left, right = fact.teams
             points, conceded = fact.scores
             return say(
                 "decided.replaced",
-                match=said,
+                match=named(contest, fact.pairing, fact.game),
                 left=left,
                 right=right,
                 points=points,

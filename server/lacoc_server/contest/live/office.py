@@ -85,7 +85,7 @@ class Office:
     @property
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
-        return not self.contest.planned and all(view.over for view in self.contest.stages)
+        return self.contest.over
 
     def connect(self, court: str, link: CourtLink, address: str) -> None:
         """Use another connection to a court from now on.
@@ -143,7 +143,8 @@ class Office:
             left, right = result.scores
             who = outcome(_SEATS, result.outcome)
             ended = Ended((left, right), who, f"{result.match_id}.mcap")
-        return Seen(self._heard_ms[name], link.call or "", link.phase in _BEGUN, ended)
+        begun, there = link.phase in _BEGUN, link.is_there
+        return Seen(self._heard_ms[name], link.call or "", begun, ended, there)
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.
