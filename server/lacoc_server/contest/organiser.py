@@ -78,6 +78,14 @@ def team_name(text: str) -> str:
     return team
 
 
+def name_form(name: str) -> str:
+    """Return a form of a team's name; names that look alike have the same form.
+
+    Capitals become small letters, wide letters narrow ones, and several spaces one.
+    """
+    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
+
+
 def enter_weighed(
     where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str
 ) -> Phrase:
@@ -102,6 +110,9 @@ def enter_weighed(
         known = {one.name: one for one in contest.teams}
         if team in known and known[team].files == entry.hash:
             return
+        alike = {name_form(name): name for name in known}
+        if team not in known and name_form(team) in alike:
+            raise UserError(say("contest.name-alike", team=team, there=alike[name_form(team)]))
         if contest.closed and team not in known:
             raise UserError(say("league.closed", team=team))
         if contest.closed and not reason.strip():

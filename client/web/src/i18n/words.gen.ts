@@ -718,6 +718,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "contest.entered-same": ["{team} has entered these files before; nothing changes.", "{team} は同じファイルで登録済みです。何も変わりません。"],
   "contest.needs-reason": ["Entries are closed. If {team} may use other files nevertheless, give the reason with --reason; everybody can read it.", "参加は締め切られています。それでも {team} のファイルを替えるなら、理由を --reason で書いてください（公開されます）。"],
   "contest.team-name": ["A team's name has 1 to {most} characters.", "チーム名は 1～{most} 文字です。"],
+  "contest.name-alike": ["The name {team:quoted} looks like {there:quoted}, and that team has entered. To change its files, enter {there:quoted}. Another team needs another name.", "チーム名{team:quoted}は、登録済みの{there:quoted}と紛らわしいため使えません。ファイルを変更するには{there:quoted}と入力してください。別のチームなら、別の名前にしてください。"],
   "contest.left": ["{team} has left the contest; its opponents win the matches that are not yet played.", "{team} は大会から外れました。残りの試合は相手の勝ちになります。"],
   "contest.not-in": ["{team} has not entered.< Teams: {teams}.>", "{team} は登録していません。<チーム：{teams}>"],
   "decide.needs-reason": ["A decision needs a reason: give --reason. Everybody can read it.", "決定には理由が必要です。--reason で書いてください（公開されます）。"],

@@ -20,6 +20,8 @@ from lacoc_shared.words import say
 
 _USUAL_ARENA = "othello"
 _SETTINGS = Settings.__struct_fields__
+_TEAMS_FOR_THIRD = 4
+"""With fewer teams, no two teams lose a semi-final."""
 
 
 class _Stage(msgspec.Struct, frozen=True, kw_only=True):
@@ -48,7 +50,7 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
         wrong = None
         try:
             plan = _plan(name, table, contest.limits)
-            _check(plan, [one.stage for one in found])
+            _check(plan, {one.stage: one for one in found})
             game(plan)
         except msgspec.ValidationError as error:
             where, said = place_and_words(error)
@@ -115,19 +117,32 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     return msgspec.convert(msgspec.to_builtins(plan), Planned)  # checks the lengths and patterns
 
 
-def _check(plan: Planned, before: list[str]) -> None:
-    """Check what a plan names.
+def _check(plan: Planned, before: Mapping[str, Planned]) -> None:
+    """Check what a plan names, and that its settings fit each other.
+
+    Args:
+        plan: the plan of a stage.
+        before: the plans of the stages before it, by name.
 
     Raises:
-        UserError: at the first name that is not known.
+        UserError: at the first name that is not known, or the first setting that does not fit.
     """
     if plan.format not in FORMATS:
         raise UserError(say("league.unknown-format", format=plan.format, known=[*FORMATS]))
     if plan.after and plan.after not in before:
-        raise UserError(say("contest.stage-after", after=plan.after, before=before or None))
+        raise UserError(say("contest.stage-after", after=plan.after, before=[*before] or None))
+    most = _most_teams(plan, before)
+    if plan.settings.third_place and 0 < most < _TEAMS_FOR_THIRD:
+        raise UserError(say("contest.no-third-place", teams=most, least=_TEAMS_FOR_THIRD))
     for code in plan.settings.tie_breaks:
         if code not in TIE_BREAKS:
             raise UserError(say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS]))
+
+
+def _most_teams(plan: Planned, before: Mapping[str, Planned]) -> int:
+    """Return how many teams a stage has at most; 0: that is not known before they enter."""
+    earlier = _most_teams(before[plan.after], before) if plan.after else 0
+    return min(filter(None, (plan.teams, earlier)), default=0)
 
 
 def _content(plan: Planned) -> Planned:
