@@ -89,6 +89,8 @@ def enter(open_page: OpenPage, event: Event, team: str) -> Page:
     fill(page, event, team)
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible()
+    expect(page.locator(".state")).to_be_focused()
+    expect(page.locator(".state")).to_be_in_viewport(ratio=1)
     return page
 
 
@@ -132,6 +134,8 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     page.locator("input[type=file]").set_input_files(event.wrong)
     page.locator("button[type=submit]").click()
     expect(page.locator(".mistakes li")).to_have_count(3)
+    expect(page.locator(".why > p")).to_be_focused()
+    expect(page.locator(".why > p")).to_be_in_viewport(ratio=1)
     assert violations(page) == []
     page.locator("input[type=file]").set_input_files([event.right[1], event.cut])
     expect(page.locator(".files li b").nth(1)).to_have_text("Loco-data.xlsx")
@@ -230,6 +234,8 @@ def late_files(office: Page, team: Page, event: Event) -> None:
     team.locator("input[type=file]").set_input_files(changed)
     team.get_by_role("button", name="Weigh in and replace").click()
     expect(team.locator(".state")).to_contain_text("after entries were closed")
+    expect(team.locator(".state")).to_be_focused()
+    expect(team.locator(".state")).to_be_in_viewport(ratio=1)
     office.get_by_role("button", name=f"Approve {FIRST}").first.click()
     dialog = office.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Approve")).to_be_disabled()
