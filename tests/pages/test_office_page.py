@@ -106,6 +106,7 @@ def test_an_event_from_its_file_to_its_first_game(
     expect(office.locator(".head .code")).to_have_text(event.code)
     assert "#" not in office.url, "the key stays in the address"
     assert violations(office) == []
+    before_the_event(open_page, event)
     first = first_team(open_page, event)
     for team in TEAMS[1:-1]:
         enter(open_page, event, team)
@@ -122,6 +123,17 @@ def test_an_event_from_its_file_to_its_first_game(
     late_files(office, first, event)
     papers(office)
     on_a_phone(open_page, event)
+
+
+def before_the_event(open_page: OpenPage, event: Event) -> None:
+    """The page that follows the director has nothing to show yet: it says so without an alarm."""
+    page = open_page(viewport=PHONE)
+    page.goto(f"{event.url}/watch?director=1&q=low")
+    card = page.locator(".event")
+    expect(card).to_contain_text("Not drawn yet")
+    expect(card).to_contain_text("The director begins in")
+    expect(page.locator(".banner")).to_have_count(0)
+    assert violations(page) == []
 
 
 def first_team(open_page: OpenPage, event: Event) -> Page:

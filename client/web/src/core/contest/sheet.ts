@@ -71,6 +71,23 @@ export function running({ running }: ContestSheet): Called[] {
   return running.toSorted((a, b) => a.court.localeCompare(b.court, "en", { numeric: true }));
 }
 
+/** A game that is on a court or can be played next. */
+export interface NextGame {
+  pairing: string;
+  game: number;
+  teams: [string, string];
+  /** The court that it was given to; "" if none yet. */
+  court: string;
+}
+
+/** The first games that are on courts or come next, at most so many. */
+export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
+  const games = [...running(sheet), ...sheet.coming.map((one) => ({ ...one, court: "" }))];
+  return games
+    .slice(0, most)
+    .map(({ pairing, game, teams, court }) => ({ pairing, game, teams, court }));
+}
+
 /** Whoever has won the contest: first in the only table of its last stage. */
 export function champions(sheet: ContestSheet): string[] {
   const last = sheet.stages.at(-1);
