@@ -145,6 +145,7 @@ DESK_STRUCTS = (
     desk.CourtRow,
     desk.Moved,
     desk.Slot,
+    desk.ToDraw,
     desk.OfficeView,
     desk.Overviewed,
     desk.Effect,

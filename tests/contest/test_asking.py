@@ -10,8 +10,9 @@ from benchmarks.contest_played import CONTEST, FINAL, SWISS
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.facts import AnyFact, Withdrawn
+from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, Withdrawn, new
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such terminal.")
 
@@ -65,6 +66,26 @@ def test_withdraw_asks_first(file: Path, lacoc: Run, answer: Answer) -> None:
     assert (fact.team, fact.reason) == ("Bees", "ill")
     answer("")  # nothing to ask: the team has left already
     assert "Decide this?" not in lacoc(*words)[1]
+
+
+def test_draw_shows_the_teams_and_asks(file: Path, lacoc: Run, answer: Answer) -> None:
+    """Only a stage that waits for the organiser is drawn by the command, and only after a yes."""
+    words = ("contest", "draw", "--contest", file)
+    code, _, note = lacoc(*words)
+    assert (code, "No stage waits" in note) == (2, True)
+    file.write_text(file.read_text("utf-8").replace("rounds = 2", 'draw = "organiser"'), "utf-8")
+    with FactStore(ContestFolder(file).facts) as store:
+        note_plans(store, ContestFolder(file).plans)
+        store.append(new(Closed))
+    before = facts(file)
+    answer("n\n")
+    assert "swiss begins with these teams, the best seed first: Ants, Bees." in lacoc(*words)[1]
+    assert facts(file) == before
+    answer("y\n")
+    assert "swiss is drawn with 2 teams." in lacoc(*words)[1]
+    (fact,) = facts(file)[len(before) :]
+    assert isinstance(fact, Drawn)
+    assert fact.entries == ("Ants", "Bees")
 
 
 def test_withdraw_without_a_terminal_needs_yes(file: Path, lacoc: Run) -> None:

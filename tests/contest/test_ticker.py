@@ -9,7 +9,14 @@ sys.path.append(str(Path(__file__).parents[1] / "league"))
 from chance_event import Event
 from cup import Cup
 
-from lacoc_server.contest.league.facts import Called, Closed, Played, Recalled
+from lacoc_server.contest.league.facts import (
+    Called,
+    Closed,
+    Drawn,
+    Planned,
+    Played,
+    Recalled,
+)
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.ticker import Ticker
 from lacoc_server.contest.live.whereabouts import Known, Pace
@@ -57,6 +64,19 @@ def test_a_contest_is_told_line_by_line() -> None:
     event.add(Played, **{**about, "game": 2, "scores": (9, 4), "outcome": "left"})
     assert terminal.lines()[-1] == "The contest is over."
     assert terminal.lines() == []
+
+
+def test_a_draw_that_waits_is_told() -> None:
+    """The organiser is told once which stage waits, and then that it is drawn."""
+    event = Event(2, 1, Random(1))
+    event.add(Planned, stage="cup", format="single-knockout", draw="organiser")
+    terminal = Terminal(event)
+    assert terminal.lines() == []
+    event.add(Closed)
+    assert "Stage cup waits for you" in terminal.lines()[-1]
+    assert terminal.lines() == []
+    event.add(Drawn, stage="cup", entries=tuple(event.names))
+    assert terminal.lines() == ["Stage cup is drawn: 2 teams."]
 
 
 def test_a_court_that_is_lost_and_comes_back_is_told() -> None:

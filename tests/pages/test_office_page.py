@@ -3,6 +3,7 @@
 import json
 import subprocess
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -37,16 +38,25 @@ class Event(NamedTuple):
     """A workbook that is cut off."""
 
 
-@pytest.fixture(scope="module")
-def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
-    """Give a contest at two courts whose entries are open; nobody has entered yet."""
-    folder = tmp_path_factory.mktemp("event")
+@contextmanager
+def running(folder: Path, *teams: str, waits: bool = False) -> Iterator[Event]:
+    """Run a contest at two courts whose entries are open.
+
+    Args:
+        folder: an empty folder.
+        teams: teams that have entered by command.
+        waits: whether the finals wait for the organiser's draw.
+    """
     file = folder / "contest.toml"
     run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
     text = file.read_text().replace("0.0.0.0:", "127.0.0.1:").replace("groups = 2", "groups = 1")
     for port in ("7447", "7448"):
         text = text.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")
+    if waits:
+        text = text.replace("# draw =", "draw =")
     file.write_text(text)
+    for team in teams:
+        run_lacoc("contest", "enter", team, "--contest", str(file))
     given = [one for one in sample_gait_files("hexapod") if one is not None]
     paths = [folder / one.name for one in given]
     for path, one in zip(paths, given, strict=True):
@@ -72,6 +82,13 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
         finally:
             run.terminate()
             run.wait(LIMIT_S)
+
+
+@pytest.fixture(scope="module")
+def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
+    """Give a contest whose entries are open; nobody has entered yet."""
+    with running(tmp_path_factory.mktemp("event")) as event:
+        yield event
 
 
 def fill(page: Page, event: Event, team: str, code: str = "") -> None:
@@ -131,7 +148,6 @@ def before_the_event(open_page: OpenPage, event: Event) -> None:
     page.goto(f"{event.url}/watch?director=1&q=low")
     card = page.locator(".event")
     expect(card).to_contain_text("Not drawn yet")
-    expect(card).to_contain_text("The director begins in")
     expect(page.locator(".banner")).to_have_count(0)
     assert violations(page) == []
 
@@ -285,6 +301,46 @@ def on_a_phone(open_page: OpenPage, event: Event) -> None:
         for element in ("document.documentElement", "document.querySelector('main')"):
             assert page.evaluate(f"{element}.scrollWidth") <= PHONE["width"]
         assert violations(page) == []
+
+
+@pytest.fixture
+def waiting(built_pages: Path, tmp_path: Path) -> Iterator[Event]:
+    """Give a contest of two teams whose finals wait for the organiser's draw."""
+    with running(tmp_path, "Ants", "Bees", waits=True) as event:
+        yield event
+
+
+def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> None:
+    """When the groups are over, the organiser sees who is in the finals, and draws them."""
+    office = open_page(viewport=LAPTOP)
+    office.goto(waiting.office)
+    office.get_by_role("button", name="Close entries and draw").click()
+    office.get_by_role("button", name="Close and draw with 2 teams").click()
+    draw = office.get_by_role("button", name="Draw Finals")
+    expect(office.locator('.slot[data-state="running"]')).to_have_count(1)
+    expect(draw).to_have_count(0)
+    office.get_by_role("button", name="Decide about").click()
+    points = office.get_by_role("dialog").locator(".points input")
+    points.nth(0).fill("3")
+    points.nth(1).fill("9")
+    first = office.get_by_role("dialog").locator(".points span").nth(1).inner_text()
+    office.get_by_label("Reason").fill("the court is not ready")
+    office.get_by_role("button", name="Decide this").click()
+    draw.click()
+    dialog = office.get_by_role("dialog", name="Draw Finals")
+    expect(dialog.locator(".seeds li")).to_have_count(2)
+    winner = dialog.locator(".seeds li").first.inner_text()
+    assert winner in first
+    assert violations(office) == []
+    phone = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
+    phone.goto(waiting.office)
+    expect(phone.get_by_role("button", name="組み合わせを決定")).to_be_visible()
+    assert phone.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    assert violations(phone) == []
+    dialog.get_by_role("button", name="Draw with 2 teams").click()
+    expect(dialog).to_have_count(0)
+    expect(draw).to_have_count(0)
+    expect(office.locator(".slot", has_text="Final")).to_have_count(1)
 
 
 def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:

@@ -48,6 +48,10 @@ export const contest = {
     "Drawn when the stage “{stage}” is over.",
     "ステージ「{stage}」が終わると組み合わせが決まります。",
   ],
+  "contest.plannedByHand": [
+    "The organiser draws it after the stage “{stage}”.",
+    "ステージ「{stage}」の後に、主催者が組み合わせを決めます。",
+  ],
   "contest.best": ["The best {count} take part.", "上位 {count} チームが進みます。"],
   "contest.roundsLeft": [
     "Rounds still to be drawn: {count}.",

@@ -101,14 +101,16 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
 }
 
 /** A stage that is not drawn yet. */
-function ToCome({ plan: { stage, format: name, settings, after, teams } }: { plan: Planned }) {
+function ToCome({ plan }: { plan: Planned }) {
+  const { stage, format: name, settings, after, draw, teams } = plan;
+  const follows = draw === "organiser" ? "contest.plannedByHand" : "contest.plannedAfter";
   return (
     <section class="stage" aria-labelledby={`title-${stage}`}>
       <h2 id={`title-${stage}`}>
         {stageTitle(stage)} <small>{format(name, settings?.games)}</small>
       </h2>
       <p class="muted">
-        {after ? t("contest.plannedAfter", { stage: stageTitle(after) }) : t("contest.planned")}{" "}
+        {after ? t(follows, { stage: stageTitle(after) }) : t("contest.planned")}{" "}
         {!!teams && t("contest.best", { count: teams })}
       </p>
     </section>

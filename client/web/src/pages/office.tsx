@@ -6,7 +6,7 @@ import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
-import { CloseDialog } from "./office/closing";
+import { CloseDialog, DrawDialog } from "./office/closing";
 import { ApproveDialog, DeclineDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
 import { Entries } from "./office/entries";
 import { Head } from "./office/head";
@@ -54,6 +54,7 @@ export default function Office() {
         )}
       </main>
       {over?.is === "close" && view && <CloseDialog organiser={organiser} view={view} />}
+      {over?.is === "draw" && view && <DrawDialog organiser={organiser} view={view} />}
       {over?.is === "team" && <TeamDialog organiser={organiser} team={over.team} />}
       {over?.is === "leave" && <LeaveDialog organiser={organiser} team={over.team} />}
       {over?.is === "approve" && <ApproveDialog organiser={organiser} team={over.team} />}

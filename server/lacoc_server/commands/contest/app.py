@@ -26,6 +26,7 @@ for command in (
     playing.run,
     elsewhere.courts,
     playing.standings,
+    deciding.draw,
     deciding.decide,
     checking.publish,
     checking.verify,

@@ -1,4 +1,4 @@
-"""Decide about a match or take a team out, after showing what that changes."""
+"""Decide about a match, take a team out or draw a stage, after showing what that changes."""
 
 import sys
 from collections.abc import Iterable
@@ -89,6 +89,24 @@ def withdraw(
     if more and not wanted_so(deciding.effect(facts, more), yes):
         return
     screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify))
+
+
+def draw(contest: Contest = FILE, yes: Yes = False) -> None:
+    """Draw the stage that waits for you: show its teams, ask, then draw it.
+
+    A stage with draw = "organiser" in the contest file waits when the stage before it is over.
+    Until you draw it, results before it can still be corrected.
+    """
+    from lacoc_server.contest import organiser
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.kept.store import FactStore
+    from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.formats.installed import FORMATS
+
+    with FactStore(ContestFolder(contest).facts) as store:
+        shown = organiser.drawing(compute(store.facts(), FORMATS))
+        if wanted_so([say("contest.to-draw", stage=shown.stage, teams=shown.entries)], yes):
+            screen.show(organiser.draw(store, shown))
 
 
 def wanted_so(effect: Iterable[Phrase], yes: bool) -> bool:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 
@@ -10,7 +10,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Planned, Settings, new
+from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_shared.contest.file import Contest
@@ -20,6 +20,8 @@ from lacoc_shared.words import say
 
 _USUAL_ARENA = "othello"
 _SETTINGS = Settings.__struct_fields__
+_DRAWS = get_args(Draw)
+_AT_ONCE = _DRAWS[0]
 _TEAMS_FOR_THIRD = 4
 """With fewer teams, no two teams lose a semi-final."""
 
@@ -29,6 +31,7 @@ class _Stage(msgspec.Struct, frozen=True, kw_only=True):
 
     format: str
     after: str = ""
+    draw: str = _AT_ONCE
     teams: int = 0
     arena: str = _USUAL_ARENA
     settings: dict[str, Any] = {}
@@ -103,12 +106,15 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         known = [*_Stage.__struct_fields__, *_SETTINGS]
         raise UserError(say("contest.stage-entry", entry=text_of(unknown[0]), known=known))
     stage = msgspec.convert(own, _Stage)
+    if stage.draw not in _DRAWS:
+        raise UserError(say("contest.stage-draw", draw=text_of(stage.draw), known=[*_DRAWS]))
     plan = new(
         Planned,
         stage=name,
         format=stage.format,
         settings=msgspec.convert(rest, Settings),
         after=stage.after,
+        draw=stage.draw,
         teams=stage.teams,
         arena=stage.arena,
         arena_settings=stage.settings,

@@ -17,6 +17,9 @@ VERSION = 1
 """Version of the layout of facts."""
 
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
+Draw = Literal["at-once", "organiser"]
+"""When a stage is drawn: as soon as its teams are known, or when the organiser says so after that.
+Without a network nobody can say it, and all stages are drawn at once."""
 Outcome = Literal["left", "right", "draw", "void"]
 """Who won a game, by seat. "void": the game counts for nobody and must be played again."""
 
@@ -103,6 +106,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     settings: Settings = Settings()
     after: str = ""
     """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
+    draw: Draw = "at-once"
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""
     arena: str = ""

@@ -16,7 +16,7 @@ from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import due
+from lacoc_server.contest.league.schedule import due, waits_for_organiser
 from lacoc_server.contest.live.calling import Ended, Seen, calls, results, taken_back, wanted
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.teller import Teller
@@ -113,7 +113,7 @@ class Office:
         self.contest = self._compute()  # another program may have appended facts
         refused = self._answers()
         self._append(lambda contest: [*refused, *results(contest, seen)])
-        while self._may_draw(now_ms) and due(self.contest, FORMATS) is not None:
+        while self._may_draw(now_ms) and _draws(self.contest):
             self._append(_draws)
         self._append(lambda contest: taken_back(contest, seen, now_ms))
         self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
@@ -224,5 +224,6 @@ class Office:
 
 
 def _draws(contest: Contest) -> list[AnyFact]:
-    draw = due(contest, FORMATS)
+    """Return the next draw, if the office makes it by itself."""
+    draw = None if waits_for_organiser(contest) else due(contest, FORMATS)
     return [] if draw is None else [draw]

@@ -12,6 +12,7 @@ from lacoc_server.contest.league.facts import (
     RoundDrawn,
 )
 from lacoc_server.contest.league.fixture import named
+from lacoc_server.contest.league.schedule import waits_for_organiser
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.whereabouts import Known
 from lacoc_shared.words import Phrase, say
@@ -30,6 +31,7 @@ class Ticker:
         """By court: whether it answered; a court that was never there is missing."""
         self._held: set[tuple[str, int]] = set()
         self._over = False
+        self._to_draw = ""
 
     def newest(self, contest: Contest, facts: Sequence[AnyFact], known: Known) -> Iterator[Phrase]:
         """Yield what has happened since the last call.
@@ -49,6 +51,11 @@ class Ticker:
             if (pairing, game) not in self._held:
                 yield say("news.refused", match=named(contest, pairing, game), why=why)
         self._held = {*known.held}
+        waiting = waits_for_organiser(contest)
+        to_draw = "" if waiting is None else waiting.stage
+        if to_draw and to_draw != self._to_draw:
+            yield say("news.to-draw", stage=to_draw)
+        self._to_draw = to_draw
         if contest.over and not self._over:
             yield say("news.over")
         self._over = contest.over

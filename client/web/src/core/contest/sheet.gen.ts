@@ -34,6 +34,7 @@ export interface Planned {
   format: string;
   settings?: Settings;
   after?: string;
+  draw?: "at-once" | "organiser";
   teams?: number;
   arena?: string;
   arena_settings?: Record<string, unknown>;

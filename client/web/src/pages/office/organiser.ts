@@ -32,6 +32,7 @@ export type Over =
   | { is: "move"; pairing: string }
   | { is: "rule"; pairing: string }
   | { is: "close" }
+  | { is: "draw" }
   | { is: "paper"; paper: Paper };
 
 export const PAPERS = ["schedule", "results", "certificates", "links"] as const;
@@ -55,6 +56,8 @@ export class Organiser {
   readonly waiting = computed<readonly TeamRow[]>(
     () => this.view.value?.teams.filter(({ state }) => state === "waits" || state === "late") ?? [],
   );
+  /** Whether closing entries does not draw the first stage: the organiser does that afterwards. */
+  readonly closesOnly = computed(() => this.feed.sheet.value?.planned[0]?.draw === "organiser");
   private readonly key = organiserKey() ?? "";
   private timer = 0;
 
