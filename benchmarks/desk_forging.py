@@ -49,6 +49,7 @@ from lacoc_shared.messages.desk import (
     CloseEntries,
     Decline,
     DeskRequest,
+    Draw,
     Files,
     Move,
     Overview,
@@ -171,6 +172,7 @@ class _Trial:
         kinds: tuple[DeskRequest, ...] = (
             Approve(secret=secret, teams=(_WAITS,), reason="x"),
             Decline(secret=secret, team=_WAITS),
+            Draw(secret=secret, stage="cup", entries=(_WAITS,)),
             CloseEntries(secret=secret),
             TakeOut(secret=secret, team=team, reason="x", really=True),
             Rule(secret=secret, kind="void", pairing="cup:a1.1", reason="x", really=True),

@@ -31,7 +31,7 @@ from lacoc_client.gateway.wire import Kind
 from lacoc_client.office import links
 from lacoc_client.phases import facts
 from lacoc_server.contest import sheet
-from lacoc_server.contest.league import contest, draws, matches, pairing, rating, standings
+from lacoc_server.contest.league import contest, decided, draws, matches, pairing, rating, standings
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.formats import format as formats
 from lacoc_server.doors.inbox import NAME_MAX
@@ -132,6 +132,7 @@ CONTEST_STRUCTS = (
     standings.Table,
     contest.StageView,
     contest.Unused,
+    decided.Decided,
     rating.Rating,
     sheet.Coming,
     sheet.ContestSheet,
@@ -145,6 +146,7 @@ DESK_STRUCTS = (
     desk.CourtRow,
     desk.Moved,
     desk.Slot,
+    desk.ToDraw,
     desk.OfficeView,
     desk.Overviewed,
     desk.Effect,

@@ -211,7 +211,8 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
         file.write_text(hall + text)
         found = look(capsys, tmp_path, "--contest", str(file))
         one = look(capsys, tmp_path, "--contest", str(file), "--court", "main")
-    assert "No program answers at" in found["court hall"]["found"]
+    assert found["court hall"]["status"] == "note"
+    assert "does not run yet" in found["court hall"]["found"]
     assert "Test at tcp/" in found["court main"]["found"]
     assert found["frames of main"]["status"] != "problem"
     assert "disk" in found
@@ -221,9 +222,26 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
 
 def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """A court that does not run is reported as a problem in one sentence."""
-    found = look(capsys, tmp_path, "--connect", f"tcp/127.0.0.1:{free()}")
+    there = f"tcp/127.0.0.1:{free()}"
+    found = look(capsys, tmp_path, "--connect", there)
     assert found["court main"]["status"] == "problem"
     assert "No program answers at" in found["court main"]["found"]
+    # Who names an address expects a court there, also beside a contest file.
+    found = look(capsys, tmp_path, "--contest", contest(tmp_path, free()), "--connect", there)
+    assert found["court main"]["status"] == "problem"
+
+
+def test_a_contest_that_does_not_run_yet(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Before a contest no court runs: that is a note, also for a court with two addresses."""
+    file = contest(tmp_path, free())
+    assert look(capsys, tmp_path, "--contest", file)["court main"]["status"] == "note"
+    text = Path(file).read_text()
+    office = '[office]\ntoken = "the token of the office"\n'
+    Path(file).write_text(f'{text}elsewhere = "tcp/127.0.0.1:{free()}"\n{office}')
+    found = look(capsys, tmp_path, "--contest", file)["court main"]
+    assert (found["status"], found["found"].count("tcp/")) == ("note", 2)
 
 
 @pytest.mark.slow

@@ -14,11 +14,13 @@ from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Called, Closed, Drawn, Played, new
+from lacoc_server.contest.league.facts import AnyFact, Called, Closed, Drawn, Played, Withdrawn, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due, playable
 from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.whereabouts import Known, Pace
+from lacoc_server.contest.verify.history import check_history
 from lacoc_shared.codec import encode
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.tokens import new_token
@@ -33,6 +35,7 @@ from lacoc_shared.messages.desk import (
     CourtDay,
     CourtPlan,
     Decline,
+    Draw,
     Effect,
     EventInfo,
     Files,
@@ -44,7 +47,9 @@ from lacoc_shared.messages.desk import (
     Own,
     OwnEntry,
     Rule,
+    Said,
     TakeOut,
+    ToDraw,
     TokenList,
     Tokens,
 )
@@ -287,10 +292,75 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
 
     out = TakeOut(secret=KEY, team=first, reason="left early")
     count = len(room.facts)
-    assert isinstance(room.ask(out), Effect)
+    seen = room.ask(out)
+    assert isinstance(seen, Effect)
+    assert seen.lines[0] == say("decide.leaves", team=first, left=1)
     assert len(room.facts) == count
     room.ask(TakeOut(secret=KEY, team=first, reason="left early", really=True))
     assert room.states()[first] == "withdrawn"
+
+
+@pytest.fixture
+def over(tmp_path: Path) -> Room:
+    """Give a contest whose final waits for the organiser: Ann has won, before Ben and Cyd."""
+    final = '[stage.final]\nformat = "single-knockout"\nafter = "cup"\nteams = 2\n'
+    room = Room(tmp_path, f'{final}draw = "organiser"\n')
+    room.enter("Ann", "Ben", "Cyd")
+    room.draw()
+    room.draw()
+    while matches := playable(room.book.contest):
+        seats = matches[0].next_seats
+        assert seats is not None
+        assert room.view.to_draw is None, "the stage before it is not over"
+        outcome = "left" if seats[0] < seats[1] else "right"
+        facts = {"pairing": matches[0].pairing.id, "game": 1, "teams": seats}
+        room.store.append(new(Played, scores=(5, 5), outcome=outcome, **facts))
+    return room
+
+
+def test_a_stage_waits_for_the_organiser_s_draw(over: Room) -> None:
+    """The office does not draw such a stage; the organiser sees its teams, and draws it.
+
+    If a correction has changed the teams meanwhile, nothing is drawn.
+    """
+    office = Office(over.store, over.where.entries, over.tokens.of, {}, {})
+    office.step()
+    assert [view.name for view in office.contest.stages] == ["cup"]
+    assert not office.over
+    shown = over.view.to_draw
+    assert shown is not None
+    assert (shown.stage, shown.entries) == ("final", ("Ann", "Ben"))
+
+    over.store.append(new(Withdrawn, team="Ann", reason="ill"))
+    draw = Draw(secret=KEY, stage=shown.stage, entries=shown.entries)
+    assert said(over.ask(draw)) == "contest.other-draw"
+    now = over.view.to_draw
+    assert now is not None
+    assert now.entries == ("Ben", "Cyd")
+    draw = Draw(secret=KEY, stage="final", entries=now.entries)
+    assert isinstance(over.ask(draw), Said)
+    office.step()
+    assert office.contest.stages[-1].stage.entries == ("Ben", "Cyd")
+    assert over.view.to_draw is None
+    assert said(over.ask(draw)) == "contest.nothing-to-draw"
+    assert [*check_history(over.facts, over.book.contest)] == []
+
+
+def test_a_first_stage_can_wait_too(tmp_path: Path) -> None:
+    """Closing entries does not draw a first stage that waits for the organiser."""
+    room = Room(tmp_path, "")
+    text = room.file.read_text().replace("[stage.cup]\n", '[stage.cup]\ndraw = "organiser"\n')
+    room.file.write_text(text)
+    room.where = ContestFolder(room.file)
+    note_plans(room.store, room.where.plans)
+    room.enter("Ann", "Ben")
+    office = Office(room.store, room.where.entries, room.tokens.of, {}, {}, draw_from_ms=None)
+    office.step()
+    assert room.view.to_draw is None, "entries are open"
+    room.ask(CloseEntries(secret=KEY))
+    office.step()
+    assert office.contest.stages == ()
+    assert room.view.to_draw == ToDraw(stage="cup", entries=("Ann", "Ben"))
 
 
 def test_a_team_that_is_in_with_the_same_files_waits_for_nothing(room: Room) -> None:
@@ -425,6 +495,7 @@ def test_roles_hold(room: Room) -> None:
         for request in (
             Approve(secret=secret, teams=("Ants",)),
             Decline(secret=secret, team="Ants"),
+            Draw(secret=secret, stage="cup", entries=("Ants", "Bees")),
             TakeOut(secret=secret, team="Bees", really=True),
             Rule(secret=secret, kind="void", pairing="cup:a1.1", reason="x", really=True),
             Move(secret=secret, pairing="cup:a1.1", court="north"),

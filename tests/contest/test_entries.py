@@ -227,6 +227,19 @@ def test_a_name_that_cannot_be_shown_is_refused(cup: Cup, team: str) -> None:
         cup.enter(team)
 
 
+@pytest.mark.parametrize("team", ["bees", "BEES", "Ｂｅｅｓ", "ｂees"])
+def test_a_name_that_looks_like_another_is_refused(cup: Cup, team: str) -> None:
+    """Names that differ only in case or width are one name; the message says what to do."""
+    assert cup.enter("Bees") == "contest.entered"
+    before = cup.facts
+    with pytest.raises(UserError, match=r'To change its files, enter "Bees"\.') as wrong:
+        cup.enter(team, bot="nearest")
+    assert wrong.value.phrase == say("contest.name-alike", team=team, there="Bees")
+    assert cup.facts == before
+    assert cup.enter("Bees", bot="nearest") == "contest.entered-again"
+    assert cup.enter("Bees 2") == "contest.entered"
+
+
 def test_a_name_typed_with_a_combining_accent_is_the_same_team(cup: Cup) -> None:
     """A name is the same whether its accent is part of a letter or a character of its own."""
     cup.enter("Café")

@@ -21,6 +21,7 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
 from lacoc_server.contest.publish import tables
+from lacoc_server.contest.verify.published import check_published, read
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.summary import Summary, summary
@@ -47,6 +48,19 @@ def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: P
     assert names[0] == names[1]
     ranks = [row.rank for table in second.stages[0].tables for row in table.rows]
     assert ranks == [1, 2, 3, 4, 5]
+
+
+def test_without_a_network_no_draw_waits(played: Path, tmp_path: Path) -> None:
+    """Nobody is there to draw, so a stage that waits for the organiser is drawn at once."""
+    waits = FINAL.replace("teams = 2", 'teams = 2\ndraw = "organiser"')
+    file = contest_played.enter(tmp_path / "waits", CONTEST + SWISS + waits)
+    shutil.copytree(played / "records", file.parent / "records")
+    assert contest_played.play(file) == 0
+    made = organiser.sheet(file)
+    assert [view.plan.draw for view in made.stages] == ["at-once", "organiser"]
+    assert tables(made) == tables(organiser.sheet(played / "contest.toml"))
+    folder = contest_played.publish(file)
+    assert [*check_published(folder, read(folder))] == []
 
 
 def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied: Path) -> None:

@@ -32,9 +32,19 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
             r"groups.*games: expected a whole number, without quotes, found text",
         ),
         (GROUPS + "teams = -1\n", r"groups.*teams: .*at least 0"),
-        (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, teams'),
+        (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, draw, teams'),
         (GROUPS + 'tie_breaks = ["luck"]\n', r'no tie-break "luck"\. Choose from points'),
         (GROUPS + 'after = "groups"\n', r'comes after "groups", but no stage of this name'),
+        (
+            '[stage.a]\nformat = "single-knockout"\nteams = 2\nthird_place = true\n',
+            r"stage.a.*no match for third place is possible with 2 teams. Remove 'third_place'",
+        ),
+        (
+            GROUPS + 'teams = 3\n[stage.b]\nformat = "single-knockout"\nafter = "groups"\n'
+            "third_place = true\n",
+            r"stage.b.*third place is possible with 3 teams",
+        ),
+        (GROUPS + 'draw = "later"\n', r'draw = "later" is not possible; choose at-once or org'),
         (GROUPS + 'arena = "chess"\n', r'no arena "chess"'),
         (GROUPS + 'arena = "practice"\n', r'"practice" is not a game for two'),
         (GROUPS + "settings.match.duration = 3\n", r"duration"),

@@ -164,12 +164,16 @@ def test_exit_codes_and_languages(
     with monkeypatch.context() as japanese:
         japanese.setenv("LACOC_LANGUAGE", "ja")
         assert "順位は事実と記録から正しく導かれています" in lacoc(*verify)[1]
-        code, said, _ = lacoc("contest", "withdraw", "Ann", "--contest", copied, "--reason", "病気")
+        withdraw = ("contest", "withdraw", "Ann", "--contest", copied, "--reason", "病気")
+        code, said, note = lacoc(*withdraw)  # nobody is there to ask
+        assert (code, "Ann が大会から外れ" in said, "--yes" in note) == (0, True, True)
+        assert "Ann は大会から外れました" not in said
+        code, said, _ = lacoc(*withdraw, "--yes")
         assert (code, "大会から外れました" in said) == (0, True)
     contest_played.publish(copied)
     code, said, note = lacoc(*verify)
     assert code == 0
-    assert "withdrawn – Ann: 病気" in note
+    assert "Ann has withdrawn. Reason: 病気" in note
     (folder / STANDINGS).write_bytes(b"")
     code, said, _ = lacoc(*verify)
     assert (code, "standings.csv is not what follows" in said) == (1, True)

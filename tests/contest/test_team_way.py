@@ -93,3 +93,18 @@ def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
         assert text.splitlines()[-1].startswith(ends), text
     assert any("Court south" in text for text in told)
     assert (run.returncode, end["games"]) == (0, 6)
+
+
+@pytest.mark.long
+@pytest.mark.slow
+def test_the_terminal_tells_what_happens(tmp_path: Path) -> None:
+    """Without --json the organiser reads a line for each draw, call and result."""
+    file = write_contest(tmp_path)
+    for team in PEOPLE:
+        enter(file, team, None, "straight", "")
+    ran = run_lacoc("contest", "run", str(file), "--speed", "10", timeout_s=LIMIT_S)
+    assert ran.returncode == 0, ran.stderr
+    told = ran.stderr
+    assert told.count("Result: ") == 6
+    assert told.count(" is called. league, round ") == 6
+    assert told.rstrip().endswith("The contest is over.")

@@ -46,6 +46,7 @@ from lacoc_shared.record.pack import Message, write
 from lacoc_shared.record.pack import read as packed
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase
 
 
 def findings(folder: Path, proven: bool = False) -> list[str]:
@@ -115,8 +116,13 @@ def test_an_honest_contest_with_decisions_passes(copied: Path) -> None:
     assert findings(folder) == []
     found = check(folder, lambda done, there: None, sampled=1, seed=3, jobs=1)
     assert found.findings == ()
-    kinds = [dict(one.values)["kind"] for one in found.decisions]
-    assert kinds == ["replay", "files-changed", "replaced", "withdrawn"]
+    what = [one.values["what"] for one in found.decisions]
+    assert [one.code for one in what if isinstance(one, Phrase)] == [
+        "decided.replay",
+        "decided.files-changed",
+        "decided.replaced",
+        "decided.withdrawn",
+    ]
 
 
 @pytest.mark.slow

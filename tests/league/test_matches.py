@@ -188,7 +188,7 @@ def test_a_corrected_semi_final_reopens_the_final() -> None:
     what = changes(before, facts.contest)
     assert [now.pairing.id for _, now in what.matches] == ["s:w1.1", "s:w2.1"]
     assert ("s", "a", 1, 3) in what.ranks
-    assert changes(before, before) == Changes(matches=(), ranks=())
+    assert changes(before, before) == Changes(matches=(), ranks=(), leaving=())
 
 
 def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:

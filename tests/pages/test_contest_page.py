@@ -1,6 +1,7 @@
 """Tests of /contest: at a gateway, and in a published folder on a server of plain files."""
 
 import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,7 +17,14 @@ from lacoc_robots.library import robot_folder
 from lacoc_server.contest import organiser
 from lacoc_server.contest.headless.pool import Pool
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import Called, Entered, Played, decode
+from lacoc_server.contest.league.facts import (
+    Called,
+    Entered,
+    Played,
+    Replaced,
+    Withdrawn,
+    decode,
+)
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet, encode, sheet
 
@@ -97,6 +105,50 @@ def test_a_published_folder_shows_the_contest_and_its_replays(
     assert tuple(teams) == game.teams
     page.get_by_role("link", name="The contest").click()
     expect(page.locator("h1")).to_have_text("Tiny Cup")
+
+
+def test_decisions_stand_with_their_reasons(cup: Cup, open_page: OpenPage, tmp_path: Path) -> None:
+    """The page says what was decided and why, the newest first, and who has left."""
+    shutil.copytree(cup.folder, tmp_path, dirs_exist_ok=True)
+    facts = decode((cup.folder / "facts.json").read_bytes())
+    league = next(fact for fact in facts if isinstance(fact, Played))
+    last = facts[-1].number
+    game = {"pairing": league.pairing, "game": league.game, "teams": league.teams}
+    more = [
+        Replaced(id="d1", number=last + 1, scores=(3, 9), outcome="right", reason="x", **game),  # type: ignore[arg-type]
+        Withdrawn(id="d2", number=last + 2, team=TEAMS[2], reason="robot <b>broken</b>"),
+    ]
+    made = sheet("Tiny Cup", compute([*facts, *more], FORMATS))
+    (tmp_path / "contest.json").write_bytes(encode(made))
+    with served(tmp_path) as url:
+        page = open_page(viewport=LAPTOP)
+        page.goto(url)
+        left, right = league.teams
+        expect(page.locator(".head .state")).to_contain_text(f"2 teams · withdrawn: {TEAMS[2]}")
+        told = page.locator("#decisions li")
+        expect(told).to_have_count(2)
+        expect(told.first).to_contain_text(f"{TEAMS[2]} has withdrawn")
+        expect(told.first).to_contain_text("Reason: robot <b>broken</b>")
+        expect(told.last).to_contain_text(f"the result is {left} 3 : 9 {right}")
+        told.last.get_by_role("link").click()
+        expect(page.locator(f'[id="match-{league.pairing}"]')).to_be_in_viewport()
+
+
+def test_a_bracket_shows_all_its_texts(cup: Cup, open_page: OpenPage) -> None:
+    """No text of a bracket is cut, not even the note below the lowest box."""
+    page = open_page(viewport=LAPTOP)
+    page.goto(cup.url)
+    expect(page.locator(".bracket .note").first).to_be_visible()
+    cut = page.evaluate(
+        """() => [...document.querySelectorAll(".bracket")].flatMap((svg) => {
+          const all = svg.getBoundingClientRect();
+          return [...svg.querySelectorAll("text")].filter((text) => {
+            const own = text.getBoundingClientRect();
+            return own.top < all.top || own.bottom > all.bottom || own.right > all.right;
+          }).map((text) => text.textContent);
+        })"""
+    )
+    assert cut == []
 
 
 def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:

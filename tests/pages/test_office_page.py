@@ -3,6 +3,7 @@
 import json
 import subprocess
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -37,16 +38,25 @@ class Event(NamedTuple):
     """A workbook that is cut off."""
 
 
-@pytest.fixture(scope="module")
-def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
-    """Give a contest at two courts whose entries are open; nobody has entered yet."""
-    folder = tmp_path_factory.mktemp("event")
+@contextmanager
+def running(folder: Path, *teams: str, waits: bool = False) -> Iterator[Event]:
+    """Run a contest at two courts whose entries are open.
+
+    Args:
+        folder: an empty folder.
+        teams: teams that have entered by command.
+        waits: whether the finals wait for the organiser's draw.
+    """
     file = folder / "contest.toml"
     run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
     text = file.read_text().replace("0.0.0.0:", "127.0.0.1:").replace("groups = 2", "groups = 1")
     for port in ("7447", "7448"):
         text = text.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")
+    if waits:
+        text = text.replace("# draw =", "draw =")
     file.write_text(text)
+    for team in teams:
+        run_lacoc("contest", "enter", team, "--contest", str(file))
     given = [one for one in sample_gait_files("hexapod") if one is not None]
     paths = [folder / one.name for one in given]
     for path, one in zip(paths, given, strict=True):
@@ -74,6 +84,13 @@ def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
             run.wait(LIMIT_S)
 
 
+@pytest.fixture(scope="module")
+def event(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
+    """Give a contest whose entries are open; nobody has entered yet."""
+    with running(tmp_path_factory.mktemp("event")) as event:
+        yield event
+
+
 def fill(page: Page, event: Event, team: str, code: str = "") -> None:
     """Fill in the form of /enter, with files that have no mistakes."""
     page.goto(f"{event.url}/enter")
@@ -89,6 +106,8 @@ def enter(open_page: OpenPage, event: Event, team: str) -> Page:
     fill(page, event, team)
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible()
+    expect(page.locator(".state")).to_be_focused()
+    expect(page.locator(".state")).to_be_in_viewport(ratio=1)
     return page
 
 
@@ -104,10 +123,13 @@ def test_an_event_from_its_file_to_its_first_game(
     expect(office.locator(".head .code")).to_have_text(event.code)
     assert "#" not in office.url, "the key stays in the address"
     assert violations(office) == []
+    before_the_event(open_page, event)
     first = first_team(open_page, event)
     for team in TEAMS[1:-1]:
         enter(open_page, event, team)
     enter_a_workbook(open_page, event, TEAMS[-1])
+    enter(open_page, event, "Nobody")
+    decline(office, "Nobody")
     rows = office.locator(".entries li")
     expect(rows).to_have_count(len(TEAMS))
     assert violations(office) == []
@@ -120,6 +142,16 @@ def test_an_event_from_its_file_to_its_first_game(
     on_a_phone(open_page, event)
 
 
+def before_the_event(open_page: OpenPage, event: Event) -> None:
+    """The page that follows the director has nothing to show yet: it says so without an alarm."""
+    page = open_page(viewport=PHONE)
+    page.goto(f"{event.url}/watch?director=1&q=low")
+    card = page.locator(".event")
+    expect(card).to_contain_text("Not drawn yet")
+    expect(page.locator(".banner")).to_have_count(0)
+    assert violations(page) == []
+
+
 def first_team(open_page: OpenPage, event: Event) -> Page:
     """Enter with a wrong code, with mistakes, then rightly; a reload keeps the team's link."""
     page = open_page(viewport=LAPTOP)
@@ -130,6 +162,8 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     page.locator("input[type=file]").set_input_files(event.wrong)
     page.locator("button[type=submit]").click()
     expect(page.locator(".mistakes li")).to_have_count(3)
+    expect(page.locator(".why > p")).to_be_focused()
+    expect(page.locator(".why > p")).to_be_in_viewport(ratio=1)
     assert violations(page) == []
     page.locator("input[type=file]").set_input_files([event.right[1], event.cut])
     expect(page.locator(".files li b").nth(1)).to_have_text("Loco-data.xlsx")
@@ -161,6 +195,21 @@ def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
     expect(page.locator(".files li b").last).to_have_text("made from Loco-data.xlsx")
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible()
+
+
+def decline(office: Page, team: str) -> None:
+    """Decline a team; the page asks first, and Escape declines nobody."""
+    row = office.locator(".entries li", has_text=team)
+    dialog = office.get_by_role("dialog", name=f"Decline {team}")
+    office.get_by_role("button", name=f"Decline {team}").click()
+    expect(dialog).to_contain_text("forgets this application")
+    assert violations(office) == []
+    office.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    expect(row).to_have_attribute("data-state", "waits")
+    office.get_by_role("button", name=f"Decline {team}").click()
+    dialog.get_by_role("button", name="Decline").click()
+    expect(row).to_have_count(0)
 
 
 def approve_and_draw(office: Page) -> None:
@@ -213,6 +262,8 @@ def late_files(office: Page, team: Page, event: Event) -> None:
     team.locator("input[type=file]").set_input_files(changed)
     team.get_by_role("button", name="Weigh in and replace").click()
     expect(team.locator(".state")).to_contain_text("after entries were closed")
+    expect(team.locator(".state")).to_be_focused()
+    expect(team.locator(".state")).to_be_in_viewport(ratio=1)
     office.get_by_role("button", name=f"Approve {FIRST}").first.click()
     dialog = office.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Approve")).to_be_disabled()
@@ -250,6 +301,46 @@ def on_a_phone(open_page: OpenPage, event: Event) -> None:
         for element in ("document.documentElement", "document.querySelector('main')"):
             assert page.evaluate(f"{element}.scrollWidth") <= PHONE["width"]
         assert violations(page) == []
+
+
+@pytest.fixture
+def waiting(built_pages: Path, tmp_path: Path) -> Iterator[Event]:
+    """Give a contest of two teams whose finals wait for the organiser's draw."""
+    with running(tmp_path, "Ants", "Bees", waits=True) as event:
+        yield event
+
+
+def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> None:
+    """When the groups are over, the organiser sees who is in the finals, and draws them."""
+    office = open_page(viewport=LAPTOP)
+    office.goto(waiting.office)
+    office.get_by_role("button", name="Close entries and draw").click()
+    office.get_by_role("button", name="Close and draw with 2 teams").click()
+    draw = office.get_by_role("button", name="Draw Finals")
+    expect(office.locator('.slot[data-state="running"]')).to_have_count(1)
+    expect(draw).to_have_count(0)
+    office.get_by_role("button", name="Decide about").click()
+    points = office.get_by_role("dialog").locator(".points input")
+    points.nth(0).fill("3")
+    points.nth(1).fill("9")
+    first = office.get_by_role("dialog").locator(".points span").nth(1).inner_text()
+    office.get_by_label("Reason").fill("the court is not ready")
+    office.get_by_role("button", name="Decide this").click()
+    draw.click()
+    dialog = office.get_by_role("dialog", name="Draw Finals")
+    expect(dialog.locator(".seeds li")).to_have_count(2)
+    winner = dialog.locator(".seeds li").first.inner_text()
+    assert winner in first
+    assert violations(office) == []
+    phone = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")
+    phone.goto(waiting.office)
+    expect(phone.get_by_role("button", name="組み合わせを決定")).to_be_visible()
+    assert phone.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    assert violations(phone) == []
+    dialog.get_by_role("button", name="Draw with 2 teams").click()
+    expect(dialog).to_have_count(0)
+    expect(draw).to_have_count(0)
+    expect(office.locator(".slot", has_text="Final")).to_have_count(1)
 
 
 def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:

@@ -64,7 +64,8 @@ def doctor_command(
 
     With --invitation, --connect or --contest this command also checks the connection to a court, or
     to each court of the contest: whether the court answers, how long a request takes, and how many
-    frames arrive. With --court it checks only that court. Every finding is ok, a note or a problem;
+    frames arrive. With --court it checks only that court. A court of the contest file that does not
+    run yet is only a note. Every finding is ok, a note or a problem;
     notes and problems say what to do. The exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
@@ -77,7 +78,7 @@ def doctor_command(
     folder = recordings or (plan.recordings if plan else Path("recordings"))
     findings = list(_look(plan, planned, web, folder, seconds))
     for way in ways:
-        findings += link(way, seconds)
+        findings += link(way, seconds, planned=plan is not None and not (invitation or connect))
     if json:
         screen.print_json([finding.in_words() for finding in findings])
     else:

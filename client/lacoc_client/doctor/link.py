@@ -20,12 +20,13 @@ _LONG_GAP_S = 0.5
 _FIRST_S = 1.0
 
 
-def link(access: Access, seconds: float) -> Iterator[Finding]:
+def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[Finding]:
     """Check the link to a court, as a spectator sees it.
 
     Args:
         access: the way to the court.
         seconds: how long the court's frames are counted.
+        planned: whether the way is of a contest file, whose courts need not run yet.
     """
     about = say("doctor.court", court=access.court)
     try:
@@ -36,7 +37,19 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
             yield _frames(view, seconds)
             yield from _record(view)
     except UserError as error:
-        yield Finding(about, Status.PROBLEM, error.phrase, say("doctor.court-todo"))
+        if planned and _nobody_listens(error.phrase):
+            found = say("doctor.court-not-yet", addresses=access.addresses)
+            yield Finding(about, Status.NOTE, found, say("doctor.court-not-yet-todo"))
+        else:
+            yield Finding(about, Status.PROBLEM, error.phrase, say("doctor.court-todo"))
+
+
+def _nobody_listens(why: Phrase) -> bool:
+    """Return whether each address of a court was reached, and no program listens there."""
+    reasons = why.values.get("sentences", (why,))
+    return isinstance(reasons, tuple) and all(
+        isinstance(one, Phrase) and one.code == "connect.nobody" for one in reasons
+    )
 
 
 def _version(about: Phrase, access: Access, view: Spectator) -> Finding:

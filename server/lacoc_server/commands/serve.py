@@ -33,7 +33,7 @@ from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.address import ANY_HOST, endpoint, own_address
+from lacoc_shared.network.address import endpoint, own_address
 from lacoc_shared.words import say
 
 app = typer.Typer()
@@ -120,7 +120,7 @@ def serve_command(
         levels,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
-    addresses = (endpoint(listen, plan.protocol),) if listen else _own_addresses(entry)
+    addresses = (endpoint(listen, plan.protocol),) if listen else entry.own_listen
     guard = protection(plan, name)
     with ExitStack() as opened:
         weighing = opened.enter_context(Weighing(admission))
@@ -179,14 +179,6 @@ def _contest(
     seats = [seat.id for seat in arenas.load(name).seats]
     listen_at = (listen or contests.LOOPBACK,)
     return contests.throwaway(name, seats, listen_at, court or contests.MAIN), True
-
-
-def _own_addresses(entry: contests.Court) -> tuple[str, ...]:
-    """Return where a court listens: one that is run elsewhere listens on its own machine."""
-    if not entry.elsewhere:
-        return entry.listen
-    protocol, port = entry.elsewhere.partition("/")[0], entry.elsewhere.rpartition(":")[2]
-    return (f"{protocol}/{ANY_HOST[0]}:{port}",)
 
 
 def _overrides(settings: dict[str, Any], seconds: float | None) -> dict[str, Any]:

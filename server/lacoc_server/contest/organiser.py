@@ -21,12 +21,14 @@ from lacoc_server.contest.league.facts import (
     AnyFact,
     Closed,
     Disqualified,
+    Drawn,
     Entered,
     FilesChanged,
     Withdrawn,
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.schedule import waits_for_organiser
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -78,6 +80,14 @@ def team_name(text: str) -> str:
     return team
 
 
+def name_form(name: str) -> str:
+    """Return a form of a team's name; names that look alike have the same form.
+
+    Capitals become small letters, wide letters narrow ones, and several spaces one.
+    """
+    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
+
+
 def enter_weighed(
     where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str
 ) -> Phrase:
@@ -102,6 +112,9 @@ def enter_weighed(
         known = {one.name: one for one in contest.teams}
         if team in known and known[team].files == entry.hash:
             return
+        alike = {name_form(name): name for name in known}
+        if team not in known and name_form(team) in alike:
+            raise UserError(say("contest.name-alike", team=team, there=alike[name_form(team)]))
         if contest.closed and team not in known:
             raise UserError(say("league.closed", team=team))
         if contest.closed and not reason.strip():
@@ -150,6 +163,39 @@ def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> 
     if disqualified and not teams[team].disqualified:
         return [new(Disqualified, team=team, reason=reason)]
     return [] if teams[team].gone else [new(Withdrawn, team=team, reason=reason)]
+
+
+def drawing(contest: Contest) -> Drawn:
+    """Return the draw that waits for the organiser.
+
+    Raises:
+        UserError: if none does.
+    """
+    draw = waits_for_organiser(contest)
+    if draw is None:
+        raise UserError(say("contest.nothing-to-draw"))
+    return draw
+
+
+def draw(store: FactStore, shown: Drawn) -> Phrase:
+    """Draw the stage that waits for the organiser; return what was done.
+
+    Args:
+        store: the facts.
+        shown: the draw that the organiser has seen.
+
+    Raises:
+        UserError: if no stage waits, or another draw does: then nothing is drawn.
+    """
+
+    def decision(facts: tuple[AnyFact, ...]) -> list[AnyFact]:
+        made = drawing(compute(facts, FORMATS))
+        if (made.stage, made.entries) != (shown.stage, shown.entries):
+            raise UserError(say("contest.other-draw", stage=made.stage))
+        return [made]
+
+    store.decide(decision)
+    return say("contest.drawn", stage=shown.stage, teams=len(shown.entries))
 
 
 def tokens(file: Path, team: str | None) -> dict[str, str]:

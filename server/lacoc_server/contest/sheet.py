@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 import msgspec
 
 from lacoc_server.contest.league.contest import Contest, StageView, Unused, compute
+from lacoc_server.contest.league.decided import Decided, decided
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned
 from lacoc_server.contest.league.fixture import match_fixture
@@ -16,7 +17,7 @@ from lacoc_server.contest.league.rating import Rated, Rating, ratings
 from lacoc_server.contest.league.schedule import playable
 from lacoc_shared.words import Phrase
 
-VERSION = 1
+VERSION = 2
 """Version of the layout of a sheet."""
 
 
@@ -46,6 +47,8 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """The games that are on a court now."""
     coming: tuple[Coming, ...]
     """The games that can be played next, in their order."""
+    decided: tuple[Decided, ...]
+    """What people decided, the newest first."""
     ratings: tuple[Rating, ...]
     """The strongest first; teams that have played no game are not among them."""
     side_elo: float
@@ -88,6 +91,7 @@ def sheet(name: str, contest: Contest) -> ContestSheet:
             for match in playable(contest)
             if match.next_seats is not None
         ),
+        decided=decided(contest)[::-1],
         ratings=rated.teams,
         side_elo=rated.side_elo,
         unused=contest.unused,

@@ -103,6 +103,14 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return "" if found in ANY_HOST else found
 
     @property
+    def own_listen(self) -> tuple[str, ...]:
+        """Addresses at which the court listens on its own machine, which may be elsewhere."""
+        if not self.elsewhere:
+            return self.listen
+        protocol, port = self.elsewhere.partition("/")[0], self.elsewhere.rpartition(":")[2]
+        return (f"{protocol}/{ANY_HOST[0]}:{port}",)
+
+    @property
     def looks(self) -> dict[str, dict[str, str]]:
         """The teams' own colours and patterns, by seat."""
         return {seat: holder.look for seat, holder in self.seat.items()}

@@ -117,6 +117,14 @@ class CloseEntries(DeskRequest, frozen=True, kw_only=True, tag="close"):
     """Close entries: the office draws and calls the first games."""
 
 
+class Draw(DeskRequest, frozen=True, kw_only=True, tag="draw"):
+    """Draw the stage that waits for the organiser, as the page shows it."""
+
+    stage: _Name
+    entries: tuple[_Name, ...]
+    """The teams by their seeding, as shown. If others would be drawn now, nothing is drawn."""
+
+
 class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
     """Take a team out of the contest."""
 
@@ -169,6 +177,7 @@ AnyRequest = (
     | Approve
     | Decline
     | CloseEntries
+    | Draw
     | TakeOut
     | Rule
     | Move
@@ -256,6 +265,14 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     """Why a court refused its game; None: none did."""
 
 
+class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
+    """A stage that waits for the organiser's draw."""
+
+    stage: str
+    entries: tuple[str, ...]
+    """Its teams by their seeding, the best first."""
+
+
 class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     """What the organiser's page shows in addition to the sheet of the contest."""
 
@@ -266,6 +283,8 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     """The event code."""
     drawn: bool
     """Whether a stage is drawn."""
+    to_draw: ToDraw | None
+    """The stage that waits for the organiser's draw; None: none does."""
     teams: tuple[TeamRow, ...]
     courts: tuple[CourtRow, ...]
     slots: tuple[Slot, ...]

@@ -105,6 +105,17 @@ def is_open(one: str, timeout_s: float = 0.5) -> bool:
         return False
 
 
+def check_free(endpoints: Sequence[str]) -> None:
+    """Check that a program can listen on these complete addresses.
+
+    Raises:
+        UserError: if it can't listen on one of them; the message says why, and what to do.
+    """
+    for one in endpoints:
+        if (why := _why_not_listening(one)) is not None:
+            raise UserError(why)
+
+
 def why_not_listening(endpoints: Sequence[str], error: Exception) -> Phrase:
     """Say why it was not possible to listen on these addresses.
 
@@ -112,9 +123,10 @@ def why_not_listening(endpoints: Sequence[str], error: Exception) -> Phrase:
         endpoints: complete addresses.
         error: the failure; used if a plain socket can listen on all of them.
     """
-    for one in endpoints:
-        if (why := _why_not_listening(one)) is not None:
-            return why
+    try:
+        check_free(endpoints)
+    except UserError as found:
+        return found.phrase
     return say("listen.impossible", at=", ".join(endpoints), why=str(error))
 
 

@@ -30,6 +30,33 @@ test("a contest is over when all its stages are, and then it has a winner", () =
   assert.equal(done, all);
 });
 
+test("teams that have left are named, and do not count", () => {
+  const [one, two, three, ...others] = groups.teams;
+  const teams = [
+    { ...one, withdrawn: true },
+    { ...two, disqualified: true },
+    { ...three, withdrawn: true, disqualified: true },
+    ...others,
+  ];
+  assert.deepEqual(c.teamsOf({ ...groups, teams }), {
+    here: others.length,
+    gone: [one.name],
+    expelled: [two.name, three.name],
+  });
+});
+
+test("the next games are those on courts, then those that can be played", () => {
+  const all = c.nextGames(groups, 99);
+  assert.equal(all.length, groups.running.length + groups.coming.length);
+  const courts = c.running(groups).map(({ court }) => court);
+  assert.deepEqual(
+    all.map(({ court }) => court),
+    [...courts, ...groups.coming.map(() => "")],
+  );
+  assert.deepEqual(c.nextGames(groups, 1), all.slice(0, 1));
+  assert.deepEqual(c.nextGames(finals, 3), []);
+});
+
 test("rounds have the matches of all groups, and no byes in a bracket", () => {
   const view = groups.stages[0];
   const rounds = c.rounds(view);

@@ -65,6 +65,13 @@ export interface CloseEntries {
   secret?: string;
 }
 
+export interface Draw {
+  do: "draw";
+  secret?: string;
+  stage: string;
+  entries: string[];
+}
+
 export interface TakeOut {
   do: "take_out";
   secret?: string;
@@ -147,11 +154,17 @@ export interface Slot {
   held: Phrase | null;
 }
 
+export interface ToDraw {
+  stage: string;
+  entries: string[];
+}
+
 export interface OfficeView {
   version: string;
   event: EventInfo;
   code: string;
   drawn: boolean;
+  to_draw: ToDraw | null;
   teams: TeamRow[];
   courts: CourtRow[];
   slots: Slot[];
@@ -203,4 +216,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = Look | Apply | Change | Own | CourtDay | Overview | Approve | Decline | CloseEntries | TakeOut | Rule | Move | Tokens;
+export type AnyRequest = Look | Apply | Change | Own | CourtDay | Overview | Approve | Decline | CloseEntries | Draw | TakeOut | Rule | Move | Tokens;

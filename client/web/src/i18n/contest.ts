@@ -19,6 +19,8 @@ export const contest = {
   "contest.state.over": ["Over", "終了"],
   "contest.progress": ["{done} of {all} matches played", "{all} 試合中 {done} 試合終了"],
   "contest.teamCount": ["{count} teams", "{count} チーム"],
+  "contest.gone": ["withdrawn: {teams}", "棄権：{teams}"],
+  "contest.expelled": ["disqualified: {teams}", "失格：{teams}"],
   "contest.winner": ["Winner", "優勝"],
   "contest.parts": ["Parts of the page", "ページの目次"],
   "contest.settings": ["Settings", "設定"],
@@ -45,6 +47,10 @@ export const contest = {
   "contest.plannedAfter": [
     "Drawn when the stage “{stage}” is over.",
     "ステージ「{stage}」が終わると組み合わせが決まります。",
+  ],
+  "contest.plannedByHand": [
+    "The organiser draws it after the stage “{stage}”.",
+    "ステージ「{stage}」の後に、主催者が組み合わせを決めます。",
   ],
   "contest.best": ["The best {count} take part.", "上位 {count} チームが進みます。"],
   "contest.roundsLeft": [
@@ -178,6 +184,10 @@ export const contest = {
   "contest.stillIn": ["still in", "勝ち残り"],
   "contest.path": ["Matches of {team}", "{team} の試合"],
   "contest.noMatches": ["No match yet.", "試合はまだありません。"],
+  "contest.decisions": ["Decisions", "決定"],
+  "contest.reason": ["Reason: {reason}", "理由：{reason}"],
+  "contest.toMatch": ["To the match", "試合を見る"],
+  "contest.changesNothing": ["Changes nothing now: {why}", "今は結果に影響しません：{why}"],
   "contest.unused": ["Facts that change nothing", "結果に影響しない事実"],
   "contest.pause": ["Stop changing the slides", "スライドの自動切り替えを止める"],
   "contest.resume": ["Change the slides by itself", "スライドを自動で切り替える"],

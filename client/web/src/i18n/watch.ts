@@ -12,6 +12,8 @@ export const watch = {
   "watch.connected": ["Connected to the gateway", "ゲートウェイに接続しました"],
   "watch.noMatch": ["No match yet", "試合はまだありません"],
   "watch.delayed": ["shown {seconds} s later", "{seconds} 秒遅れで表示"],
+  "event.title": ["The event", "大会"],
+  "event.waits": ["Waiting for the courts.", "コートを待っています。"],
   "director.name": ["Director", "ディレクター"],
   "director.onAir": ["On air", "放送中"],
   "director.court": ["court {court}", "コート {court}"],

@@ -144,3 +144,9 @@ export function timeOf(timeMs: number): string {
   const options = { hour: "2-digit", minute: "2-digit", hourCycle: "h23" } as const;
   return new Date(timeMs).toLocaleTimeString(language.value, options);
 }
+
+/** A day with its time, such as 25 Nov 2026, 16:05. */
+export function dateTime(time: number | string): string {
+  const options = { dateStyle: "medium", timeStyle: "short" } as const;
+  return new Date(time).toLocaleString(language.value, options);
+}

@@ -14,6 +14,7 @@ import {
 import { said, t } from "../i18n";
 import { Big } from "./contest/big";
 import { BracketView } from "./contest/bracket";
+import { Decisions } from "./contest/decisions";
 import { Head, Parts } from "./contest/head";
 import { Now } from "./contest/now";
 import { addressed } from "./contest/parts";
@@ -72,6 +73,7 @@ function Whole({ sheet }: { sheet: ContestSheet }) {
         <ToCome key={plan.stage} plan={plan} />
       ))}
       <Teams sheet={sheet} />
+      <Decisions sheet={sheet} />
       <Unused sheet={sheet} />
       <TeamDialog sheet={sheet} />
     </main>
@@ -99,14 +101,16 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
 }
 
 /** A stage that is not drawn yet. */
-function ToCome({ plan: { stage, format: name, settings, after, teams } }: { plan: Planned }) {
+function ToCome({ plan }: { plan: Planned }) {
+  const { stage, format: name, settings, after, draw, teams } = plan;
+  const follows = draw === "organiser" ? "contest.plannedByHand" : "contest.plannedAfter";
   return (
     <section class="stage" aria-labelledby={`title-${stage}`}>
       <h2 id={`title-${stage}`}>
         {stageTitle(stage)} <small>{format(name, settings?.games)}</small>
       </h2>
       <p class="muted">
-        {after ? t("contest.plannedAfter", { stage: stageTitle(after) }) : t("contest.planned")}{" "}
+        {after ? t(follows, { stage: stageTitle(after) }) : t("contest.planned")}{" "}
         {!!teams && t("contest.best", { count: teams })}
       </p>
     </section>

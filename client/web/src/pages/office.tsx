@@ -6,8 +6,8 @@ import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
-import { CloseDialog } from "./office/closing";
-import { ApproveDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
+import { CloseDialog, DrawDialog } from "./office/closing";
+import { ApproveDialog, DeclineDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
 import { Entries } from "./office/entries";
 import { Head } from "./office/head";
 import { MoveDialog } from "./office/moving";
@@ -54,9 +54,11 @@ export default function Office() {
         )}
       </main>
       {over?.is === "close" && view && <CloseDialog organiser={organiser} view={view} />}
+      {over?.is === "draw" && view && <DrawDialog organiser={organiser} view={view} />}
       {over?.is === "team" && <TeamDialog organiser={organiser} team={over.team} />}
       {over?.is === "leave" && <LeaveDialog organiser={organiser} team={over.team} />}
       {over?.is === "approve" && <ApproveDialog organiser={organiser} team={over.team} />}
+      {over?.is === "decline" && <DeclineDialog organiser={organiser} team={over.team} />}
       {over?.is === "move" && view && (
         <MoveDialog organiser={organiser} view={view} pairing={over.pairing} />
       )}

@@ -22,6 +22,7 @@ import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
 import { Cameras, cameraKeys } from "./watch/cameras";
 import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
+import { EventCard, useBetween } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 
@@ -65,6 +66,7 @@ export default function Watch() {
   const hud = flag("hud", true);
   const beside = !isNarrow.value && panel.value && hud;
   const opening = useOpening(court);
+  const isShown = court.begun.value || !court.directed;
   const inset = !hud
     ? {}
     : isNarrow.value
@@ -85,7 +87,7 @@ export default function Watch() {
       </div>
       {!court.begun.value && <Waiting />}
       {hud && <Hud />}
-      {hud && (isNarrow.value || panel.value) && <Panel />}
+      {hud && isShown && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
       <CornerSettings />
     </main>
@@ -94,6 +96,7 @@ export default function Watch() {
 
 function Hud() {
   const match = shownMatch.value;
+  const between = useBetween(court) && court.directed;
   return (
     <>
       <div class="top">
@@ -120,13 +123,16 @@ function Hud() {
         <LatestResults court={court} />
       </div>
       <div class="before">
-        <OpeningCard match={court} />
+        {court.begun.value &&
+          (between ? <EventCard court={court} /> : <OpeningCard match={court} />)}
       </div>
       <div class="lower">
         <Thirds match={court} />
       </div>
       <div class="foot">
-        <Cameras camera={camera} sheet={court.sheet.value} />
+        {(court.begun.value || !court.directed) && (
+          <Cameras camera={camera} sheet={court.sheet.value} />
+        )}
       </div>
     </>
   );
@@ -179,8 +185,15 @@ function Panel() {
   );
 }
 
-/** Shown before the first frame; the banner says what the page waits for. */
+/** Shown before the first frame; if something is wrong, the banner says it. */
 function Waiting() {
+  if (court.directed) {
+    return (
+      <div class="waiting calm">
+        <EventCard court={court} />
+      </div>
+    );
+  }
   return (
     <div class="waiting">
       <h1>LACOC</h1>

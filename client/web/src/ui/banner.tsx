@@ -14,12 +14,19 @@ export function waitsForGateway({ open, attempt, refused }: SocketState): string
   return attempt > 1 ? t("link.page", { attempt }) : t("link.connecting");
 }
 
+/** A sentence that says when the director begins; "" without one, and once it has begun. */
+export function directorBegins(court: Court): string {
+  const seconds = court.programme.value?.begins_s ?? 0;
+  return seconds > 0 ? t("director.begins", { seconds }) : "";
+}
+
 /** A sentence that says what the page waits for; "" if it waits for nothing. */
 export function waitsFor(court: Court): string {
-  const waits = waitsForGateway(court.connection.state.value);
-  if (waits) return waits;
-  const seconds = court.programme.value?.begins_s ?? 0;
-  if (seconds > 0) return t("director.begins", { seconds });
+  return waitsForGateway(court.connection.state.value) || directorBegins(court) || troubleOf(court);
+}
+
+/** A sentence that says what is wrong with the court that is shown; "" if nothing is. */
+function troubleOf(court: Court): string {
   const link = court.link.value;
   if (link && !link.connected) {
     const seconds = Math.round(link.silent_s);
@@ -75,7 +82,8 @@ export function LinkBanner({ court }: { court: Court }) {
       </Banner>
     );
   }
-  const text = waitsFor(court);
+  // That the director has not begun yet is no trouble: the page says it more calmly.
+  const text = waitsForGateway(court.connection.state.value) || troubleOf(court);
   if (!text) return null;
   return over ? <Banner calm>{t("link.over")}</Banner> : <Banner>{text}</Banner>;
 }

@@ -1,15 +1,18 @@
-"""Decide about a match, after showing what that changes."""
+"""Decide about a match, take a team out or draw a stage, after showing what that changes."""
 
 import sys
+from collections.abc import Iterable
 from typing import Annotated, Literal
 
 import typer
 
-from lacoc_server.commands.contest.playing import Contest
+from lacoc_server.commands.contest.playing import Contest, Reason, Team
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import render, say
+from lacoc_shared.words import Phrase, render, say
+
+Yes = Annotated[bool, typer.Option("--yes", help="Do it without asking.")]
 
 
 def decide(
@@ -28,10 +31,8 @@ def decide(
     score: Annotated[
         str, typer.Option(metavar="L:R", help="Points of the left and of the right seat.")
     ] = "",
-    reason: Annotated[
-        str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
-    ] = "",
-    yes: Annotated[bool, typer.Option("--yes", help="Do it without asking.")] = False,
+    reason: Reason = "",
+    yes: Yes = False,
     contest: Contest = FILE,
 ) -> None:
     """Decide about a match: show what the decision changes, ask, then append it to the facts.
@@ -56,13 +57,71 @@ def decide(
     with FactStore(ContestFolder(contest).facts) as store:
         facts = store.facts()
         fact = deciding.decision(compute(facts, FORMATS), wanted)
-        for line in deciding.effect(facts, [fact]):
-            screen.show(line)
-        if not yes and not (sys.stdin.isatty() and typer.confirm(render(say("decide.sure")))):
-            screen.note(say("decide.not-done"))
+        if not wanted_so(deciding.effect(facts, [fact]), yes):
             return
         store.append(fact)
     screen.show(say("decide.done"))
+
+
+def withdraw(
+    team: Team,
+    contest: Contest = FILE,
+    reason: Reason = "",
+    disqualify: Annotated[
+        bool, typer.Option("--disqualify", help="Expel the team: it is ranked last.")
+    ] = False,
+    yes: Yes = False,
+) -> None:
+    """Take a team out of the contest: show what that changes, ask, then do it.
+
+    What the team has played counts, and opponents win the rest.
+    """
+    from lacoc_server.contest import organiser
+    from lacoc_server.contest.desk import deciding
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.kept.store import FactStore
+    from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.formats.installed import FORMATS
+
+    with FactStore(ContestFolder(contest).facts) as store:
+        facts = store.facts()
+    more = organiser.leaving(compute(facts, FORMATS), team, reason, disqualified=disqualify)
+    if more and not wanted_so(deciding.effect(facts, more), yes):
+        return
+    screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify))
+
+
+def draw(contest: Contest = FILE, yes: Yes = False) -> None:
+    """Draw the stage that waits for you: show its teams, ask, then draw it.
+
+    A stage with draw = "organiser" in the contest file waits when the stage before it is over.
+    Until you draw it, results before it can still be corrected.
+    """
+    from lacoc_server.contest import organiser
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.kept.store import FactStore
+    from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.formats.installed import FORMATS
+
+    with FactStore(ContestFolder(contest).facts) as store:
+        shown = organiser.drawing(compute(store.facts(), FORMATS))
+        if wanted_so([say("contest.to-draw", stage=shown.stage, teams=shown.entries)], yes):
+            screen.show(organiser.draw(store, shown))
+
+
+def wanted_so(effect: Iterable[Phrase], yes: bool) -> bool:
+    """Show what a decision changes, and ask for it; without a terminal, the answer is no.
+
+    Args:
+        effect: what it changes.
+        yes: do not ask; the answer is yes.
+    """
+    for line in effect:
+        screen.show(line)
+    if yes or (sys.stdin.isatty() and typer.confirm(render(say("decide.sure")))):
+        return True
+    screen.note(say("decide.not-done"))
+    return False
 
 
 def _scores(score: str) -> tuple[int, int] | None:

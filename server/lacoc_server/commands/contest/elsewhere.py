@@ -50,7 +50,7 @@ def courts(
     with ExitStack() as stack:
         logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-courts-")))
         for name in chosen:
-            opened = venue.court(where, name, logs / name, speed, here=False)
+            opened = venue.court(where, name, logs / name, speed, screen.note, here=False)
             screen.show(say("contest.court-runs", court=name, at=stack.enter_context(opened)))
         while True:
             time.sleep(1)

@@ -1,5 +1,6 @@
 """Enter teams, play the matches of a contest, and print its standings."""
 
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from lacoc_server.contest.kept.sheet_writer import Progress
     from lacoc_server.contest.live.run import Opened
     from lacoc_server.contest.sheet import ContestSheet
+    from lacoc_shared.words import Phrase
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
 
@@ -21,14 +23,14 @@ Contest = Annotated[
     Path,
     typer.Option("--contest", envvar="LACOC_CONTEST", metavar="FILE", help="The contest file."),
 ]
-_Team = Annotated[str, typer.Argument(metavar="TEAM", help="Name of the team.")]
-_Reason = Annotated[
+Team = Annotated[str, typer.Argument(metavar="TEAM", help="Name of the team.")]
+Reason = Annotated[
     str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
 ]
 
 
 def enter(
-    team: _Team,
+    team: Team,
     folder: Annotated[
         Path | None,
         typer.Argument(
@@ -42,7 +44,7 @@ def enter(
         typer.Option(metavar="BOT", help="The bot that plays: an installed one, or your_bot.py."),
     ] = "",
     contest: Contest = FILE,
-    reason: _Reason = "",
+    reason: Reason = "",
 ) -> None:
     """Enter a team with its files; they are weighed in at once, and frozen.
 
@@ -66,20 +68,6 @@ def _tell_found(handed: "HandedIn") -> None:
         screen.warn(note)
     if handed.made and handed.gaits.postures is not None:
         screen.note(say("contest.made-level-b", file=handed.gaits.postures.name))
-
-
-def withdraw(
-    team: _Team,
-    contest: Contest = FILE,
-    reason: _Reason = "",
-    disqualify: Annotated[
-        bool, typer.Option("--disqualify", help="Expel the team: it is ranked last.")
-    ] = False,
-) -> None:
-    """Take a team out of the contest: what it has played counts, and opponents win the rest."""
-    from lacoc_server.contest import organiser
-
-    screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify))
 
 
 def run(
@@ -187,11 +175,17 @@ def _live(
         opened,
         changed,
         screen.note,
+        news=(lambda _: None) if json else _tell_news,
         speed=speed,
         listen=listen,
         show=browser,
         entering=entries,
     )
+
+
+def _tell_news(what: "Phrase") -> None:
+    """Print what has happened in the contest, with the time of day."""
+    screen.show(f"{datetime.now():%H:%M} {render(what)}", screen.stderr)
 
 
 def standings(file: FileToRead = FILE, json: options.Json = False) -> None:

@@ -105,6 +105,7 @@ settings.match.start = "ready"
 [stage.finals]
 format = "single-knockout"
 after = "groups"
+# draw = "organiser"       # wait until you draw it on /office; else it is drawn at once
 teams = 4                  # the best four of the groups
 games = 3                  # best of three, sides swapped after each game
 third_place = true

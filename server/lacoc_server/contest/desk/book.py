@@ -1,6 +1,5 @@
 """What the desk works on: the facts of a contest, the applications, and the teams' tokens."""
 
-import unicodedata
 from datetime import datetime
 
 from lacoc_server.contest.kept.applications import Applications
@@ -11,6 +10,7 @@ from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.organiser import name_form
 from lacoc_shared.messages.desk import EventInfo
 from lacoc_shared.mistakes import Mistake
 
@@ -76,7 +76,7 @@ class Book:
     def is_taken(self, name: str) -> bool:
         """Return whether a team that is in or waits has this name, or one that looks like it."""
         names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
-        return _look(name) in map(_look, names)
+        return name_form(name) in map(name_form, names)
 
     def note_refused(self, team: str, mistakes: tuple[Mistake, ...]) -> None:
         """Note what is wrong with the files that a team handed in last; () if nothing is."""
@@ -90,11 +90,3 @@ class Book:
 def milliseconds(when: datetime | None) -> int:
     """Return a time in milliseconds since 1970, UTC; 0 for None."""
     return 0 if when is None else round(1000 * when.timestamp())
-
-
-def _look(name: str) -> str:
-    """Return a form of a name; names that look alike have the same form.
-
-    Capitals become small letters, wide letters narrow ones, and several spaces one.
-    """
-    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())

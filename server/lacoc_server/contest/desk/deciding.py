@@ -40,7 +40,7 @@ class Wanted(NamedTuple):
 
 
 def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
-    """Say what further facts would change: matches, ranks, and that stages after them stay.
+    """Say what further facts would change: teams, matches, ranks, and that later stages stay.
 
     Args:
         facts: the facts of a contest, in their order.
@@ -53,7 +53,8 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     ]
     then = compute((*facts, *placed), FORMATS)
     found = changes(compute(facts, FORMATS), then)
-    lines: list[Phrase] = []
+    here = sum(not team.gone for team in then.teams)
+    lines = [say("decide.leaves", team=team, left=here) for team in found.leaving]
     for before, after in found.matches:
         match = after or before
         assert match is not None

@@ -22,6 +22,7 @@ from lacoc_shared.messages.desk import (
     CloseEntries,
     CourtDay,
     Decline,
+    Draw,
     Files,
     Look,
     Move,
@@ -106,7 +107,8 @@ class Desk:
             return self._organise(asked)
 
     def _organise(
-        self, asked: Overview | Approve | Decline | CloseEntries | TakeOut | Rule | Move | Tokens
+        self,
+        asked: Overview | Approve | Decline | CloseEntries | Draw | TakeOut | Rule | Move | Tokens,
     ) -> Answer:
         book = self._book
         match asked:
@@ -119,6 +121,8 @@ class Desk:
                 return organising.decline(book, asked.team)
             case CloseEntries():
                 return organising.close(book)
+            case Draw():
+                return organising.draw(book, asked)
             case TakeOut():
                 return organising.take_out(book, asked)
             case Rule():

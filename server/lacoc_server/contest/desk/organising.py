@@ -1,13 +1,14 @@
-"""What the organiser asks the desk: to approve, decline, close, take out, rule and move."""
+"""What the organiser asks the desk: to approve, decline, close, draw, take out, rule and move."""
 
 from collections.abc import Iterable
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest.desk import deciding
 from lacoc_server.contest.desk.book import Book
-from lacoc_server.contest.league.facts import AnyFact, Closed, Moved, new
+from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, Moved, new
 from lacoc_shared.messages.desk import (
     Approve,
+    Draw,
     Effect,
     Move,
     Rule,
@@ -66,6 +67,16 @@ def close(book: Book) -> Said:
     book.store.append(new(Closed))
     here = sum(not team.gone for team in book.contest.teams)
     return Said(said=(say("desk.closed", teams=here),))
+
+
+def draw(book: Book, asked: Draw) -> Said:
+    """Draw the stage that waits for the organiser.
+
+    Raises:
+        UserError: if none waits, or its teams are not those that the page shows.
+    """
+    shown = new(Drawn, stage=asked.stage, entries=asked.entries)
+    return Said(said=(organiser.draw(book.store, shown),))
 
 
 def take_out(book: Book, asked: TakeOut) -> Effect:

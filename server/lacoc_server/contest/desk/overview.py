@@ -10,10 +10,11 @@ from lacoc_server.contest.league import facts
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.fixture import fixture, match_fixture
+from lacoc_server.contest.league.schedule import waits_for_organiser
 from lacoc_server.contest.live.calling import LOST_MS
 from lacoc_server.contest.live.whereabouts import Known, starts
 from lacoc_shared import codec
-from lacoc_shared.messages.desk import CourtRow, Moved, OfficeView, Slot, TeamRow
+from lacoc_shared.messages.desk import CourtRow, Moved, OfficeView, Slot, TeamRow, ToDraw
 
 _STEP_MS = 60_000
 """Expected times are rounded up to this, so that the view does not change each time it is made."""
@@ -36,6 +37,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
         event=book.event,
         code=code,
         drawn=bool(contest.stages),
+        to_draw=_to_draw(contest),
         teams=tuple(_teams(book)),
         courts=tuple(
             CourtRow(court=court, here=known.pace.now_ms - seen.heard_ms < LOST_MS)
@@ -45,6 +47,11 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
     )
     version = codec.message_hash(codec.encode(made)).hex()
     return msgspec.structs.replace(made, version=version)
+
+
+def _to_draw(contest: Contest) -> ToDraw | None:
+    draw = waits_for_organiser(contest)
+    return None if draw is None else ToDraw(stage=draw.stage, entries=draw.entries)
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 
@@ -10,7 +10,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Planned, Settings, new
+from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_shared.contest.file import Contest
@@ -20,6 +20,10 @@ from lacoc_shared.words import say
 
 _USUAL_ARENA = "othello"
 _SETTINGS = Settings.__struct_fields__
+_DRAWS = get_args(Draw)
+_AT_ONCE = _DRAWS[0]
+_TEAMS_FOR_THIRD = 4
+"""With fewer teams, no two teams lose a semi-final."""
 
 
 class _Stage(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,6 +31,7 @@ class _Stage(msgspec.Struct, frozen=True, kw_only=True):
 
     format: str
     after: str = ""
+    draw: str = _AT_ONCE
     teams: int = 0
     arena: str = _USUAL_ARENA
     settings: dict[str, Any] = {}
@@ -48,7 +53,7 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
         wrong = None
         try:
             plan = _plan(name, table, contest.limits)
-            _check(plan, [one.stage for one in found])
+            _check(plan, {one.stage: one for one in found})
             game(plan)
         except msgspec.ValidationError as error:
             where, said = place_and_words(error)
@@ -101,12 +106,15 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         known = [*_Stage.__struct_fields__, *_SETTINGS]
         raise UserError(say("contest.stage-entry", entry=text_of(unknown[0]), known=known))
     stage = msgspec.convert(own, _Stage)
+    if stage.draw not in _DRAWS:
+        raise UserError(say("contest.stage-draw", draw=text_of(stage.draw), known=[*_DRAWS]))
     plan = new(
         Planned,
         stage=name,
         format=stage.format,
         settings=msgspec.convert(rest, Settings),
         after=stage.after,
+        draw=stage.draw,
         teams=stage.teams,
         arena=stage.arena,
         arena_settings=stage.settings,
@@ -115,19 +123,32 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     return msgspec.convert(msgspec.to_builtins(plan), Planned)  # checks the lengths and patterns
 
 
-def _check(plan: Planned, before: list[str]) -> None:
-    """Check what a plan names.
+def _check(plan: Planned, before: Mapping[str, Planned]) -> None:
+    """Check what a plan names, and that its settings fit each other.
+
+    Args:
+        plan: the plan of a stage.
+        before: the plans of the stages before it, by name.
 
     Raises:
-        UserError: at the first name that is not known.
+        UserError: at the first name that is not known, or the first setting that does not fit.
     """
     if plan.format not in FORMATS:
         raise UserError(say("league.unknown-format", format=plan.format, known=[*FORMATS]))
     if plan.after and plan.after not in before:
-        raise UserError(say("contest.stage-after", after=plan.after, before=before or None))
+        raise UserError(say("contest.stage-after", after=plan.after, before=[*before] or None))
+    most = _most_teams(plan, before)
+    if plan.settings.third_place and 0 < most < _TEAMS_FOR_THIRD:
+        raise UserError(say("contest.no-third-place", teams=most, least=_TEAMS_FOR_THIRD))
     for code in plan.settings.tie_breaks:
         if code not in TIE_BREAKS:
             raise UserError(say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS]))
+
+
+def _most_teams(plan: Planned, before: Mapping[str, Planned]) -> int:
+    """Return how many teams a stage has at most; 0: that is not known before they enter."""
+    earlier = _most_teams(before[plan.after], before) if plan.after else 0
+    return min(filter(None, (plan.teams, earlier)), default=0)
 
 
 def _content(plan: Planned) -> Planned:

@@ -11,11 +11,13 @@ from lacoc_server.contest.league.facts import (
     Closed,
     Moved,
     NoShow,
+    OfDecision,
     OfMatch,
     Planned,
     Played,
     Recalled,
     Replaced,
+    decisions,
     ordered,
 )
 from lacoc_server.contest.league.formats.format import Format, Pair, Stage
@@ -96,9 +98,16 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Games that are on a court now."""
     moves: tuple[Moved, ...]
     """The newest move of each match that was moved, in the order in which they were made."""
+    decisions: tuple[OfDecision, ...]
+    """What people decided, in the order in which they did."""
     ended_ms: dict[str, tuple[str, int]]
     """By team: the pairing of its newest game, and when that ended."""
     unused: tuple[Unused, ...]
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing is left to play or to draw."""
+        return not self.planned and all(view.over for view in self.stages)
 
     def stage(self, name: str) -> StageView:
         """Return a stage.
@@ -120,6 +129,8 @@ class Changes(msgspec.Struct, frozen=True, kw_only=True):
     """Each match that has other teams, another state or another winner: before and after."""
     ranks: tuple[tuple[str, str, int, int], ...]
     """Each team with another rank: stage, team, rank before and after."""
+    leaving: tuple[str, ...]
+    """The teams that play no more."""
 
 
 def changes(before: Contest, after: Contest) -> Changes:
@@ -135,7 +146,14 @@ def changes(before: Contest, after: Contest) -> Changes:
         ranks=tuple(
             (*key, old[key], new[key]) for key in old if key in new and old[key] != new[key]
         ),
+        leaving=tuple(
+            team.name for team in after.teams if team.gone and team.name in _here(before)
+        ),
     )
+
+
+def _here(contest: Contest) -> set[str]:
+    return {team.name for team in contest.teams if not team.gone}
 
 
 def _by_pairing(contest: Contest) -> dict[str, Match]:
@@ -187,6 +205,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         planned=tuple(planned),
         running=_running(known, matches),
         moves=_moves(known),
+        decisions=decisions(known),
         ended_ms=_ended(known),
         unused=tuple(
             Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused

@@ -17,6 +17,9 @@ VERSION = 1
 """Version of the layout of facts."""
 
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
+Draw = Literal["at-once", "organiser"]
+"""When a stage is drawn: as soon as its teams are known, or when the organiser says so after that.
+Without a network nobody can say it, and all stages are drawn at once."""
 Outcome = Literal["left", "right", "draw", "void"]
 """Who won a game, by seat. "void": the game counts for nobody and must be played again."""
 
@@ -103,6 +106,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     settings: Settings = Settings()
     after: str = ""
     """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
+    draw: Draw = "at-once"
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""
     arena: str = ""
@@ -211,6 +215,8 @@ class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
     """It is not called before this time, in milliseconds since 1970, UTC."""
 
 
+OfDecision = Withdrawn | Disqualified | FilesChanged | NoShow | Replaced | Replay | Voided
+"""What people decide, with a reason; no record can prove it."""
 OfTeam = Entered | Closed | Withdrawn | Disqualified | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Drawn | RoundDrawn
@@ -223,6 +229,21 @@ _Kind = TypeVar("_Kind", bound=Fact)
 def new(kind: type[_Kind], **values: Any) -> _Kind:
     """Make a fact that has no place among the facts yet; a store gives it one."""
     return kind(id="new", number=0, **values)
+
+
+def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:
+    """Return what people decided; other files are a decision once entries are closed.
+
+    Args:
+        facts: in their order.
+    """
+    found: list[OfDecision] = []
+    closed = False
+    for fact in facts:
+        closed = closed or isinstance(fact, Closed)
+        if isinstance(fact, OfDecision) and (closed or not isinstance(fact, FilesChanged)):
+            found.append(fact)
+    return tuple(found)
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True):

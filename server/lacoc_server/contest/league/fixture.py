@@ -5,6 +5,23 @@ from lacoc_server.contest.league.matches import Match
 from lacoc_shared.words import Phrase, say
 
 
+def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
+    """Say what a match or a game is, as `fixture` does; the id of a pairing that is not there now.
+
+    Args:
+        contest: the contest.
+        pairing: id of the match's pairing.
+        game: number of the game in its match, from 1; 0: the match is meant.
+    """
+    for view in contest.stages:
+        for match in view.matches:
+            if match.pairing.id == pairing:
+                if game:
+                    return fixture(contest, view, match, game)
+                return match_fixture(contest, view, match)
+    return say("fixture.named", name=pairing)
+
+
 def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phrase:
     """Say what a game is in its contest: "Semi-final 1, game 2 of 3".
 

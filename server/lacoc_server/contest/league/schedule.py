@@ -104,7 +104,7 @@ def rested_ms(contest: Contest, match: Match, least_rest_ms: int) -> int:
 
 
 def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | RoundDrawn | None:
-    """Return the next draw; None: nothing can be drawn now.
+    """Return the next draw that is possible; None: nothing can be drawn now.
 
     Before the first draw, entries are closed.
 
@@ -116,13 +116,24 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | Rou
         if view.may_draw:
             pairs = next_round(contest, view.name, formats)
             return new(RoundDrawn, stage=view.name, round=len(view.stage.drawn) + 1, pairs=pairs)
-    for plan in contest.planned:
-        if (teams := _teams(contest, plan)) is not None:
-            if not contest.closed:
-                return new(Closed)
-            return new(Drawn, stage=plan.stage, entries=teams)
+    draw = _next_stage(contest)
+    return draw if draw is None or contest.closed else new(Closed)
+
+
+def waits_for_organiser(contest: Contest) -> Drawn | None:
+    """Return the draw that only the organiser can make now; None: there is none."""
+    if not (contest.closed and contest.planned and contest.planned[0].draw == "organiser"):
         return None
-    return None
+    return _next_stage(contest)
+
+
+def _next_stage(contest: Contest) -> Drawn | None:
+    """Return the draw of the next stage; None: there is none, or its teams are not known yet."""
+    if not contest.planned:
+        return None
+    plan = contest.planned[0]
+    teams = _teams(contest, plan)
+    return None if teams is None else new(Drawn, stage=plan.stage, entries=teams)
 
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:

@@ -32,6 +32,8 @@ class Seen(NamedTuple):
     """Whether the match has begun to be played."""
     ended: Ended | None = None
     """How the match ended; None: it has no official end."""
+    there: bool = False
+    """Whether the court answers now."""
 
 
 def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:

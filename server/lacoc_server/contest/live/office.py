@@ -16,7 +16,7 @@ from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import due
+from lacoc_server.contest.league.schedule import due, waits_for_organiser
 from lacoc_server.contest.live.calling import Ended, Seen, calls, results, taken_back, wanted
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.teller import Teller
@@ -85,7 +85,7 @@ class Office:
     @property
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
-        return not self.contest.planned and all(view.over for view in self.contest.stages)
+        return self.contest.over
 
     def connect(self, court: str, link: CourtLink, address: str) -> None:
         """Use another connection to a court from now on.
@@ -113,7 +113,7 @@ class Office:
         self.contest = self._compute()  # another program may have appended facts
         refused = self._answers()
         self._append(lambda contest: [*refused, *results(contest, seen)])
-        while self._may_draw(now_ms) and due(self.contest, FORMATS) is not None:
+        while self._may_draw(now_ms) and _draws(self.contest):
             self._append(_draws)
         self._append(lambda contest: taken_back(contest, seen, now_ms))
         self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
@@ -143,7 +143,8 @@ class Office:
             left, right = result.scores
             who = outcome(_SEATS, result.outcome)
             ended = Ended((left, right), who, f"{result.match_id}.mcap")
-        return Seen(self._heard_ms[name], link.call or "", link.phase in _BEGUN, ended)
+        begun, there = link.phase in _BEGUN, link.is_there
+        return Seen(self._heard_ms[name], link.call or "", begun, ended, there)
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.
@@ -223,5 +224,6 @@ class Office:
 
 
 def _draws(contest: Contest) -> list[AnyFact]:
-    draw = due(contest, FORMATS)
+    """Return the next draw, if the office makes it by itself."""
+    draw = None if waits_for_organiser(contest) else due(contest, FORMATS)
     return [] if draw is None else [draw]

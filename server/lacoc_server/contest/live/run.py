@@ -21,6 +21,7 @@ from lacoc_server.contest.live import venue
 from lacoc_server.contest.live.away import AwayCourt
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
+from lacoc_server.contest.live.ticker import Ticker
 from lacoc_server.contest.organiser import prepare
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.contest.entrances import event_code, organiser_key
@@ -58,6 +59,7 @@ def play_live(
     progress: Progress,
     tell: Callable[[Phrase], None],
     *,
+    news: Callable[[Phrase], None] = lambda _: None,
     speed: float = 1.0,
     listen: str | None = None,
     show: bool = False,
@@ -72,7 +74,8 @@ def play_live(
         file: the contest file.
         opened: called when courts and pages are there.
         progress: told about each change.
-        tell: told what becomes of courts on other machines.
+        tell: told what somebody must know: a court that can't be opened, or that went on here.
+        news: told each thing that happens: a game that is called, a result, a court that is lost.
         speed: 2 plays twice as fast as real time.
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.
@@ -95,7 +98,7 @@ def play_live(
         store = stack.enter_context(FactStore(where.facts))
         prepare(where, store, entering=entering)
         logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-contest-")))
-        run_here = partial(_run_here, where, logs, speed)
+        run_here = partial(_run_here, where, logs, speed, tell)
         addresses: dict[str, str] = {}
         told: dict[str, str] = {}
         links: dict[str, CourtLink | None] = dict.fromkeys(where.contest.courts)
@@ -122,6 +125,7 @@ def play_live(
         bots = stack.enter_context(venue.Bots(where, tokens))
         writer = SheetWriter(where, progress)
         writer(office.contest)
+        ticker = Ticker(office.facts)
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
         opened(Opened(url, addresses, f"{url}/office#organiser={key}", code))
         over_s = math.inf  # when the contest was over, as far as is known
@@ -130,20 +134,22 @@ def play_live(
             office.step()
             now_s = time.monotonic()
             over_s = min(over_s, now_s) if office.over else math.inf
-            for one in away:
-                one.step(office, closing=now_s - over_s > shown_s)
+            for elsewhere in away:
+                elsewhere.step(office, closing=now_s - over_s > shown_s)
             writer(office.contest)
             bots.follow(office.contest)
+            for line in ticker.newest(office.contest, office.facts, office.known):
+                news(line)
             if not entering and _farewell_over(now_s - over_s, away):
                 return writer.write()
             time.sleep(_STEP_S)
 
 
 def _run_here(
-    where: ContestFolder, logs: Path, speed: float, name: str
+    where: ContestFolder, logs: Path, speed: float, tell: Callable[[Phrase], None], name: str
 ) -> AbstractContextManager[str]:
     """Return a context manager that runs a court on this machine, and gives its address."""
-    return venue.court(where, name, logs / name, speed, here=True)
+    return venue.court(where, name, logs / name, speed, tell, here=True)
 
 
 def _farewell_over(passed_s: float, away: Sequence[AwayCourt]) -> bool:

@@ -3,19 +3,19 @@
 import math
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.tokens import TeamTokens
-from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.contest import Contest as Computed
 from lacoc_shared.command.child import apart, command_line, kept_child
-from lacoc_shared.contest.file import Court
+from lacoc_shared.contest.file import Contest, Court
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.address import own_address
-from lacoc_shared.words import say
+from lacoc_shared.network.address import check_free, endpoint, own_address
+from lacoc_shared.words import Phrase, say
 
 _END_S = 5.0
 _ADDRESS_S = 20.0
@@ -26,11 +26,17 @@ _AGAIN_S = 5.0
 
 @contextmanager
 def court(
-    where: ContestFolder, name: str, folder: Path, speed: float, *, here: bool
+    where: ContestFolder,
+    name: str,
+    folder: Path,
+    speed: float,
+    tell: Callable[[Phrase], None],
+    *,
+    here: bool,
 ) -> Iterator[str]:
     """Run a court of the contest until the block ends; give its address.
 
-    A court that ends is started again: it goes on with its match. If its address is taken, it is
+    A court that ends is started again: it goes on with its match. If it can't be opened, it is
     tried again for some seconds: if an office was killed, its courts may hold their addresses for
     some seconds more.
 
@@ -39,6 +45,7 @@ def court(
         name: the court's name.
         folder: folder for what the process prints; it is made.
         speed: 2 plays twice as fast as real time.
+        tell: told why the court can't be opened yet, at the first try.
         here: True on the office's machine; False: on the machine that the contest file names for
             the court, if it names one.
 
@@ -50,20 +57,24 @@ def court(
     entry = where.contest.courts[name]
     if here and entry.elsewhere:
         words += ["--listen", entry.listen[0]]
-    again = _at_same_port(
-        words, entry.elsewhere if entry.elsewhere and not here else entry.listen[0]
-    )
+    listen = entry.listen[:1] if here and entry.elsewhere else entry.own_listen
     folder.mkdir(parents=True, exist_ok=True)
+    what = say("child.contest-court", court=name)
     end_s = time.monotonic() + _ADDRESS_S
+    is_told = False
     with ExitStack() as stack:
         while True:
-            what = say("child.contest-court", court=name)
             try:
+                _check_free(where.contest, name, listen)
+                again = _at_same_port(words, listen[0])
                 opened = stack.enter_context(kept_child(words, folder, what, again))
                 break
-            except UserError:
+            except UserError as error:
                 if time.monotonic() > end_s:
                     raise
+                if not is_told:
+                    tell(say("child.tried-again", why=error.phrase, seconds=_ADDRESS_S))
+                    is_told = True
                 time.sleep(_LOOK_S)
         yield opened["locators"][0]
 
@@ -103,6 +114,18 @@ def told_address(court: Court, opened: str) -> str:
     if court.host:
         return f"{court.listen[0].rpartition(':')[0]}:{port}"
     return f"{opened.partition('/')[0]}/{own_address()}:{port}"
+
+
+def _check_free(contest: Contest, name: str, listen: Sequence[str]) -> None:
+    """Check that a court can listen at its addresses, without the time that a process takes.
+
+    Raises:
+        UserError: if it can't; the message names the court, the port and what to do.
+    """
+    try:
+        check_free([endpoint(one, contest.protocol) for one in listen])
+    except UserError as error:
+        raise UserError(say("child.no-address", court=name, why=error.phrase)) from None
 
 
 def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], list[str]]:
@@ -150,7 +173,7 @@ class Bots:
         for process in (*self._playing.values(), *self._ending):
             _end(process)
 
-    def follow(self, contest: Contest) -> None:
+    def follow(self, contest: Computed) -> None:
         """Start the bots of teams that are called for the first time.
 
         A bot that ended too early is started again. A bot is ended if its team has other files now.

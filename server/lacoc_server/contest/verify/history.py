@@ -3,21 +3,16 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.decided import decided
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Closed,
-    Disqualified,
     Drawn,
     Entered,
     FilesChanged,
-    NoShow,
     Played,
-    Replaced,
-    Replay,
     RoundDrawn,
-    Voided,
-    Withdrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due
@@ -25,7 +20,6 @@ from lacoc_shared.words import Phrase, say
 
 OfFiles = Entered | FilesChanged
 """Facts that give a team its files."""
-_Decision = Withdrawn | Disqualified | NoShow | Replaced | Replay | Voided
 _HARMLESS = ("league.result-replaced", "league.result-unneeded", "league.other-teams")
 """Why facts of an honest contest may change nothing: a later decision has changed the bracket."""
 
@@ -48,22 +42,19 @@ def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase
 
 
 def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
-    """Yield what people decided; nothing can prove that they did, or that they were right."""
-    closed = False
-    for fact in facts:
-        closed = closed or isinstance(fact, Closed)
-        if isinstance(fact, _Decision) or (closed and isinstance(fact, FilesChanged)):
-            kind = str(fact.__struct_config__.tag)
-            teams = getattr(fact, "teams", None) or [getattr(fact, "team", "")]
-            pairing = getattr(fact, "pairing", None)
-            yield say(
-                "verify.decision",
-                fact=fact.id,
-                kind=kind,
-                teams=[*teams],
-                pairing=pairing,
-                reason=fact.reason or None,
-            )
+    """Yield what people decided; nothing can prove that they did, or that they were right.
+
+    Raises:
+        UserError: if the facts name a format or a tie-break that is not known here.
+    """
+    for one in decided(compute(facts, FORMATS)):
+        yield say(
+            "verify.decision",
+            fact=one.fact,
+            what=one.what,
+            pairing=one.pairing or None,
+            reason=one.reason or None,
+        )
 
 
 def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Iterator[Phrase]:

@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 1;
+export const VERSION = 2;
 
 export interface Team {
   name: string;
@@ -34,6 +34,7 @@ export interface Planned {
   format: string;
   settings?: Settings;
   after?: string;
+  draw?: "at-once" | "organiser";
   teams?: number;
   arena?: string;
   arena_settings?: Record<string, unknown>;
@@ -141,6 +142,14 @@ export interface Unused {
   why: Phrase;
 }
 
+export interface Decided {
+  fact: string;
+  at_ms: number;
+  what: Phrase;
+  pairing: string;
+  reason: string;
+}
+
 export interface Rating {
   team: string;
   elo: number;
@@ -163,6 +172,7 @@ export interface ContestSheet {
   planned: Planned[];
   running: Called[];
   coming: Coming[];
+  decided: Decided[];
   ratings: Rating[];
   side_elo: number;
   unused: Unused[];

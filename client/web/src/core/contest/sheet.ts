@@ -46,6 +46,21 @@ export function isOver(view: StageView): boolean {
   return view.rounds_to_draw === 0 && view.matches.every(isDecided);
 }
 
+/** How many teams take part, and the names of those that have left. */
+export function teamsOf({ teams }: ContestSheet): {
+  here: number;
+  gone: string[];
+  expelled: string[];
+} {
+  const expelled = teams.filter((team) => team.disqualified);
+  const gone = teams.filter((team) => team.withdrawn && !team.disqualified);
+  return {
+    here: teams.length - gone.length - expelled.length,
+    gone: gone.map(({ name }) => name),
+    expelled: expelled.map(({ name }) => name),
+  };
+}
+
 export function stateOf(sheet: ContestSheet): "waiting" | "running" | "over" {
   if (!sheet.stages.length) return "waiting";
   return !sheet.planned.length && sheet.stages.every(isOver) ? "over" : "running";
@@ -54,6 +69,23 @@ export function stateOf(sheet: ContestSheet): "waiting" | "running" | "over" {
 /** The games on the courts, in the order of the courts' names: court 2 comes before court 10. */
 export function running({ running }: ContestSheet): Called[] {
   return running.toSorted((a, b) => a.court.localeCompare(b.court, "en", { numeric: true }));
+}
+
+/** A game that is on a court or can be played next. */
+export interface NextGame {
+  pairing: string;
+  game: number;
+  teams: [string, string];
+  /** The court that it was given to; "" if none yet. */
+  court: string;
+}
+
+/** The first games that are on courts or come next, at most so many. */
+export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
+  const games = [...running(sheet), ...sheet.coming.map((one) => ({ ...one, court: "" }))];
+  return games
+    .slice(0, most)
+    .map(({ pairing, game, teams, court }) => ({ pairing, game, teams, court }));
 }
 
 /** Whoever has won the contest: first in the only table of its last stage. */

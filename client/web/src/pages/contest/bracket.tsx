@@ -21,6 +21,8 @@ const BOX = { width: 216, height: 56 };
 const STEP = { x: BOX.width + 44, y: BOX.height + 14 };
 const HEAD = 34;
 const PAD = 4;
+/** Height of a note below a box: its line, with the parts of letters below that. */
+const NOTE = 16;
 const NAME_EM = 11;
 const FROM_EM = 14.5;
 const POINTS_WIDTH = 34;
@@ -36,7 +38,7 @@ interface Props {
 export function BracketView({ sheet, view, cut }: Props) {
   const made = bracket(view, cut);
   const width = made.columns * STEP.x - (STEP.x - BOX.width) + 2 * PAD;
-  const height = HEAD + made.rows * STEP.y + PAD;
+  const height = HEAD + made.rows * STEP.y - (STEP.y - BOX.height) / 2 + NOTE;
   return (
     <svg
       class="bracket"
@@ -150,7 +152,7 @@ function MatchBox({ sheet, view, box }: BoxProps) {
         </a>
       )}
       {note && (
-        <text class="note" x={BOX.width} y={BOX.height + 11}>
+        <text class="note" x={BOX.width} y={BOX.height + 12}>
           {fit(note, 20)}
         </text>
       )}

@@ -7,8 +7,9 @@ import {
   currentStage,
   progress,
   stateOf,
+  teamsOf,
 } from "../../core/contest/sheet";
-import { t } from "../../i18n";
+import { said, t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
 import { Settings } from "../../ui/settings";
 import { TeamLink } from "./parts";
@@ -55,9 +56,13 @@ export function Head({ sheet }: { sheet: ContestSheet }) {
 export function Standing({ sheet }: { sheet: ContestSheet }) {
   const state = stateOf(sheet);
   const current = state === "running" ? currentStage(sheet) : null;
+  const { here, gone, expelled } = teamsOf(sheet);
+  const listed = (teams: string[]) => teams.join(said({ code: "join.comma" }));
   const parts = [
     current && `${stageTitle(current.stage.name)} (${format(current.plan.format)})`,
-    t("contest.teamCount", { count: sheet.teams.length }),
+    t("contest.teamCount", { count: here }),
+    gone.length > 0 && t("contest.gone", { teams: listed(gone) }),
+    expelled.length > 0 && t("contest.expelled", { teams: listed(expelled) }),
     state !== "waiting" && t("contest.progress", progress(sheet)),
   ];
   return (
@@ -95,6 +100,7 @@ export function Parts({ sheet }: { sheet: ContestSheet }) {
         </a>
       ))}
       <a href="#teams">{t("contest.teams")}</a>
+      {sheet.decided.length > 0 && <a href="#decisions">{t("contest.decisions")}</a>}
     </nav>
   );
 }

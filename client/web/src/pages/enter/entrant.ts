@@ -27,6 +27,8 @@ export class Entrant {
   /** Why the last files or the last secret were refused. */
   readonly why = signal<Phrase | null>(null);
   readonly mistakes = signal<readonly Mistake[]>([]);
+  /** Whether files have just been taken or refused, and nobody was led to the answer yet. */
+  readonly answered = signal<"taken" | "refused" | null>(null);
 
   constructor() {
     const given = filesOf(location.hash);
@@ -78,11 +80,13 @@ export class Entrant {
       const files = chosenFiles();
       checkSizes(Object.values(files));
       await this.take(await this.desk.ask<OwnEntry>(request(files)));
+      this.answered.value = "taken";
       return true;
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
       this.why.value = error.why;
       this.mistakes.value = error.mistakes;
+      this.answered.value = "refused";
       return false;
     } finally {
       this.isWeighing.value = false;

@@ -1,6 +1,7 @@
 /** The form with which a team enters, and the card of a team that has entered. */
 
 import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
 import { type EventInfo, type OwnEntry, pictureUrl } from "../../core/desk";
 import { said, t } from "../../i18n";
 import { Mistakes } from "../../ui/mistakes";
@@ -81,11 +82,12 @@ interface CardProps extends Props {
 export function EntryCard({ entrant, entry }: CardProps) {
   const { event, team, state, files } = entry;
   const link = entrant.link.value;
+  const answer = useAnswer(entrant, "taken");
   return (
     <section aria-labelledby="entry-title" data-state={state}>
       <p class="muted">{event.name}</p>
       <h1 id="entry-title">{team}</h1>
-      <p role="status" class="state">
+      <p ref={answer} role="status" class="state" tabIndex={-1}>
         {t(`enter.state.${state}`)}
       </p>
       {files && (
@@ -141,14 +143,27 @@ function Until({ event }: { event: EventInfo }) {
 function Refusal({ entrant }: Props) {
   const mistakes = entrant.mistakes.value;
   const why = entrant.why.value;
+  const answer = useAnswer(entrant, "refused");
   return (
     <div id="enter-why" class="why" role="alert">
       {why && (
-        <p>
+        <p ref={answer} tabIndex={-1}>
           {said(why)} {mistakes.length > 0 && t("enter.nothing")}
         </p>
       )}
       {mistakes.length > 0 && <Mistakes mistakes={mistakes} />}
     </div>
   );
+}
+
+/** Give the focus to the element with an answer when it comes, which also brings it into view. */
+function useAnswer(entrant: Entrant, which: "taken" | "refused") {
+  const element = useRef<HTMLParagraphElement>(null);
+  const answered = entrant.answered.value;
+  useEffect(() => {
+    if (answered !== which) return;
+    entrant.answered.value = null;
+    element.current?.focus();
+  }, [entrant, answered, which]);
+  return element;
 }

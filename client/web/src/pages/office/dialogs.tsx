@@ -91,6 +91,28 @@ export function ApproveDialog({ organiser, team }: Props) {
   );
 }
 
+/** The organiser turns an application or late files down; the dialog says what becomes of them. */
+export function DeclineDialog({ organiser, team }: Props) {
+  const row = organiser.view.value?.teams.find((one) => one.team === team);
+  if (!row) return null;
+  return (
+    <Dialog title={t("office.declineOf", { team })} onClose={() => organiser.close()}>
+      <div class="asks">
+        <p>{t(row.state === "late" ? "office.decline.late" : "office.decline.text")}</p>
+        <button
+          class="button danger"
+          type="button"
+          onClick={async () => {
+            if (await organiser.do({ do: "decline", team })) organiser.close();
+          }}
+        >
+          {t("office.decline")}
+        </button>
+      </div>
+    </Dialog>
+  );
+}
+
 /** The organiser takes a team out; the dialog shows what that changes. */
 export function LeaveDialog({ organiser, team }: Props) {
   const reason = useSignal("");

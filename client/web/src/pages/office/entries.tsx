@@ -104,7 +104,9 @@ function Row({ organiser, row, open }: RowProps) {
             class="button quiet"
             type="button"
             aria-label={t("office.declineOf", { team })}
-            onClick={() => void organiser.do({ do: "decline", team })}
+            onClick={() => {
+              organiser.over.value = { is: "decline", team };
+            }}
           >
             {t("office.decline")}
           </button>

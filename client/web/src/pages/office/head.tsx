@@ -4,6 +4,7 @@ import { stateOf } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
 import { language, t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
+import { stageTitle } from "../contest/words";
 import { type Organiser, PAPERS, type Paper } from "./organiser";
 
 interface Props {
@@ -52,7 +53,18 @@ export function Head({ organiser, view, onSettings }: Props) {
               organiser.over.value = { is: "close" };
             }}
           >
-            {t("office.close")}
+            {t(organiser.closesOnly.value ? "office.closeOnly" : "office.close")}
+          </button>
+        )}
+        {view.to_draw && (
+          <button
+            class="button strong"
+            type="button"
+            onClick={() => {
+              organiser.over.value = { is: "draw" };
+            }}
+          >
+            {t("office.draw", { stage: stageTitle(view.to_draw.stage) })}
           </button>
         )}
         <label class="printing">

@@ -28,9 +28,11 @@ export type Over =
   | { is: "team"; team: string }
   | { is: "leave"; team: string }
   | { is: "approve"; team: string }
+  | { is: "decline"; team: string }
   | { is: "move"; pairing: string }
   | { is: "rule"; pairing: string }
   | { is: "close" }
+  | { is: "draw" }
   | { is: "paper"; paper: Paper };
 
 export const PAPERS = ["schedule", "results", "certificates", "links"] as const;
@@ -54,6 +56,8 @@ export class Organiser {
   readonly waiting = computed<readonly TeamRow[]>(
     () => this.view.value?.teams.filter(({ state }) => state === "waits" || state === "late") ?? [],
   );
+  /** Whether closing entries does not draw the first stage: the organiser does that afterwards. */
+  readonly closesOnly = computed(() => this.feed.sheet.value?.planned[0]?.draw === "organiser");
   private readonly key = organiserKey() ?? "";
   private timer = 0;
 

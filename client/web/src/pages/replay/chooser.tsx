@@ -4,8 +4,8 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import { type BadRecord, type Listed, listed, type Summary } from "../../core/record_files";
-import { language, type MessageName, t } from "../../i18n";
-import { seatName } from "../../i18n/words";
+import { type MessageName, t } from "../../i18n";
+import { dateTime, seatName } from "../../i18n/words";
 import { Icon } from "../../ui/icons";
 
 interface Props {
@@ -76,10 +76,7 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
                 )}
                 <span class="muted">
                   {file.match && `${file.match.title} · `}
-                  {new Date(file.match?.started ?? file.modified).toLocaleString(language.value, {
-                    dateStyle: "medium",
-                    timeStyle: "short",
-                  })}
+                  {dateTime(file.match?.started ?? file.modified)}
                   {" · "}
                   {file.match
                     ? t("replay.where", { court: file.match.court, number: file.match.number })

@@ -1,0 +1,73 @@
+"""What people decided in a contest, in words: "Semi-final 1: Bees did not come"; pure."""
+
+import msgspec
+
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import (
+    Disqualified,
+    FilesChanged,
+    NoShow,
+    OfDecision,
+    Replaced,
+    Replay,
+    Voided,
+    Withdrawn,
+)
+from lacoc_server.contest.league.fixture import named
+from lacoc_shared.words import Phrase, say
+
+
+class Decided(msgspec.Struct, frozen=True, kw_only=True):
+    """A decision of people."""
+
+    fact: str
+    at_ms: int
+    """When it was made, in milliseconds since 1970, UTC."""
+    what: Phrase
+    pairing: str = ""
+    """The match; "": it is about a team."""
+    reason: str
+
+
+def decided(contest: Contest) -> tuple[Decided, ...]:
+    """Say what people decided, in the order in which they did."""
+    return tuple(
+        Decided(
+            fact=fact.id,
+            at_ms=fact.at_ms,
+            what=_what(contest, fact),
+            pairing=getattr(fact, "pairing", ""),
+            reason=fact.reason,
+        )
+        for fact in contest.decisions
+    )
+
+
+def _what(contest: Contest, fact: OfDecision) -> Phrase:
+    match fact:
+        case Withdrawn():
+            return say("decided.withdrawn", team=fact.team)
+        case Disqualified():
+            return say("decided.disqualified", team=fact.team)
+        case FilesChanged():
+            return say("decided.files-changed", team=fact.team)
+        case NoShow():
+            said = named(contest, fact.pairing)
+            return say("decided.no-show", match=said, team=fact.team)
+        case Voided():
+            said = named(contest, fact.pairing)
+            return say("decided.voided", match=said, teams=fact.teams)
+        case Replay():
+            said = named(contest, fact.pairing, fact.game)
+            return say("decided.replay", match=said, teams=fact.teams)
+        case Replaced():
+            left, right = fact.teams
+            points, conceded = fact.scores
+            return say(
+                "decided.replaced",
+                match=named(contest, fact.pairing, fact.game),
+                left=left,
+                right=right,
+                points=points,
+                conceded=conceded,
+            )

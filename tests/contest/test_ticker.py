@@ -1,0 +1,103 @@
+"""Tests of what the terminal of an organiser says of a contest."""
+
+import sys
+from pathlib import Path
+from random import Random
+
+sys.path.append(str(Path(__file__).parents[1] / "league"))
+
+from chance_event import Event
+from cup import Cup
+
+from lacoc_server.contest.league.facts import (
+    Called,
+    Closed,
+    Drawn,
+    Planned,
+    Played,
+    Recalled,
+)
+from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.live.ticker import Ticker
+from lacoc_server.contest.live.whereabouts import Known, Pace
+from lacoc_shared.words import Phrase, render, say
+
+PACE = Pace(now_ms=0, game_ms=1, least_rest_ms=0)
+TEAMS = ("t001", "t002")
+
+
+class Terminal:
+    """The terminal of a contest's organiser."""
+
+    def __init__(self, event: Event) -> None:
+        self.event = event
+        self.seen: dict[str, Seen] = {}
+        self.held: dict[tuple[str, int], Phrase] = {}
+        self._ticker = Ticker(event.facts)
+
+    def lines(self) -> list[str]:
+        """Return the newest lines, in English."""
+        known = Known(self.seen, PACE, self.held)
+        said = self._ticker.newest(self.event.contest, self.event.facts, known)
+        return [render(one) for one in said]
+
+
+def test_a_contest_is_told_line_by_line() -> None:
+    """Each draw, call and result has a line, once; what was before the start has none."""
+    event = Event(2, 1, Random(1))
+    terminal = Terminal(event)
+    event.add(Closed)
+    event.begin("cup", "single-knockout", event.names, games=3)
+    assert terminal.lines() == [
+        "Entries are closed: 2 teams take part.",
+        "Stage cup is drawn: 2 teams.",
+    ]
+    about = {"pairing": "cup:w1.1", "game": 1, "teams": TEAMS}
+    event.add(Called, court="red", **about)
+    assert terminal.lines() == ["Court red: t001 – t002 is called. Final, game 1 of 3."]
+    event.add(Played, scores=(0, 0), outcome="void", **about)
+    event.add(Played, scores=(9, 4), outcome="left", **about)
+    assert terminal.lines() == [
+        "Void, to be played again: t001 – t002. Final, game 1 of 3.",
+        "Result: t001 9 : 4 t002. Final, game 1 of 3.",
+    ]
+    event.add(Played, **{**about, "game": 2, "scores": (9, 4), "outcome": "left"})
+    assert terminal.lines()[-1] == "The contest is over."
+    assert terminal.lines() == []
+
+
+def test_a_draw_that_waits_is_told() -> None:
+    """The organiser is told once which stage waits, and then that it is drawn."""
+    event = Event(2, 1, Random(1))
+    event.add(Planned, stage="cup", format="single-knockout", draw="organiser")
+    terminal = Terminal(event)
+    assert terminal.lines() == []
+    event.add(Closed)
+    assert "Stage cup waits for you" in terminal.lines()[-1]
+    assert terminal.lines() == []
+    event.add(Drawn, stage="cup", entries=tuple(event.names))
+    assert terminal.lines() == ["Stage cup is drawn: 2 teams."]
+
+
+def test_a_court_that_is_lost_and_comes_back_is_told() -> None:
+    """A court that was never there is not lost; one that is back is told once."""
+    terminal = Terminal(Cup())
+    terminal.seen = {"red": Seen(0), "blue": Seen(0, there=True)}
+    assert terminal.lines() == []
+    terminal.seen = {"red": Seen(0, there=True), "blue": Seen(0)}
+    assert terminal.lines() == ["Court blue does not answer any more."]
+    assert terminal.lines() == []
+    terminal.seen = {"red": Seen(0, there=True), "blue": Seen(0, there=True)}
+    assert terminal.lines() == ["Court blue is back."]
+
+
+def test_a_game_that_a_court_refuses_is_told() -> None:
+    """The line says why; a game that is only taken back has no line."""
+    cup = Cup()
+    terminal = Terminal(cup)
+    cup.add(Recalled, pairing="cup:a1.1", game=1, reason="moved")
+    terminal.held = {("cup:a1.1", 1): say("event.void")}
+    (line,) = terminal.lines()
+    assert line.startswith("The office holds this game back, because its court refuses it: cup")
+    assert line.endswith(render(say("event.void")))
+    assert terminal.lines() == []
