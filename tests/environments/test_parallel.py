@@ -143,7 +143,7 @@ def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path)
     assert result is not None
     env.reset(seed=8)
     assert result.scores == play(env, 8)[-1][4]["left"]["scores"]
-    with pytest.raises(UserError, match="exists"):
+    with pytest.raises(UserError, match=r"exists already.*another name"):
         env.write_record(tmp_path / "whole.mcap")
     with pytest.raises(UserError, match="mcap"):
         env.write_record(tmp_path / "record.txt")
