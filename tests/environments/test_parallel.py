@@ -334,10 +334,11 @@ def test_a_picture(env: LacocParallelEnv) -> None:
     assert env.render() is None
 
 
-def test_without_the_extra_the_error_says_what_to_install() -> None:
-    """Without the extra, importing the environments says which packages are missing."""
+@pytest.mark.parametrize("missing", ["mujoco", "pettingzoo"])
+def test_without_the_extra_the_error_says_what_to_install(missing: str) -> None:
+    """Without the extras, importing the environments says which packages are missing."""
     program = (
-        "import sys; sys.modules['pettingzoo'] = None\n"
+        f"import sys; sys.modules['{missing}'] = None\n"
         "from lacoc_shared.mistakes import UserError\n"
         "try:\n"
         "    import lacoc_server.simulate.environments\n"
@@ -345,4 +346,5 @@ def test_without_the_extra_the_error_says_what_to_install() -> None:
         "    print(error)\n"
     )
     told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert 'pip install "lacoc[server,rl]"' in told.stdout, told.stderr
+    assert f"need {missing}, which" in told.stdout, told.stderr
+    assert 'pip install "lacoc[server,rl]"' in told.stdout
