@@ -7,7 +7,7 @@ entry (docs/write-an-arena.md).
 
 import importlib
 import importlib.util
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any, Literal
@@ -23,7 +23,7 @@ from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import Colour, Pattern
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 _GROUP = "lacoc.arenas"
 _FILE = "arena.toml"
@@ -72,6 +72,31 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     game: dict[str, Any] = {}
 
 
+class _WrongSetting(UserError):
+    """An entry of the file, or of what replaces it, is wrong.
+
+    Args:
+        name: name of the arena.
+        where: place of the entry, such as "match.duration_s", or "".
+        error: what is wrong with it.
+        known: the entries that could be there; None if they are not known.
+    """
+
+    def __init__(
+        self, name: str, where: str, error: Phrase | str, known: Sequence[str] | None = None
+    ) -> None:
+        table, _, rest = where.partition(".")
+        if table == "game":
+            said = say("arena.wrong-game", name=name, where=rest or None, error=error)
+        else:
+            said = say("arena.wrong", name=name, where=where or None, error=error, known=known)
+        super().__init__(said)
+        self.replaced = say(
+            "arena.wrong-settings", name=name, where=where or None, error=error, known=known
+        )
+        """The sentence if the entry is not from the file, but replaces one of the file."""
+
+
 class Arena:
     """An arena as it is played: its file with the contest's overrides, and its rules."""
 
@@ -96,23 +121,18 @@ class Arena:
             file = msgspec.convert(settings, _File)
         except msgspec.ValidationError as error:
             where, wrong = place_and_words(error)
-            raise UserError(
-                say("arena.wrong", name=name, where=where or None, error=wrong)
-            ) from None
+            raise _WrongSetting(name, where, wrong, _entries(where, wrong)) from None
         try:
             self.game: AnyGame = self._make(file.game)
         except msgspec.ValidationError as error:
             where, wrong = place_and_words(error)
-            raise UserError(
-                say("arena.wrong-game", name=name, where=where or None, error=wrong)
-            ) from None
+            raise _WrongSetting(name, f"game.{where}".rstrip("."), wrong) from None
         except ValueError as error:
-            said = say("arena.wrong-game", name=name, where=None, error=str(error))
-            raise UserError(said) from None
+            raise _WrongSetting(name, "game", str(error)) from None
         ids = [seat.id for seat in file.seat]
         if len(ids) != len(self.game.starts) or len(set(ids)) != len(ids):
             needed = len(self.game.starts)
-            raise UserError(say("arena.wrong-seats", name=name, needed=needed, found=ids))
+            raise _WrongSetting(name, "", say("arena.seats-needed", needed=needed, found=ids))
         self.title = file.title
         self.match = file.match
         self.seats = file.seat
@@ -169,7 +189,7 @@ def load(
         looks: by seat, the `colour` and `pattern` of its team (rules 4).
 
     Raises:
-        UserError: if there is no such arena or its file is wrong.
+        UserError: if there is no such arena, or its file or an override is wrong.
     """
     module = plugins.package(_GROUP, "arena", name)
     _require_whole(module)
@@ -182,10 +202,17 @@ def load(
     except BadToml as error:
         raise UserError(say("arena.unreadable", path=str(path), why=error.phrase)) from None
     folder = None if name in plugins.installed(_GROUP) else Path(name).expanduser().resolve()
-    settings = merge(settings, overrides or {})
+    shown = str(folder or name)
+    merged = merge(settings, overrides or {})
     if looks:
-        settings["seat"] = [seat | looks.get(seat["id"], {}) for seat in settings["seat"]]
-    return Arena(str(folder or name), settings, module, folder)
+        merged["seat"] = [seat | looks.get(seat["id"], {}) for seat in merged["seat"]]
+    try:
+        return Arena(shown, merged, module, folder)
+    except _WrongSetting as wrong:
+        if not overrides:
+            raise
+        Arena(shown, settings, module, folder)  # raises if the file itself is wrong
+        raise UserError(wrong.replaced) from None
 
 
 def load_installed(
@@ -254,6 +281,14 @@ def _require_whole(module: ModuleType) -> None:
                 example=str(Path(__file__).parent / "othello"),
             )
         )
+
+
+def _entries(where: str, wrong: Phrase | str) -> Sequence[str] | None:
+    """Return the entries that a table of the file can have, if one in it is unknown."""
+    if isinstance(wrong, Phrase) or "unknown field" not in wrong:
+        return None
+    kind = {"": _File, "match": MatchSettings}.get(where, SeatSettings)
+    return kind.__struct_fields__
 
 
 def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:

@@ -267,9 +267,17 @@ def test_a_field_of_other_measures(game: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize(("name", "game", "says"), WRONG)
 def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
-    """A wrong entry of [game] is refused, and the message names the setting or the flag."""
+    """A wrong entry of [game] is refused, and the message names the setting or the flag.
+
+    It says whether the entry is in the file, or was given to replace one of the file.
+    """
     with pytest.raises(UserError) as refused:
         arena.load(name, {"game": game})
+    assert f'The settings given for arena "{name}" are wrong: game' in str(refused.value)
+    assert says.removeprefix(": ") in str(refused.value)
+    whole = arena.merge(arena.load(name).settings, {"game": game})
+    with pytest.raises(UserError) as refused:
+        arena.from_settings(name, whole)
     assert f'The table [game] of arena "{name}" is wrong: ' in str(refused.value)
     assert says in str(refused.value)
 
@@ -281,19 +289,27 @@ def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
         ({"match": {"levels": []}}, ": match.levels: "),
         ({"match": {"levels": ["C"]}}, ": match.levels[0]: "),
         ({"match": {"start": "now"}}, ": match.start: "),
-        ({"match": {"minutes": 3}}, "unknown field `minutes`"),
+        ({"match": {"minutes": 3}}, "unknown field `minutes`. Allowed entries: duration_s, "),
         ({"seat": [{"id": "left", "colour": "blue"}]}, ": seat[0].colour: "),
         ({"seat": [{"id": "left", "colour": "#0072b2"}]}, "needs 2 [[seat]] tables"),
         ({"seat": [{"id": "a", "colour": "#0072b2"}] * 2}, "each with its own id; found a and a"),
-        ({"titel": "x"}, "unknown field `titel`"),
+        ({"titel": "x"}, "unknown field `titel`. Allowed entries: title, match, seat, game."),
     ],
 )
 def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:
-    """A setting of all games that has a wrong value is refused, and the message names it."""
-    with pytest.raises(UserError) as refused:
-        arena.load("othello", overrides)
-    assert 'The file of arena "othello" is wrong: ' in str(refused.value)
-    assert says in str(refused.value)
+    """A setting of all games that has a wrong value is refused, and the message names it.
+
+    It says whether the setting is in the file, or was given to replace one of the file.
+    """
+    whole = arena.merge(arena.load("othello").settings, overrides)
+    for load, given, where in (
+        (arena.load, overrides, 'The settings given for arena "othello" are wrong: '),
+        (arena.from_settings, whole, 'The file of arena "othello" is wrong: '),
+    ):
+        with pytest.raises(UserError) as refused:
+            load("othello", given)
+        assert where in str(refused.value)
+        assert says in str(refused.value)
 
 
 def test_unknown_arena() -> None:

@@ -101,6 +101,31 @@ def test_layers_that_do_not_fit(layers: Any, keys: tuple[int, ...], said: str) -
         Network(layers, keys)
 
 
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        *(
+            ({"keys": keys}, "keys are .* from 0 to 9, or 10")
+            for keys in ((1, 12), (1, -3), (1.5, 2), (2, 2), 5, ("1", "2"))
+        ),
+        *(({"every_ticks": ticks}, "every_ticks is .* at least 1") for ticks in (0, -1, 2.5, "3")),
+        ({"activation": "gelu"}, "activation is 'gelu'; it can be"),
+    ],
+)
+def test_wrong_arguments_of_a_policy(wrong: dict[str, Any], said: str) -> None:
+    """Keys, ticks or an activation that a bot could not use are refused as a policy is made."""
+    with pytest.raises(UserError, match=said):
+        Network(**{"layers": [Layer(TWO, np.ones(2))], "keys": (1, 2), **wrong})
+
+
+def test_numbers_of_numpy_can_be_exported() -> None:
+    """A policy whose numbers come from numpy can be exported."""
+    layers = [Layer(TWO, np.ones(2))]
+    network = Network(layers, np.array([1, 2]), every_ticks=np.int64(72))  # type: ignore[arg-type]
+    again = read(export(network).split('"""')[3])
+    assert (again.keys, again.every_ticks) == ((1, 2), 72)
+
+
 @pytest.mark.parametrize("text", ["", "!!", "abcde", "<tnB"])
 def test_damaged_text(text: str) -> None:
     """The text of a damaged file is refused with a sentence."""

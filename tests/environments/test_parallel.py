@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -143,7 +144,7 @@ def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path)
     assert result is not None
     env.reset(seed=8)
     assert result.scores == play(env, 8)[-1][4]["left"]["scores"]
-    with pytest.raises(UserError, match="exists"):
+    with pytest.raises(UserError, match=r"exists already.*another name"):
         env.write_record(tmp_path / "whole.mcap")
     with pytest.raises(UserError, match="mcap"):
         env.write_record(tmp_path / "record.txt")
@@ -231,13 +232,17 @@ def test_angles_move_the_joints() -> None:
     ("arguments", "said"),
     [
         ({"arena": "chess"}, "chess"),
-        ({"arena": "practice"}, "duration_s"),
+        ({"arena": "practice"}, "two seats"),
         ({"actions": "thoughts"}, "angles"),
+        ({"actions": "angles", "restart": True}, "restart"),
         ({"beats": 0}, "at least 1"),
-        ({"beats": 1.5}, "whole number"),
-        ({"robots": ("hexapod",) * 3}, "2"),
+        *(({"beats": beats}, "beats is .* whole number") for beats in (1.5, float("nan"), "5")),
+        ({"robots": ("hexapod",) * 3}, "exactly 2"),
+        ({"robots": 5}, "robots is 5"),
         ({"render_mode": "human"}, "rgb_array"),
-        ({"settings": {"match": {"duration_s": -1}}}, "duration_s"),
+        ({"settings": {"match": {"duration_s": -1}}}, "settings .* match.duration_s"),
+        ({"settings": {"match": {"duration": 5}}}, "settings .* duration_s, countdown_s"),
+        ({"settings": [1]}, r"settings is \[1\]; it must be a dict"),
     ],
 )
 def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> None:
@@ -246,20 +251,70 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any], said: str) -> No
         LacocParallelEnv(**arguments)
 
 
+def test_numbers_of_numpy_are_numbers() -> None:
+    """An environment that is made with numpy's numbers equals one that is made with Python's."""
+    times = {"duration_s": np.float64(1.2), "countdown_s": np.float32(0.5)}
+    env = LacocParallelEnv(settings={"match": times}, beats=np.int64(5))  # type: ignore[arg-type]
+    assert env.court.arena.settings["match"]["duration_s"] == 1.2
+    assert env.metadata["render_fps"] == 10
+    late = np.array([3, 4])
+    _, infos = env.reset(seed=np.int64(1), options={"place": np.int8(1), "late_ticks": late})  # type: ignore[arg-type]
+    assert infos["left"] == {"place": 1, "late_ticks": (3, 4)}
+
+
+def test_nothing_goes_before_the_first_reset(tmp_path: Path) -> None:
+    """Before its first `reset` or `load` an environment asks for `reset`."""
+    env, other = (LacocParallelEnv(settings=SHORT) for _ in range(2))
+    file = tmp_path / "one.mcap"
+    calls: list[Callable[[], Any]] = [
+        lambda: env.step({}),
+        env.save,
+        lambda: env.observe("left"),
+        env.render,
+        lambda: env.write_record(file),
+    ]
+    for call in calls:
+        with pytest.raises(UserError, match="No episode has begun"):
+            call()
+    assert not file.exists()
+    other.reset()
+    env.load(other.save())
+    for call in calls:
+        call()
+
+
+@pytest.mark.parametrize("kind", ["keys", "angles"])
+def test_a_missing_agent_goes_on(kind: Any) -> None:
+    """An agent that is missing, or whose action is None, keeps its key or its angles."""
+    env = LacocParallelEnv(settings=SHORT, actions=kind)
+    action: Any = 2 if kind == "keys" else np.full(18, 0.2)
+    ends = []
+    for idle in ({}, {"left": None}, {"left": action}):
+        env.reset(options={"place": 0, "late_ticks": (0, 0)})
+        env.step({"left": action})
+        ends.append([env.step(idle)[0]["left"].tobytes() for _ in range(20)])
+    assert ends[0] == ends[1] == ends[2]
+
+
 @pytest.mark.parametrize(
-    ("kind", "action"),
+    ("kind", "action", "said"),
     [
-        *(("keys", action) for action in (-1, 9, 1.5, [1], "2")),
-        *(("angles", action) for action in (0, np.zeros(17), np.full(18, np.nan), "up")),
+        *(("keys", action, "no action") for action in (-1, 9, 1.5, [1], "2")),
+        *(("angles", action, "18 finite numbers") for action in (0, np.full(17, np.nan), "up")),
+        ("angles", [0] * 7 + [np.nan] * 11, r"angles: action\[7\] = nan\. "),
+        ("angles", np.zeros(17), r"angles: array \(17,\) \[0\., 0\., \.\.\., 0\., 0\.\]\. "),
     ],
 )
-def test_actions_outside_the_space_are_refused(kind: Any, action: Any) -> None:
+def test_actions_outside_the_space_are_refused(kind: Any, action: Any, said: str) -> None:
     """An action that the space does not have is refused and named; the episode stays as it was."""
     env = LacocParallelEnv(settings=SHORT, actions=kind)
     env.reset(seed=0)
     before = env.save()
-    with pytest.raises(UserError, match=r"no action|not an action"):
+    with pytest.raises(UserError, match=said):
         env.step({"left": action})
+    for actions in ([action, action], action):
+        with pytest.raises(UserError, match=r"actions is .* dict"):
+            env.step(actions)
     with pytest.raises(UserError, match="red"):
         env.step({"red": action})
     assert env.save() == before
@@ -296,6 +351,20 @@ def test_a_full_disk_leaves_no_part_of_a_record(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["one.mcap"]
 
 
+WRONG_OPTIONS: list[tuple[Any, str]] = [
+    ({"place": 99}, "place is 99; .* at most"),
+    ({"place": 0.5}, "place is 0.5"),
+    *(
+        ({"late_ticks": late}, "late_ticks is .* from 0 to 60")
+        for late in ((1,), "ab", 3, (0, -1), (0, 61), (0, 1.5))
+    ),
+    ({"plase": 1}, 'no option "plase" here; "place" may be meant'),
+    ({"Late_ticks": (0, 0)}, '"late_ticks" may be meant. The options are place and late_ticks'),
+    ({"seat": "left"}, 'no option "seat" here. The options are place and late_ticks'),
+    ([1], "options is .* dict"),
+]
+
+
 def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
     """A save of another environment is refused and changes nothing; a wrong option is named.
 
@@ -310,13 +379,19 @@ def test_wrong_bytes_and_options_are_refused(env: LacocParallelEnv) -> None:
     ]
     env.reset(seed=1)
     before = env.save()
-    for data in (*(other.save() for other in others), before[:-9], b"", b"no"):
+    for other in others:
+        other.reset()
+    for data in (*(other.save() for other in others), before[:-9], b"", b"no", "abc", None):
         with pytest.raises(UserError, match="same arguments"):
-            env.load(data)
+            env.load(data)  # type: ignore[arg-type]
         assert env.save() == before
-    for options in ({"place": 99}, {"late_ticks": (1,)}, {"late_ticks": "ab"}):
-        with pytest.raises(UserError, match=r"place|late_ticks"):
+    for options, said in WRONG_OPTIONS:
+        with pytest.raises(UserError, match=said):
             env.reset(options=options)
+        assert env.save() == before
+    with pytest.raises(UserError, match="seed is -1"):
+        env.reset(seed=-1)
+    env.reset(options={"place": 0, "options": 1, "state": 2})
 
 
 def test_a_picture(env: LacocParallelEnv) -> None:
@@ -331,13 +406,15 @@ def test_a_picture(env: LacocParallelEnv) -> None:
     assert second is not None
     assert first.shape == (480, 640, 3)
     assert (first != second).any()
+    env.reset()
     assert env.render() is None
 
 
-def test_without_the_extra_the_error_says_what_to_install() -> None:
-    """Without the extra, importing the environments says which packages are missing."""
+@pytest.mark.parametrize("missing", ["mujoco", "pettingzoo"])
+def test_without_the_extra_the_error_says_what_to_install(missing: str) -> None:
+    """Without the extras, importing the environments says which packages are missing."""
     program = (
-        "import sys; sys.modules['pettingzoo'] = None\n"
+        f"import sys; sys.modules['{missing}'] = None\n"
         "from lacoc_shared.mistakes import UserError\n"
         "try:\n"
         "    import lacoc_server.simulate.environments\n"
@@ -345,4 +422,5 @@ def test_without_the_extra_the_error_says_what_to_install() -> None:
         "    print(error)\n"
     )
     told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert 'pip install "lacoc[server,rl]"' in told.stdout, told.stderr
+    assert f"need {missing}, which" in told.stdout, told.stderr
+    assert 'pip install "lacoc[server,rl]"' in told.stdout

@@ -94,9 +94,11 @@ def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
     assert isinstance(verdict, Verdict)
     assert verdict.kind is Kind.SAME
     before = one.save()
-    for data in (b"", LacocParallelEnv(settings=SHORT).save()):
+    both = LacocParallelEnv(settings=SHORT)
+    both.reset()
+    for data in (b"", both.save(), "abc"):
         with pytest.raises(UserError, match="same arguments"):
-            one.load(data)
+            one.load(data)  # type: ignore[arg-type]
     assert one.save() == before
 
 
@@ -172,8 +174,19 @@ def test_a_mask_resets_some_rows() -> None:
     assert now[1] < ticks[1]
     assert infos["_place"].tolist() == [False, True, False]
     assert seen[0].tobytes() == many.rows[0].observe().tobytes()
-    with pytest.raises(UserError, match="do not fit"):
-        many.reset(options={"reset_mask": np.array([True])})
+    for wrong, said in (
+        ({"options": {"reset_mask": np.array([True])}}, "reset_mask is array .* 3 rows"),
+        ({"options": {"reset_mask": [True, [False]]}}, "reset_mask is"),
+        ({"options": {"reset_masks": 1}}, '"reset_mask" may be meant'),
+        ({"options": {"seat": "middle"}}, "seat is 'middle'; it must be left or right"),
+        ({"options": {"seat": 2}}, "seat is 2"),
+        ({"seed": [1, 2]}, r"seed is \[1, 2\]; .* each row"),
+        ({"seed": 1.5}, "seed is 1.5"),
+    ):
+        with pytest.raises(UserError, match=said):
+            many.reset(**wrong)  # type: ignore[arg-type]
+    with pytest.raises(UserError, match="reset_mask"):
+        many.rows[0].reset(options={"reset_mask": [True]})
     many.close()
 
 
@@ -183,7 +196,8 @@ def test_wrong_actions_change_no_row() -> None:
     many.reset(seed=1)
     before = [row.save() for row in many.rows]
     for actions, said in (
-        (np.array([2]), "1 actions for 2 rows"),
+        (np.array([2]), r"array \(1,\) \[2\]; .* each of the 2 rows"),
+        (0, "actions are 0"),
         (np.array([2, -1]), "no action"),
     ):
         with pytest.raises(UserError, match=said):
@@ -213,8 +227,9 @@ def test_rows_of_the_library() -> None:
         many.close()
     assert pictures is not None
     assert [picture.shape for picture in pictures] == [(480, 640, 3)] * 3
-    with pytest.raises(UserError, match="at least 1"):
-        LacocVectorEnv(0)
+    for wrong in ({"num_envs": 0}, {"num_envs": "2"}, {"threads": -1}):
+        with pytest.raises(UserError, match="at least"):
+            LacocVectorEnv(**wrong)  # type: ignore[arg-type]
 
 
 def test_a_robot_walks_by_angles() -> None:
@@ -246,8 +261,13 @@ def test_a_robot_walks_by_angles() -> None:
     assert again == walks[0][8:]
     with pytest.raises(UserError, match="reset"):
         env.step(np.zeros(18))
-    with pytest.raises(UserError, match="same arguments"):
-        WalkEnv("quadruped").load(saved)
+    for other, data in ((WalkEnv("quadruped"), saved), (env, "abc")):
+        with pytest.raises(UserError, match="same arguments"):
+            other.load(data)  # type: ignore[arg-type]
+    env.reset(seed=1)
+    one = env.step(np.full(18, 3.0))[0]
+    env.reset(seed=1)
+    assert env.step(np.ones(18))[0].tobytes() == one.tobytes(), "numbers beyond 1 count as 1"
 
 
 def test_a_table_is_tried_as_in_a_trial() -> None:
@@ -263,16 +283,46 @@ def test_a_table_is_tried_as_in_a_trial() -> None:
     assert 0.03 < reward < 0.2
     assert seen[0] == pytest.approx(reward)
     env.reset()
+    with pytest.raises(UserError, match=r"not a table of angles: .* 4 rows"):
+        env.step(np.zeros(18))
     assert env.step(np.zeros((4, 18), np.float32))[1] == pytest.approx(0, abs=0.01)
 
 
 @pytest.mark.parametrize(
-    "arguments", [{"actions": "keys"}, {"beats": 0}, {"postures": 0}, {"robot": "no-such-robot"}]
+    ("arguments", "said"),
+    [
+        ({"actions": "keys"}, "angles"),
+        ({"beats": 0}, "beats is 0"),
+        ({"beats": "5"}, "beats is '5'"),
+        ({"seconds": float("nan")}, "seconds is nan"),
+        ({"seconds": "5"}, "seconds is '5'"),
+        ({"actions": "table", "postures": 0}, "postures is 0; .* at most 100"),
+        ({"postures": 5}, 'postures has no effect with actions "angles"'),
+        ({"actions": "table", "beats": 5}, 'beats has no effect with actions "table"'),
+        ({"actions": "table", "seconds": 5}, "seconds has no effect"),
+        ({"robot": "no-such-robot"}, "no-such-robot"),
+    ],
 )
-def test_wrong_arguments_of_a_walk(arguments: dict[str, Any]) -> None:
-    """Wrong arguments are refused with a sentence."""
-    with pytest.raises(UserError):
+def test_wrong_arguments_of_a_walk(arguments: dict[str, Any], said: str) -> None:
+    """Wrong arguments are refused with a sentence that names them."""
+    with pytest.raises(UserError, match=said):
         WalkEnv(**arguments)
+
+
+def test_nothing_goes_before_the_first_reset() -> None:
+    """Before its first `reset` an environment refuses steps and saves, and asks for `reset`."""
+    many, walk = LacocVectorEnv(1, settings=SHORT), WalkEnv()
+    for call in (
+        lambda: many.step(np.zeros(1, int)),
+        lambda: many.rows[0].step(0),
+        lambda: many.rows[0].save(),
+        lambda: walk.step(np.zeros(18)),
+        lambda: walk.save(),
+        lambda: walk.observe(),
+    ):
+        with pytest.raises(UserError, match="No episode has begun"):
+            call()
+    many.close()
 
 
 def test_a_walk_has_a_picture() -> None:

@@ -7,13 +7,14 @@ import base64
 import textwrap
 import zlib
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
 
 from lacoc_arenas.bot import Brain, Key
+from lacoc_arenas.learned.arguments import short, whole
 from lacoc_arenas.learned.senses import Numbers, Senses
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame, Sheet
@@ -64,13 +65,13 @@ class Network:
     Args:
         layers: from the input on; the first takes what `Senses` gives, the last has an output for
             each key. After each layer but the last comes the activation.
-        keys: digits of level B, and `RESTART_KEY` for [x].
+        keys: digits of level B, and `RESTART_KEY` for [x]; each at most once.
         every_ticks: the policy chooses a key in every n-th tick, as it did with `beats` = n in an
             environment.
         activation: what follows each layer but the last.
 
     Raises:
-        UserError: if the layers do not fit each other or the keys.
+        UserError: if the layers do not fit each other or the keys, or another argument is wrong.
     """
 
     def __init__(
@@ -81,8 +82,10 @@ class Network:
         activation: Activation = "tanh",
     ) -> None:
         self.layers = [Layer(*(np.asarray(part, np.float64) for part in one)) for one in layers]
-        self.keys = tuple(int(key) for key in keys)
-        self.every_ticks = every_ticks
+        self.keys = _digits(keys)
+        self.every_ticks = whole("every_ticks", every_ticks, 1)
+        if activation not in get_args(Activation):
+            raise UserError(say("learned.activation", found=short(activation)))
         self.activation: Activation = activation
         shapes = [layer.weights.shape for layer in self.layers]
         fits = all(
@@ -131,6 +134,17 @@ class Network:
             return press(frame, seat, self.keys[self.choose(senses.see(frame, seat))])
 
         return see
+
+
+def _digits(keys: Sequence[int]) -> tuple[int, ...]:
+    """Return keys as digits; there must be one, and none twice."""
+    try:
+        digits = tuple(whole("keys", key, 0, RESTART_KEY) for key in keys)
+    except (TypeError, UserError):
+        digits = ()
+    if not digits or len(set(digits)) != len(digits):
+        raise UserError(say("learned.digits", found=short(keys), restart=RESTART_KEY))
+    return digits
 
 
 def press(frame: Frame, seat: int, digit: int) -> Key | None:

@@ -250,7 +250,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "record.disk-trouble": ["The disk of the record {file} reports: {why}. A power cut may lose a part of the record. Check the disk.", "記録 {file} のディスクがエラーを報告しました（{why}）。停電すると記録の一部が失われるおそれがあります。ディスクを確かめてください。"],
   "record.folder-full": ["No record can be written to {folder}: {why}. Make room there, or choose another folder.", "{folder} に記録を書き込めません（{why}）。空きを増やすか、別のフォルダーを指定してください。"],
   "record.no-folder": ["No record can be written to {folder}: {why}. Choose a folder that you may write to.", "{folder} に記録を書き込めません（{why}）。書き込めるフォルダーを指定してください。"],
-  "record.exists": ["The record {file} exists already, and a record is never overwritten.", "記録 {file} はすでにあります。記録は上書きされません。"],
+  "record.exists": ["The record {file} exists already, and a record is never overwritten. Choose another name, or move this file away.", "記録 {file} はすでにあります。記録は上書きされません。別の名前にするか、このファイルを移してください。"],
   "mistake.line": ["{file}<, {place}>: found {found}, expected {expected}", "{file}<、{place}>：{found}。正しくは：{expected}"],
   "place.row": ["row {row}", "{row} 行目"],
   "place.column": ["column {column}", "{column} 列目"],

@@ -4,14 +4,15 @@ Importing this package registers `lacoc/Othello-v0`, `lacoc/FlagStrike-v0` and `
 Gymnasium.
 """
 
+from importlib.util import find_spec
+
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-try:
-    import gymnasium
-    import pettingzoo  # noqa: F401
-except ImportError:
-    raise UserError(say("environment.not-installed")) from None
+if _missing := [name for name in ("mujoco", "gymnasium", "pettingzoo") if find_spec(name) is None]:
+    raise UserError(say("environment.not-installed", missing=_missing))
+
+import gymnasium
 
 from lacoc_server.simulate.environments.parallel import LacocParallelEnv
 from lacoc_server.simulate.environments.single import LacocEnv

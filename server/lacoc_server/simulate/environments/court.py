@@ -1,6 +1,6 @@
 """What the environments of a game share: robots, spaces, actions and rewards."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from operator import index
 from typing import Any, Literal
@@ -12,11 +12,12 @@ from gymnasium import spaces
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import Key
+from lacoc_arenas.learned.arguments import short, table, whole
 from lacoc_arenas.learned.network import press
 from lacoc_arenas.learned.senses import BODY, CLOCK, SEAT, Senses
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate.environments.episode import Begun, Episode
-from lacoc_server.simulate.environments.opening import Opening, draw, places
+from lacoc_server.simulate.environments.opening import Opening, draw, with_options
 from lacoc_server.simulate.headless import seated
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame
@@ -48,7 +49,7 @@ class Court:
         beats: beats of 20 ms in a step.
 
     Raises:
-        UserError: if the arena, a robot or a setting is wrong.
+        UserError: if an argument is wrong, or the arena does not have two seats.
     """
 
     def __init__(
@@ -60,11 +61,14 @@ class Court:
         restart: bool = False,
         beats: int = 1,
     ) -> None:
-        loaded = arenas.load(arena, settings)
-        self._check(loaded, actions, beats)
-        names = [robots] * len(loaded.seats) if isinstance(robots, str) else list(robots)
-        if len(names) != len(loaded.seats):
-            raise UserError(say("simulate.players", seats=len(loaded.seats)))
+        if actions not in ("keys", "angles"):
+            raise UserError(say("environment.actions", found=str(actions)[:40]))
+        if restart and actions == "angles":
+            raise UserError(say("environment.restart"))
+        own = _plain(table("settings", settings, '{"match": {"duration_s": 60}}'))
+        loaded = arenas.load(arena, own)
+        self._check(loaded)
+        names = _names(robots, loaded)
         self.arena = loaded
         self.seats = tuple(seat.id for seat in loaded.seats)
         joins = [
@@ -77,7 +81,7 @@ class Court:
         ]
         self.begun = Begun(loaded, joins, actions == "angles")
         self.actions = actions
-        self.beats = beats
+        self.beats = whole("beats", beats, 1)
         self.digits = tuple(
             (*entry.gait.keys(Level.LOCOMOTION), *((RESTART_KEY,) if restart else ()))
             for entry in self.entries
@@ -85,30 +89,30 @@ class Court:
         """For each seat the digit of each action."""
 
     @staticmethod
-    def _check(arena: Arena, actions: str, beats: int) -> None:
-        if actions not in ("keys", "angles"):
-            raise UserError(say("environment.actions", found=str(actions)[:40]))
-        if not isinstance(beats, int) or beats < 1:
-            raise UserError(say("environment.beats", found=beats))
+    def _check(arena: Arena) -> None:
+        if len(arena.seats) != 2:
+            raise UserError(say("environment.two-seats", arena=arena.name))
         if Level.LOCOMOTION not in arena.match.open_levels:
             raise UserError(say("environment.level", arena=arena.name))
         if arena.match.start != "referee" or not arena.match.duration_s:
             raise UserError(say("environment.no-end", arena=arena.name))
 
     def episode(self) -> Episode:
-        """Return a new episode that has begun at the first start place, with no seat late."""
-        episode = Episode(self.begun)
-        episode.begin(Opening())
-        return episode
+        """Return a new episode; it has not begun, but its match has a sheet.
 
-    def draw(self, chance: np.random.Generator, options: dict[str, Any] | None) -> Opening:
+        Raises:
+            UserError: if a robot does not stay on its start place, or physics stops.
+            FileRefused: if a file has mistakes.
+        """
+        return Episode(self.begun)
+
+    def draw(self, chance: np.random.Generator, options: dict[str, Any]) -> Opening:
         """Draw an opening; entries of `options` replace what was drawn.
 
         Raises:
             UserError: if one of these options does not fit.
         """
-        drawn = draw(self.arena, chance)
-        return drawn if not options else _with_options(drawn, options, self)
+        return with_options(draw(self.arena, chance), options, self.arena)
 
     def action_space(self, seat: int) -> "spaces.Space[Any]":
         """Return the actions of a seat."""
@@ -156,7 +160,7 @@ class Court:
         except TypeError:
             number = -1
         if not 0 <= number < len(digits):
-            raise UserError(say("environment.key", found=repr(action)[:40], last=len(digits) - 1))
+            raise UserError(say("environment.key", found=short(action), last=len(digits) - 1))
         return digits[number]
 
     def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
@@ -174,7 +178,11 @@ class Court:
 
 
 def shares(action: Any, shape: tuple[int, ...]) -> Angles:
-    """Return an action of angles as an array of this shape, cut to -1 to 1.
+    """Return an action of angles as an array of this shape; numbers beyond -1 to 1 are cut.
+
+    Args:
+        action: what was given.
+        shape: (joints,), or of a table (postures, joints).
 
     Raises:
         UserError: if it has another shape, or a number is not finite.
@@ -184,8 +192,15 @@ def shares(action: Any, shape: tuple[int, ...]) -> Angles:
     except (TypeError, ValueError):
         share = np.empty(0)
     if share.shape != shape or not np.isfinite(share).all():
-        found = repr(action)[:80]
-        raise UserError(say("environment.shares", found=found, shape=[str(one) for one in shape]))
+        found, (*postures, joints) = short(action), shape
+        if share.shape == shape:
+            at = tuple(np.argwhere(~np.isfinite(share))[0].tolist())
+            found = f"action{list(at)} = {share[at]}"
+        if postures:
+            raise UserError(
+                say("environment.no-table", found=found, postures=postures[0], joints=joints)
+            )
+        raise UserError(say("environment.no-angles", found=found, joints=joints))
     return np.clip(share, -1.0, 1.0)
 
 
@@ -195,20 +210,22 @@ def lead(frame: Frame, seat: int) -> int:
     return frame.seats[seat].score - max(others, default=0)
 
 
-def _with_options(drawn: Opening, options: dict[str, Any], court: Court) -> Opening:
-    """Put entries of `options` in place of what was drawn. All other entries are for wrappers."""
-    late, place = options.get("late_ticks", drawn.late_ticks), options.get("place", drawn.place)
-    seat = options.get("seat", drawn.seat)
-    try:
-        seat = court.seats.index(seat) if isinstance(seat, str) else int(seat)
-        opening = Opening(int(place), tuple(int(ticks) for ticks in late), seat)
-    except (TypeError, ValueError):
-        raise UserError(say("environment.options", found=str(options)[:200])) from None
-    if (
-        len(opening.late_ticks) != len(court.seats)
-        or min(opening.late_ticks) < 0
-        or not 0 <= opening.place < places(court.arena)
-        or not 0 <= opening.seat < len(court.seats)
-    ):
-        raise UserError(say("environment.options", found=str(options)[:200]))
-    return opening
+def _plain(value: Any) -> Any:
+    """Return settings without numpy: its numbers as those of Python, its arrays as lists."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {name: _plain(one) for name, one in value.items()}
+    return [_plain(one) for one in value] if isinstance(value, list | tuple) else value
+
+
+def _names(robots: Any, arena: Arena) -> list[str]:
+    """Return the robot of each seat."""
+    seats = len(arena.seats)
+    names = [robots] * seats if isinstance(robots, str) else robots
+    fits = isinstance(names, list | tuple) and len(names) == seats
+    if not (fits and all(isinstance(name, str) for name in names)):
+        raise UserError(
+            say("environment.robots", found=short(robots), arena=arena.name, seats=seats)
+        )
+    return list(names)

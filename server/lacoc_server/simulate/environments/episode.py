@@ -116,10 +116,30 @@ class Episode:
         """For each seat the ticks of play before its first key counts."""
         self._pressed = bytearray()
         self._seqs = [0] * len(begun.joins)
+        self._frame: Frame | None = None
         self.match = self._match(0)
-        """The match that is played; before `begin` it has no beat."""
-        self.frame: Frame
-        """The newest frame; there is none before `begin`."""
+        """The match that is played; before `begin` one that could be."""
+        begun.begin(self.match, 0)
+
+    @property
+    def frame(self) -> Frame:
+        """The newest frame.
+
+        Raises:
+            UserError: if no episode has begun.
+        """
+        self.require_begun()
+        assert self._frame is not None
+        return self._frame
+
+    def require_begun(self) -> None:
+        """Check that there was a `begin` or a `load`.
+
+        Raises:
+            UserError: if not.
+        """
+        if self._frame is None:
+            raise UserError(say("environment.not-begun"))
 
     def begin(self, opening: Opening) -> Frame:
         """Begin an episode; return the frame of its first beat of play.
@@ -135,8 +155,8 @@ class Episode:
             _steer(self.match)
         self._pressed = bytearray()
         self._seqs = [0] * len(self._seqs)
-        self.frame = self.match.frame()
-        return self.frame
+        self._frame = self.match.frame()
+        return self._frame
 
     @property
     def is_on(self) -> bool:
@@ -161,13 +181,13 @@ class Episode:
             beats: how many beats.
         """
         match = self.match
-        self.frame = match.beat(self._inputs(keys)).frame
+        self._frame = match.beat(self._inputs(keys)).frame
         if beats > 1 and match.phase is Phase.PLAYING:
             for _ in range(beats - 1):
                 match.skip()
                 if match.phase is not Phase.PLAYING:
                     break
-            self.frame = match.frame()
+            self._frame = match.frame()
 
     def outcome(self, seat: int) -> dict[str, Any]:
         """Return how the match ended: "scores", "winner", and whether the seat has "won".
@@ -189,7 +209,11 @@ class Episode:
 
         Args:
             extra: a value that the caller keeps with it.
+
+        Raises:
+            UserError: if no episode has begun.
         """
+        self.require_begun()
         return encode(
             _Saved(
                 self.opening,
@@ -217,7 +241,7 @@ class Episode:
                 the value is of another type. The episode is then as it was.
         """
         try:
-            saved = decode(data, _Saved, _MOST_BYTES)
+            saved = decode(saved_bytes(data), _Saved, _MOST_BYTES)
             extra = decode(saved.extra, kind, _MOST_BYTES)
             if saved.angles != self.begun.angles:
                 raise BadMessage("only one of the two episodes is steered by angles")
@@ -237,7 +261,7 @@ class Episode:
         if self.begun.angles:
             _steer(self.match)
         self._pressed, self._seqs = bytearray(saved.pressed), list(saved.seqs)
-        self.frame = self.match.frame()
+        self._frame = self.match.frame()
         return extra
 
     def write_record(self, file: Path) -> None:
@@ -249,9 +273,10 @@ class Episode:
             file: the record; its name without ".mcap" is the id of the match.
 
         Raises:
-            UserError: if the robots follow angles, if the name does not end in ".mcap", or if the
-                file exists or can't be written.
+            UserError: if no episode has begun, if the robots follow angles, if the name does not
+                end in ".mcap", or if the file exists or can't be written.
         """
+        self.require_begun()
         if self.begun.angles:
             raise UserError(say("environment.no-record"))
         if file.suffix != ".mcap":
@@ -305,6 +330,17 @@ class Episode:
             folder = self.begun.arena.folder
             self._matches[place] = Match(self.begun.setup(place), World, folder)
         return self._matches[place]
+
+
+def saved_bytes(given: Any) -> bytes:
+    """Return what was given to `load`, if it is bytes.
+
+    Raises:
+        BadMessage: if it is something else.
+    """
+    if not isinstance(given, bytes | bytearray | memoryview):
+        raise BadMessage(f"{type(given).__name__} instead of bytes")
+    return bytes(given)
 
 
 def _contents(join: JoinSeat) -> list[bytes | None]:

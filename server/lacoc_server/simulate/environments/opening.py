@@ -1,5 +1,7 @@
 """How an episode begins. A match has no randomness: all that a seed chooses is here."""
 
+from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import Any
 
 import msgspec
@@ -7,7 +9,15 @@ import numpy as np
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
+from lacoc_arenas.learned.arguments import short, table, whole
+from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import say
 
+_NEAR = 0.75
+"""How like a wrong name is to the right one: "late_tick" 0.95; "state" is like "seat" by 0.67."""
+OPTIONS = ("place", "late_ticks", "seat", "reset_mask")
+"""Names of the options of all environments of a game."""
 MOST_LATE_TICKS = 25
 """Largest number of ticks by which a seed lets a seat begin later."""
 _PLACES = ("start_cells", "starts")
@@ -34,6 +44,73 @@ def draw(arena: Arena, chance: np.random.Generator) -> Opening:
         late_ticks=tuple(int(ticks) for ticks in late),
         seat=int(chance.integers(0, seats)),
     )
+
+
+def known_options(options: Any, known: Sequence[str]) -> dict[str, Any]:
+    """Return options of `reset`, after a look at their names.
+
+    Libraries and wrappers have options of their own, so an unknown name is no mistake. But one that
+    is nearly the name of an option here is.
+
+    Args:
+        options: what was given.
+        known: names of the options that the environment has, of `OPTIONS`.
+
+    Raises:
+        UserError: if they are not a dict, or a name is nearly one of `OPTIONS`, or is one that this
+            environment does not have.
+    """
+    given = table("options", options, '{"place": 0}')
+    for name in (one for one in given if one not in known):
+        near = get_close_matches(str(name).lower(), OPTIONS, 1, _NEAR)
+        if near:
+            meant = near[0] if near[0] in known else None
+            raise UserError(
+                say(
+                    "environment.option",
+                    found=printable(str(name)),
+                    near=meant,
+                    options=list(known),
+                )
+            )
+    return given
+
+
+def with_options(drawn: Opening, options: dict[str, Any], arena: Arena) -> Opening:
+    """Put entries of options in place of what was drawn.
+
+    Raises:
+        UserError: if one of them does not fit; it says what is allowed.
+    """
+    seats = [seat.id for seat in arena.seats]
+    place, late, seat = drawn.place, drawn.late_ticks, drawn.seat
+    if "place" in options:
+        place = whole("place", options["place"], 0, places(arena) - 1)
+    if "late_ticks" in options:
+        late = _late_ticks(options["late_ticks"], len(seats), arena.match.duration_s)
+    if "seat" in options:
+        seat = _seat(options["seat"], seats)
+    return Opening(place, late, seat)
+
+
+def _seat(given: Any, seats: list[str]) -> int:
+    """Return the index of a seat that is given by its id or its index."""
+    try:
+        named = isinstance(given, str)
+        return seats.index(given) if named else whole("seat", given, 0, len(seats) - 1)
+    except (ValueError, UserError):
+        raise UserError(say("environment.seat", found=short(given), seats=seats)) from None
+
+
+def _late_ticks(given: Any, seats: int, duration_s: float) -> tuple[int, ...]:
+    most = round(duration_s * BEATS_PER_S)
+    try:
+        late = tuple(whole("late_ticks", ticks, 0, most) for ticks in given)
+    except (TypeError, UserError):
+        late = ()
+    if len(late) != seats:
+        raise UserError(say("environment.late-ticks", found=short(given), seats=seats, most=most))
+    return late
 
 
 def places(arena: Arena) -> int:

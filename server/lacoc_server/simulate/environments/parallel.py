@@ -8,9 +8,11 @@ import numpy.typing as npt
 from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
+from lacoc_arenas.learned.arguments import table, whole
 from lacoc_arenas.learned.senses import Numbers, Senses
 from lacoc_server.simulate.environments.court import Actions, Court, lead
 from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.opening import known_options
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -54,10 +56,8 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self.metadata = {
             **type(self).metadata,
             "name": f"lacoc_{self.court.arena.name.replace('-', '_')}_v0",
-            "render_fps": 50 / beats,
+            "render_fps": 50 / self.court.beats,
         }
-        if len(self.court.seats) != 2:
-            raise UserError(say("environment.two-seats", arena=self.court.arena.name))
         self.render_mode = render_mode
         self.possible_agents = list(self.court.seats)
         self.agents: list[str] = []
@@ -98,10 +98,14 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
         Returns:
             What each agent sees, and for each agent the opening.
+
+        Raises:
+            UserError: if the seed is not a whole number, or an option does not fit.
         """
+        given = known_options(options, ("place", "late_ticks"))
         if seed is not None:
-            self._chance = np.random.default_rng(seed)
-        opening = self.court.draw(self._chance, options)
+            self._chance = np.random.default_rng(whole("seed", seed, 0))
+        opening = self.court.draw(self._chance, given)
         frame = self._episode.begin(opening)
         self.agents = list(self.possible_agents)
         self._leads = [lead(frame, 0), lead(frame, 1)]
@@ -120,17 +124,21 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         """Let the beats of a step pass.
 
         Args:
-            actions: the action of each agent; an agent that is missing presses nothing.
+            actions: the action of each agent. An agent that is missing, or whose action is None,
+                keeps its key, or goes on to the angles that it chose last.
 
         Returns:
             What each agent sees; rewards; whether the match is over; whether physics stopped; and
-            at the end, for each agent, the scores and whether it won.
+            at the end, for each agent, the scores and whether it won. All are empty after the end.
 
         Raises:
-            UserError: if there is no such agent, or the action space does not have an action.
+            UserError: if no episode has begun, if there is no such agent, or the action space does
+                not have an action.
         """
+        self._episode.require_begun()
         if not self.agents:
             return {}, {}, {}, {}, {}
+        actions = table("actions", actions, f'{{"{self.agents[0]}": 0}}')
         if not actions.keys() <= self.action_spaces.keys():
             found, agents = list(map(str, actions)), self.possible_agents
             raise UserError(say("environment.agents", found=found, agents=agents))
@@ -161,7 +169,11 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         )
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps, but not what `reset` will draw next."""
+        """Return the whole environment between two steps, but not what `reset` will draw next.
+
+        Raises:
+            UserError: if no episode has begun.
+        """
         return self._episode.save(bool(self.agents))
 
     def load(self, saved: bytes) -> None:

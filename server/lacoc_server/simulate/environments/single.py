@@ -12,11 +12,14 @@ from lacoc_arenas.bot import Brain, Key
 from lacoc_arenas.learned.senses import Numbers, Senses
 from lacoc_server.simulate.environments.court import Actions, Court, lead
 from lacoc_server.simulate.environments.drawn import Drawn
-from lacoc_server.simulate.environments.opening import Opening
+from lacoc_server.simulate.environments.opening import Opening, known_options
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
+
+OPTIONS = ("place", "late_ticks", "seat")
+"""Options of `reset`."""
 
 
 class LacocEnv(gymnasium.Env[Numbers, Any]):
@@ -62,8 +65,6 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
             raise UserError(say("environment.bot-keys"))
         self.court = court or Court(arena, settings, robots, actions, restart, beats)
         self.metadata = {**type(self).metadata, "render_fps": 50 / self.court.beats}
-        if len(self.court.seats) != 2:
-            raise UserError(say("environment.two-seats", arena=self.court.arena.name))
         self.render_mode = render_mode
         self.episode = self.court.episode()
         self._sheet = self.episode.match.sheet()
@@ -76,7 +77,6 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         self._lead = 0
         self._shown: list[bytes] = []
         """Frames that the bot saw in this episode."""
-        self.begin(Opening())
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -104,10 +104,14 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
         Returns:
             What the learner sees, and the opening.
+
+        Raises:
+            UserError: if an option does not fit.
         """
+        given = known_options(options, OPTIONS)
         super().reset(seed=seed)
-        opening = self.court.draw(self.np_random, options)
-        self.begin(opening)
+        opening = self.court.draw(self.np_random, given)
+        self._begin(opening)
         info = {
             "place": opening.place,
             "late_ticks": opening.late_ticks,
@@ -118,13 +122,18 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
     def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
         """Let the beats of a step pass.
 
+        Args:
+            action: the learner's action; None: it keeps its key.
+
         Returns:
             What the learner sees, the reward, whether the match is over, whether physics stopped,
             and at the end the scores and whether the learner won.
 
         Raises:
-            UserError: if the episode is over.
+            UserError: if no episode has begun, if it is over, or the action space does not have the
+                action.
         """
+        self.episode.require_begun()
         if not self.episode.is_on:
             raise UserError(say("environment.over"))
         for beat in range(self.court.beats):
@@ -146,7 +155,10 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Return the whole environment between two steps, but not what `reset` will draw next.
 
         A bot may remember what it saw. So the frames that it saw are saved, and the bytes grow with
-        the episode: 330 bytes a beat.
+        the episode: some 270 bytes a beat.
+
+        Raises:
+            UserError: if no episode has begun.
         """
         return self.episode.save(self._shown)
 
@@ -178,7 +190,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Free what draws pictures."""
         self._drawn.close()
 
-    def begin(self, opening: Opening) -> None:
+    def _begin(self, opening: Opening) -> None:
         """Begin an episode with an opening."""
         self.episode.begin(opening)
         self._start()

@@ -1,7 +1,7 @@
 """Many environments against a bot at once, on all cores."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any
 
@@ -10,10 +10,12 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from lacoc_arenas.learned.arguments import short, whole
 from lacoc_arenas.learned.senses import Numbers
 from lacoc_server.simulate.environments.court import Court
 from lacoc_server.simulate.environments.drawn import Drawn
-from lacoc_server.simulate.environments.single import LacocEnv
+from lacoc_server.simulate.environments.opening import known_options
+from lacoc_server.simulate.environments.single import OPTIONS, LacocEnv
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -59,12 +61,10 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         restart: bool = False,
         beats: int = 1,
     ) -> None:
-        if num_envs < 1:
-            raise UserError(say("environment.rows", found=num_envs))
-        self.num_envs = num_envs
+        self.num_envs = num_envs = whole("num_envs", num_envs, 1)
         self.render_mode = render_mode
         court = Court(arena, settings, robots, "keys", restart, beats)
-        self.metadata = {**type(self).metadata, "render_fps": 50 / beats}
+        self.metadata = {**type(self).metadata, "render_fps": 50 / court.beats}
         self._court = court
         self.rows = [LacocEnv(opponent=opponent, court=court) for _ in range(num_envs)]
         """The environments."""
@@ -74,7 +74,8 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._over = np.zeros(num_envs, bool)
         # The thread that calls `step` is one of them.
-        self._others = min(threads or os.cpu_count() or 1, num_envs) - 1
+        used = whole("threads", threads, 0) or os.cpu_count() or 1
+        self._others = min(used, num_envs) - 1
         self._threads = ThreadPoolExecutor(max(1, self._others), "environment-rows")
         self._drawn = Drawn(render_mode)  # its camera fits all rows: they have the same model
 
@@ -95,22 +96,14 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
             What the learners see, as an array (num_envs, size); and the openings.
 
         Raises:
-            UserError: if an option does not fit.
+            UserError: if an option does not fit, or there is not a seed for each row.
         """
-        seeds: list[int | None]
-        if seed is None or isinstance(seed, int | np.integer):
-            super().reset(seed=seed)
-            seeds = [None if seed is None else int(seed) + row for row in range(self.num_envs)]
-        else:
-            seeds = list(seed)
-        chosen = np.ones(self.num_envs, bool)
-        if options and "reset_mask" in options:
-            chosen = np.asarray(options["reset_mask"], bool)
-        if chosen.shape != (self.num_envs,):
-            raise UserError(say("environment.options", found=str(options)[:200]))
+        given = dict(known_options(options, (*OPTIONS, "reset_mask")))
+        chosen = self._mask(given.pop("reset_mask", None))
+        seeds = self._seeds(seed)
         infos: dict[str, Any] = {}
         for index in np.flatnonzero(chosen).tolist():
-            _, info = self.rows[index].reset(seed=seeds[index], options=options)
+            _, info = self.rows[index].reset(seed=seeds[index], options=given)
             infos = self._add_info(infos, info, index)
         self._over[chosen] = False
         return np.stack([row.observe() for row in self.rows]), infos
@@ -128,11 +121,14 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
             what `LacocEnv` tells of each row.
 
         Raises:
-            UserError: if there is not an action for each row; then no row has changed.
+            UserError: if no episode has begun, or there is not an action for each row; then no row
+                has changed.
         """
-        if len(actions) != self.num_envs:
-            found, rows = len(actions), self.num_envs
-            raise UserError(say("environment.row-actions", found=found, rows=rows))
+        for row in self.rows:
+            row.episode.require_begun()
+        if not hasattr(actions, "__len__") or len(actions) != self.num_envs:
+            rows = self.num_envs
+            raise UserError(say("environment.row-actions", found=short(actions), rows=rows))
         for action in actions:
             self._court.digit(0, action)
         size = self.single_observation_space.shape or (0,)
@@ -163,6 +159,37 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
                 infos = self._add_info(infos, info, index)
         self._over = ended | stopped
         return seen, rewards, ended, stopped, infos
+
+    def _mask(self, given: Any) -> npt.NDArray[np.bool_]:
+        """Return which rows begin an episode; all if no mask is given."""
+        rows = self.num_envs
+        if given is None:
+            return np.ones(rows, bool)
+        try:
+            mask = np.asarray(given, bool)
+        except ValueError:
+            mask = np.empty(0, bool)
+        if mask.shape != (rows,):
+            raise UserError(say("environment.reset-mask", found=short(given), rows=rows))
+        return mask
+
+    def _seeds(self, given: Any) -> list[int | None]:
+        """Return a seed for each row."""
+        rows = self.num_envs
+        if given is None:
+            return [None] * rows
+        try:
+            if isinstance(given, Iterable):
+                seeds = [None if one is None else whole("seed", one, 0) for one in given]
+            else:
+                first = whole("seed", given, 0)
+                super().reset(seed=first)
+                seeds = [first + row for row in range(rows)]
+        except UserError:
+            seeds = []
+        if len(seeds) != rows:
+            raise UserError(say("environment.seeds", found=short(given), rows=rows))
+        return seeds
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
         """Return a picture of each row; None without a render mode."""

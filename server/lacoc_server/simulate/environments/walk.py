@@ -9,11 +9,13 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
+from lacoc_arenas.learned.arguments import short, whole
 from lacoc_arenas.learned.senses import Numbers
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate.environments.court import shares
 from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.episode import saved_bytes
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course, practice_field
 from lacoc_server.trial.figures import measure
@@ -30,6 +32,16 @@ _FORWARD = 2
 """The key that a table is tried with, as in the sample gaits."""
 _MOST_TURN_RAD = math.radians(15)
 """A seed turns each joint of the first posture by at most this much."""
+_SECONDS = 20.0
+"""Usual length of an episode [s]."""
+_POSTURES = 4
+"""Usual number of postures of a table, as in the sample gaits."""
+_UNUSED: dict[str, dict[str, Any]] = {
+    "angles": {"postures": _POSTURES},
+    "table": {"seconds": _SECONDS, "beats": 1},
+}
+"""For each kind of actions, arguments that have no effect, with their defaults."""
+_NUMBERS = (int, float, np.integer, np.floating)
 _FIGURES = ("speed_m_s", "lateral_m_s", "drift_rad_s", "upright", "slip_m_s", "belly_share")
 """What is seen after a table was tried."""
 
@@ -67,8 +79,8 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     Args:
         robot: an installed robot, or a robot file with its gait beside it.
         actions: "angles" or "table".
-        seconds: length of an episode with angles [s].
-        beats: beats of 20 ms in a step.
+        seconds: with angles, length of an episode [s].
+        beats: with angles, beats of 20 ms in a step.
         postures: number of postures of a table.
         render_mode: "rgb_array", or None.
 
@@ -85,15 +97,19 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         self,
         robot: str = "hexapod",
         actions: Literal["angles", "table"] = "angles",
-        seconds: float = 20.0,
+        seconds: float = _SECONDS,
         beats: int = 1,
-        postures: int = 4,
+        postures: int = _POSTURES,
         render_mode: str | None = None,
     ) -> None:
         if actions not in ("angles", "table"):
             raise UserError(say("environment.walk-actions", found=str(actions)[:40]))
-        if beats < 1 or not 1 <= postures <= 100 or not 0 < seconds <= 3600:
-            raise UserError(say("environment.walk-numbers"))
+        for name, value in (("seconds", seconds), ("beats", beats), ("postures", postures)):
+            if name in _UNUSED[actions] and value != _UNUSED[actions][name]:
+                raise UserError(say("environment.unused", name=name, actions=actions))
+        beats, postures = whole("beats", beats, 1), whole("postures", postures, 1, 100)
+        if not isinstance(seconds, _NUMBERS) or not 0 < seconds <= 3600:
+            raise UserError(say("environment.seconds", found=short(seconds)))
         self.render_mode = render_mode
         self.metadata = {**type(self).metadata, "render_fps": 50 / beats}
         entry = weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
@@ -118,6 +134,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             high = [20.0, 20.0, 20.0, 1.0, 1.0, 1.0, 100.0, 100.0, 100.0, *[np.pi] * (2 * joints)]
         top = np.array(high, np.float32)
         self.observation_space = spaces.Box(-top, top, dtype=np.float32)
+        self._has_begun = False
         self._start()
 
     def _start(self) -> None:
@@ -142,6 +159,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             What is seen (zeros if actions are tables), and an empty dict.
         """
         super().reset(seed=seed)
+        self._has_begun = True
         self._start()
         if self._tables:
             return self._seen.copy(), {}
@@ -162,8 +180,10 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             whether time is up or physics stopped; and with a table all its figures.
 
         Raises:
-            UserError: if the episode is over, or the action space does not have the action.
+            UserError: if no episode has begun, if it is over, or the action space does not have the
+                action.
         """
+        self._require_begun()
         if self._over:
             raise UserError(say("environment.over"))
         target = self._middle + self._half * shares(action, self._shape)
@@ -182,7 +202,12 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return self.observe(), self._ahead_m() - before, fell, cut, {}
 
     def observe(self) -> Numbers:
-        """Return what is seen now, such as after `load`."""
+        """Return what is seen now, such as after `load`.
+
+        Raises:
+            UserError: if no episode has begun.
+        """
+        self._require_begun()
         if self._tables:
             return self._seen.copy()
         pose = self._world.pose()
@@ -194,7 +219,12 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return np.concatenate([seen, speed[2:], pose[7:], self._state.angles]).astype(np.float32)
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps, but not what `reset` will draw next."""
+        """Return the whole environment between two steps, but not what `reset` will draw next.
+
+        Raises:
+            UserError: if no episode has begun.
+        """
+        self._require_begun()
         return encode(
             _Saved(
                 self._world.model_hash,
@@ -216,12 +246,13 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
                 was.
         """
         try:
-            was = decode(saved, _Saved, 1 << 20)
+            was = decode(saved_bytes(saved), _Saved, 1 << 20)
             if was.model != self._world.model_hash:
                 raise ValueError("another robot was saved")
             self._world.load(was.world)
         except ValueError as error:
             raise UserError(say("environment.other-save", error=str(error)[:200])) from None
+        self._has_begun = True
         self._drive.target = was.target
         self._state = msgspec.structs.replace(self._state, angles=was.angles)
         self._steps, self._over = was.steps, was.over
@@ -235,6 +266,10 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     def close(self) -> None:
         """Free what draws pictures."""
         self._drawn.close()
+
+    def _require_begun(self) -> None:
+        if not self._has_begun:
+            raise UserError(say("environment.not-begun"))
 
     def _tick(self) -> bool:
         """Let a tick pass; return whether it passed."""
