@@ -244,6 +244,12 @@ def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path
         (("--beat", "120", "--players", "planner,-", "--keys", "left=keys.txt"), "both name"),
         (("--beat", "120", "--keys", "left=wrong.txt"), "Line 1 can't be used: 'f'"),
         (("--beat", "120", "--take-back", "999"), "event 999 can't be taken back"),
+        (("--beat", "120", "--out", "keys.txt"), "Cannot make the folder keys.txt: File exists"),
+        (("--beat", "120", "--out", "keys.txt/a"), "Cannot make the folder keys.txt/a: Not a dir"),
+        (
+            ("--beat", "120", "--out", "keys.txt", "--times", "2", "--players", "planner,planner"),
+            "Cannot make the folder keys.txt",
+        ),
     ],
 )
 def test_a_mistake_is_explained(
@@ -257,7 +263,7 @@ def test_a_mistake_is_explained(
     monkeypatch.chdir(tmp_path)
     Path("keys.txt").write_text("1.0 2\n")
     Path("wrong.txt").write_text("0 forward\n")
-    code, found = run(fork_app, str(file), *words, "--out", str(file.parent))
+    code, found = run(fork_app, str(file), "--out", str(file.parent), *words)
     assert code != 0
     assert said in found
     assert [*file.parent.glob("fork*")] == []

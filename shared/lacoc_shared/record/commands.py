@@ -128,11 +128,7 @@ def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
 
 
 def _save(folder: Path, match_id: str, made: list[tuple[str, bytes]]) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise UserError(say("command.cannot-make-folder", folder=str(folder), why=why)) from None
+    keep.make_folder(folder)
     for name, data in made:
         # The names of match and seats come from the record, and may be any text.
         path = folder / _NOT_IN_NAMES.sub("_", f"{match_id}-{name}")

@@ -10,6 +10,7 @@ from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate.forks.line import REFEREE, Change, Line
 from lacoc_server.simulate.forks.origin import Source, stem
+from lacoc_shared.command import keep
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
@@ -63,13 +64,15 @@ def fork(
     Raises:
         UserError: if the record has no such beat, if it can't be proven up to there on this
             machine (`journal.replay.resume`), if the match would refuse the change, or if the
-            fork's record exists already or can't be written.
+            fork's record exists already, or it or its folder can't be made.
     """
     before = stem(source, beat, match_id)
     out = packed_path(folder, match_id) if folder else None
     if out is not None and out.exists():
         raise UserError(say("record.exists", file=str(out)))
     match = resume(before.record, folder=arena).match
+    if folder is not None:
+        keep.make_folder(folder)  # before the fork is played, which takes long
     with tempfile.TemporaryDirectory() as scratch:
         segment = before.record.headers[-1].segment + 1
         journal = Journal(match, Path(scratch) if out else None, segment)
