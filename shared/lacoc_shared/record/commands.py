@@ -18,6 +18,7 @@ from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
+from lacoc_shared.record.forked import how
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase, render, say
@@ -267,10 +268,10 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[Phrase, Phrase |
     if record.lost:
         complete = say("info.part-lost")
     origin = record.header.setup.origin
-    fork = [
-        (say("info-name.fork"), say("info.fork", match=one.match_id, beat=one.beat))
-        for one in ([origin] if origin else [])
-    ]
+    fork: list[tuple[Phrase, Phrase | str]] = []
+    if origin is not None:
+        at = say("info.fork", match=origin.match_id, beat=origin.beat)
+        fork = [(say("info-name.fork"), at), (say("info-name.forked"), how(origin.changes))]
     return [
         (say("info-name.match"), match),
         *fork,

@@ -16,7 +16,7 @@ from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.record.pack import read, write
-from lacoc_shared.record.schema import Result
+from lacoc_shared.record.schema import ForkChanges, Result
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
@@ -45,6 +45,7 @@ def fork(
     beat: int,
     change: Change | None = None,
     *,
+    changes: ForkChanges | None = None,
     match_id: str = "fork",
     folder: Path | None = None,
     seconds: float | None = None,
@@ -56,6 +57,7 @@ def fork(
         source: the record.
         beat: first beat that the fork plays itself, at most the one after the record's last.
         change: how the fork differs from the record; None: it does not.
+        changes: the change in the words of the fork's record; None: the record does not say.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
         seconds: how long the fork goes on at most [s]; None: until play ends.
@@ -66,7 +68,7 @@ def fork(
             machine (`journal.replay.resume`), if the match would refuse the change, or if the
             fork's record exists already, or it or its folder can't be made.
     """
-    before = stem(source, beat, match_id)
+    before = stem(source, beat, match_id, changes)
     out = packed_path(folder, match_id) if folder else None
     if out is not None and out.exists():
         raise UserError(say("record.exists", file=str(out)))
