@@ -488,7 +488,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 
 
 def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
-    """Damage in a packed file's index or footer is reported, and the whole match can be read."""
+    """Damage in a packed file's index or footer is a flaw: the whole match is read, and not cut."""
     whole = packed.read_bytes()
     places = {opcode: at for at, opcode in _records_of(whole)}
     path = tmp_path / "m.mcap"
@@ -497,11 +497,35 @@ def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
         data[places[opcode] + 20] ^= 1
         path.write_bytes(data)
         record = Record.read(path)
-        assert record.lost, opcode
-        assert "has a damaged index" in words_of(record)
+        assert (record.lost, record.cut) == (False, None), opcode
+        assert record.flaw is not None
+        assert "has a damaged index. Nothing of the match is lost" in render(record.flaw)
         assert len(record.frames) == 40
     path.write_bytes(whole[:-1])
-    assert Record.read(path).lost
+    assert (Record.read(path).lost, Record.read(path).flaw is not None) == (False, True)
+
+
+def test_damage_that_hides_a_chunk_is_told(
+    tmp_path: Path, write_match: WriteMatch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If damage makes a chunk look like something else, the record says that messages are lost.
+
+    It says so too if the number of messages can't be read, because the index is damaged as well.
+    """
+    monkeypatch.setattr(pack, "CHUNK_BYTES", 1000)
+    path = tmp_path / "m.mcap"
+    pack.pack([write_match(tmp_path)], path)
+    whole = path.read_bytes()
+    places = {opcode: at for at, opcode in _records_of(whole)}
+    chunks = [at for at, opcode in _records_of(whole) if opcode == Opcode.CHUNK]
+    for places_hit in ([chunks[-1]], [chunks[-1], places[Opcode.STATISTICS] + 20]):
+        data = bytearray(whole)
+        for at in places_hit:
+            data[at] ^= 0x40
+        path.write_bytes(data)
+        record = Record.read(path)
+        assert record.lost
+        assert "is damaged between its messages, and some of them are lost" in words_of(record)
 
 
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:

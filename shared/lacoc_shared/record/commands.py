@@ -52,8 +52,8 @@ def info(
     for name, value in _lines(record, found):
         table.add_row(render(name), Text(render(value)))
     screen.show(table)
-    if record.cut:
-        screen.warn(record.cut)
+    if record.warning:
+        screen.warn(record.warning)
 
 
 @app.command()
@@ -84,8 +84,8 @@ def export(
     An older file of the same name is kept with a number.
     """
     record = Record.read(file)
-    if record.cut:
-        screen.warn(record.cut)
+    if record.warning:
+        screen.warn(record.warning)
     everything = not (pos_data or events or result or picture)
     makers: list[tuple[str, Callable[[Record], bytes]]] = [
         (f"Pos-data-{seat}.txt", partial(exports.pos_data, seat=seat))
@@ -161,6 +161,7 @@ def _summary(record: Record) -> dict[str, Any]:
         "complete": not record.cut,
         "lost": record.lost,
         "cut": render(record.cut) if record.cut else "",
+        "flaw": render(record.flaw) if record.flaw else "",
         "result": msgspec.to_builtins(record.result),
         "given_s": record.given_s,
         "health": msgspec.to_builtins(record.health),

@@ -107,6 +107,8 @@ def fork_command(
     is a fork of, and is nobody's official result.
     """
     source = opened(str(record_paths(file)[0]))
+    if source.record.warning:
+        screen.warn(source.record.warning)
     bots = tuple(players.split(",")) if players else ()
     if times > 1 and not any(name != brains.RECORDED for name in bots):
         raise UserError(say("fork.times-need-bots"))
