@@ -115,7 +115,7 @@ def test_a_segment_cut_anywhere_gives_every_whole_message(
     path.write_bytes(cut)
     whole = _messages(cut)
     if not whole:
-        with pytest.raises(UserError, match="There is no match in"):
+        with pytest.raises(UserError, match="there is no match in it"):
             Record.read(path)
         return
     record = Record.read(path)
@@ -315,6 +315,9 @@ def test_files_that_are_no_record_of_one_match_are_refused(
     """Files that are not one match's record are refused; the message says what is wrong."""
     table = tmp_path / "table.txt"
     table.write_text("1\t2\n")
+    empty, begun = tmp_path / "empty.mcap", tmp_path / "begun.mcap"
+    empty.touch()
+    begun.write_bytes(MCAP0_MAGIC)
     foreign = tmp_path / "foreign.mcap"
     with foreign.open("wb") as file:
         writer = Writer(file)
@@ -327,7 +330,11 @@ def test_files_that_are_no_record_of_one_match_are_refused(
     mine = write_match(tmp_path)
     for paths, sentence in (
         (tmp_path / "none.mcap", "There is no record"),
+        (tmp_path, "is a folder. Give the path of one"),
         (table, "it is not an MCAP file"),
+        (empty, r"empty.mcap is empty \(0 bytes\), so there is no match in it"),
+        (begun, "begun.mcap has 8 bytes, but not the whole header"),
+        ([empty, begun], "There is no match in the files .*empty.mcap, .*begun.mcap"),
         (foreign, "but not a LACOC record"),
         (newer.path, "has format 7, and this software reads format 1"),
         (late.path, "the segments before it are missing"),
@@ -533,7 +540,7 @@ def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed:
     path = tmp_path / "part.mcap"
     data = packed.read_bytes()
     path.write_bytes(data[: len(data) // 2])
-    with pytest.raises(NoMatch, match="not closed or not copied completely, or it is damaged"):
+    with pytest.raises(NoMatch, match="ends too early: it was not copied completely"):
         Record.read(path)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mcap.reader import make_reader
 from msgspec.structs import replace
 from stage import setup
 from typer.testing import CliRunner
@@ -342,12 +343,16 @@ def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: P
     assert "text.mcap" in said
     damaged = tmp_path / f"{MATCH}.mcap"
     shutil.copy(file, damaged)
+    with damaged.open("rb") as packed:
+        summary = make_reader(packed).get_summary()
+    assert summary is not None
     data = bytearray(damaged.read_bytes())
-    data[len(data) // 2] ^= 0xFF
+    data[summary.chunk_indexes[-1].chunk_start_offset + 100] ^= 0xFF
     damaged.write_bytes(data)
     code, said = run(fork_app, str(damaged), "--beat", "100", "--out", str(tmp_path))
     assert code != 0
-    assert "can't be forked, because a part of the record is lost or damaged" in said
+    assert "A part of the record is lost or damaged, so no match can go on from it." in said
+    assert said.count("again from where it was made") == 1
     record = source.record.until(source.last_beat)
     versions = {**record.header.versions, "mujoco": "1.2.3"}
     record.headers = [replace(record.header, versions=versions)]

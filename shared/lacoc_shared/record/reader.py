@@ -1,7 +1,7 @@
 """Read a record from its packed file or its segments, even if it is cut off anywhere."""
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
 from pathlib import Path
@@ -151,7 +151,7 @@ class Record:
         if not record.headers and record.lost and record.cut:
             raise NoMatch(say("recording.nothing", cut=record.cut))
         if not record.headers and paths:
-            raise NoMatch(say("recording.no-match", files=[str(path) for path in paths]))
+            raise NoMatch(_no_header(paths))
         if not record.headers:
             raise NoMatch(say("recording.no-files"))
         return record
@@ -254,6 +254,16 @@ class Record:
         for items in (self.frames, self.snapshots, self.sheets, self.scenes):
             while items and items[-1][0] >= beat:
                 items.pop()
+
+
+def _no_header(paths: Sequence[Path]) -> Phrase:
+    """Say what was found in files of which none has a whole header."""
+    if len(paths) > 1:
+        return say("recording.no-match", files=[str(path) for path in paths])
+    size = paths[0].stat().st_size
+    if size == 0:
+        return say("recording.empty", file=str(paths[0]))
+    return say("recording.no-header", file=str(paths[0]), bytes=size)
 
 
 def _drop(items: dict[int, V], beat: int) -> None:

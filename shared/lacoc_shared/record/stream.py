@@ -141,10 +141,10 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
             lost, told = len(data) - whole, printable(str(error), 200)
             fault = say("cut.damaged", byte=whole, bytes=len(data), error=told, lost=lost)
             return Stop(fault, damaged=True)
-    return Stop(
-        say("cut.no-end", lost=max(0, len(data) - whole) or None),
-        damaged=_is_packed(data),  # a file is packed whole before it gets its name
-    )
+    left = max(0, len(data) - whole) or None
+    if _is_packed(data):  # a file is packed whole before it gets its name
+        return Stop(say("cut.short", lost=left), damaged=True)
+    return Stop(say("cut.no-end", lost=left), damaged=False)
 
 
 def _damaged_index() -> Stop:

@@ -66,7 +66,7 @@ def read_source(path: Path) -> Source:
     messages: list[Message] = []
     record = Record.read(path, lambda *message: messages.append(message))
     if record.lost:
-        raise UserError(say("fork.damaged", file=str(path), cut=record.cut))
+        raise UserError(say("fork.damaged", cut=record.cut))
     return Source(record, tuple(messages))
 
 
