@@ -76,7 +76,11 @@ def export(
     ] = False,
     out: Annotated[
         Path,
-        typer.Option(metavar="DIR", help="Folder for the files; it is made if it does not exist."),
+        typer.Option(
+            metavar="DIR",
+            help="Folder for the files; it is made if it does not exist. By default the current "
+            "folder, not that of the record.",
+        ),
     ] = Path(),
 ) -> None:
     """Export tables, the result or a 3D view from a record; without an option, all of them.
