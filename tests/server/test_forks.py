@@ -247,33 +247,33 @@ def test_forks_can_be_told_apart(file: Path, source: Source, tmp_path: Path) -> 
     A bot's file is named without its folders, and each of several forks has other delays.
     """
     beat, number = flips(source)[0]
-    bot = tmp_path / "mine.py"
+    bot = tmp_path / "my_bot.py"
     bot.write_text("def bot(sheet, seat):\n    return lambda frame: None\n")
     words = ("--beat", str(beat + 1), "--seconds", "0.2", "--out", str(tmp_path))
     code, said = run(fork_app, str(file), *words)
     assert code == 0, said
-    assert "Nothing was changed." in said
+    assert "How it was made: nothing was changed." in said
     changes = ("--take-back", str(number), "--restart", "right", "--players", f"{bot},-")
     code, said = run(fork_app, str(file), *words, *changes)
     assert code == 0, said
     made = (
-        "How it was made: the bot mine.py plays left, recorded keys play right, "
-        f"event {number} was taken back, the robot of right was put back at its start."
+        "left: the bot my_bot.py, right: recorded keys, "
+        f"event {number} taken back, right: robot put back at its start"
     )
-    assert made in said
+    assert f"How it was made: {made}." in said
     code, said = run(fork_app, str(file), *words, *changes, "--times", "2", "--json")
     assert code == 0, said
     lines = [line for line in said.splitlines() if line.startswith("{")]
     first, second, odds = map(json.loads, lines)
     assert [one["made"]["variant"] for one in (first, second, odds)] == [1, 2, 0]
-    assert first["made"]["seats"][0] == {"seat": "left", "bot": "mine.py", "script": ""}
+    assert first["made"]["seats"][0] == {"seat": "left", "bot": "my_bot.py", "script": ""}
     path = Path(second["record"])
-    assert f"{made[:-1]}, delays of the bots: number 2." in run(record_app, "info", str(path))[1]
+    assert f"How it was made  {made}, delays of the bots: number 2\n" in run(record_app, "info", str(path))[1]
     told = json.loads(run(record_app, "info", str(path), "--json")[1])
     assert told["fork_of"]["changes"] == second["made"]
     use("ja")
     try:
-        assert "left の席はボット mine.py" in run(record_app, "info", str(path))[1]
+        assert "left の席はボット my_bot.py" in run(record_app, "info", str(path))[1]
     finally:
         use("en")
 
@@ -284,7 +284,7 @@ def test_a_fork_of_an_older_version_does_not_say_how(source: Source, tmp_path: P
     assert decode(encode(older), Origin).changes is None
     forked = fork(source, source.last_beat, match_id="f", folder=tmp_path)
     said = run(record_app, "info", str(forked.record))[1]
-    assert "Its record does not say how it was made." in said
+    assert "How it was made  its record does not say" in said
 
 
 @pytest.mark.parametrize(

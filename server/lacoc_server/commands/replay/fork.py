@@ -205,7 +205,7 @@ def _told(source: Source, job: ForkJob, forked: Forked) -> dict[str, Any]:
 
 def _show(source: Source, job: ForkJob, forked: Forked) -> None:
     screen.show(say("fork.made", match=source.match_id, beat=job.beat))
-    screen.show(how(changes_of(job, source)))
+    screen.show(say("fork.how", how=how(changes_of(job, source))))
     screen.show(_ending(forked.result, forked.phase))
     was = source.record.result
     if was is not None:
@@ -241,7 +241,7 @@ def _show_odds(source: Source, base: ForkJob, played: Sequence[Forked], json: bo
         screen.print_json({**told, "made": made})
         return
     screen.show(say("fork.odds", beat=base.beat, forks=len(played)))
-    screen.show(how(made))
+    screen.show(say("fork.how", how=how(made)))
     for seat, count in won.items():
         screen.show(say("fork.won", seat=seat, count=count, percent=100 * count / len(played)))
     if leads:
