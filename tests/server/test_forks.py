@@ -268,7 +268,8 @@ def test_forks_can_be_told_apart(file: Path, source: Source, tmp_path: Path) -> 
     assert [one["made"]["variant"] for one in (first, second, odds)] == [1, 2, 0]
     assert first["made"]["seats"][0] == {"seat": "left", "bot": "my_bot.py", "script": ""}
     path = Path(second["record"])
-    assert f"How it was made  {made}, delays of the bots: number 2\n" in run(record_app, "info", str(path))[1]
+    said = run(record_app, "info", str(path))[1]
+    assert f"How it was made  {made}, delays of the bots: number 2\n" in said
     told = json.loads(run(record_app, "info", str(path), "--json")[1])
     assert told["fork_of"]["changes"] == second["made"]
     use("ja")
