@@ -17,19 +17,23 @@ from lacoc_shared.record import notebook
 COLOURS = ("#0072b2", "#d55e00")
 SIZE_PX = 360
 MARGIN_PX = 48
+LEGEND_PX = 24
 JUMP_M = 0.1
+MOST_LINES = 8
+STEPS = (1, 2, 5, 10, 20, 50, 100)
 
 
 def picture(match: notebook.Match) -> str:
     """Return an SVG with the paths of the robots on the left and their points on the right."""
     wide = 2 * SIZE_PX + 3 * MARGIN_PX
-    high = SIZE_PX + 2 * MARGIN_PX
+    high = SIZE_PX + 2 * MARGIN_PX + LEGEND_PX
     paths = _paths(match, MARGIN_PX, MARGIN_PX)
     points = _points(match, SIZE_PX + 2 * MARGIN_PX, MARGIN_PX)
+    teams = _teams(match, MARGIN_PX, high - MARGIN_PX + LEGEND_PX)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" '
         f'font-family="sans-serif" font-size="13">'
-        f'<rect width="{wide}" height="{high}" fill="white"/>{paths}{points}</svg>\n'
+        f'<rect width="{wide}" height="{high}" fill="white"/>{paths}{points}{teams}</svg>\n'
     )
 
 
@@ -56,21 +60,42 @@ def _paths(match: notebook.Match, left: float, top: float) -> str:
 
 
 def _points(match: notebook.Match, left: float, top: float) -> str:
-    """Draw the score over the clock, and name the teams."""
+    """Draw the score over the clock, from the fewest points of a seat to the most."""
     clock_s, score = match.clock_s[match.playing], match.score[match.playing]
     last_s = max(1.0, float(clock_s.max(initial=0.0)))
-    most = max(1, int(score.max(initial=0)))
-    parts = [_frame(left, top, f"points, up to {most}", "0", f"{last_s:.0f} s")]
-    for seat, (robot, colour) in enumerate(zip(match.robots, COLOURS, strict=False)):
+    least = int(score.min()) if score.size else 0
+    most = max(least + 1, int(score.max(initial=least)))
+    step = next((one for one in STEPS if (most - least) / one <= MOST_LINES), most - least)
+    least = least // step * step
+    most = -(-most // step) * step
+    parts = [_frame(left, top, "points", "0", f"{last_s:.0f} s")]
+    for points in range(least, most + 1, step):
+        y_line = top + (most - points) / (most - least) * SIZE_PX
+        parts.append(
+            f'<path d="M{left} {y_line:.1f}h{SIZE_PX}" stroke="#ddd"/>'
+            f'<text x="{left - 6}" y="{y_line + 4:.1f}" fill="#555" text-anchor="end">{points}'
+            "</text>"
+        )
+    for seat, (_, colour) in enumerate(zip(match.robots, COLOURS, strict=False)):
         x = left + clock_s / last_s * SIZE_PX
-        y = top + (1 - score[:, seat] / most) * SIZE_PX
+        y = top + (most - score[:, seat]) / (most - least) * SIZE_PX
         turns = np.flatnonzero(np.diff(score[:, seat], prepend=-1, append=-1))
         kept = np.unique(np.clip(np.concatenate([turns, turns - 1]), 0, max(0, len(x) - 1)))
         if len(x):
             parts.append(_line(x[kept], y[kept], colour))
+    return "".join(parts)
+
+
+def _teams(match: notebook.Match, left: float, y: float) -> str:
+    """Name the teams below the drawings, each beside a line of its colour."""
+    parts = []
+    for seat, (robot, colour) in enumerate(zip(match.robots, COLOURS, strict=False)):
+        x = left + seat * (SIZE_PX + MARGIN_PX)
         name = escape(f"{robot.seat}: {robot.team}")
-        parts.append(f'<text x="{left + 10}" y="{top + 20 + 18 * seat}" fill="{colour}">{name}')
-        parts.append("</text>")
+        parts.append(
+            f'<path d="M{x} {y - 4}h20" stroke="{colour}" stroke-width="3"/>'
+            f'<text x="{x + 28}" y="{y}">{name}</text>'
+        )
     return "".join(parts)
 
 
@@ -91,13 +116,19 @@ def _line(x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> str:
 
 def main() -> None:
     """Read the record that the command line names, and write the picture."""
-    if len(sys.argv) != 3 or not sys.argv[2].endswith(".svg"):
+    if len(sys.argv) != 3:
         sys.exit("python examples/plot_match.py RECORD match.svg")
+    out = Path(sys.argv[2])
+    if out.suffix.lower() != ".svg":
+        sys.exit(f"The picture is an SVG file, so its name must end in .svg: {out} does not.")
     try:
         match = notebook.read(sys.argv[1])
     except UserError as error:
         sys.exit(str(error))
-    Path(sys.argv[2]).write_text(picture(match), encoding="utf-8")
+    try:
+        out.write_text(picture(match), encoding="utf-8")
+    except OSError as error:
+        sys.exit(f"Cannot write {out}: {error.strerror}.")
 
 
 if __name__ == "__main__":

@@ -82,6 +82,8 @@ STRUCTS = (
     office.AssignedSeat,
     office.Assigned,
     office.Whereabouts,
+    schema.ForkSeat,
+    schema.ForkChanges,
     schema.Origin,
     schema.Setup,
     schema.Header,

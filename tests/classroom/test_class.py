@@ -8,7 +8,7 @@ import signal
 import urllib.request
 import zipfile
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +17,14 @@ import pytest
 from class_room import ClassRoom, StudentPage, TeacherPage, until_kept
 from lacoc_process import run_lacoc
 from page_connection import Refused
+from typer.testing import CliRunner
 from waiting import LIMIT_S
 
+from lacoc_client.commands import class_
 from lacoc_client.gateway.wire import Kind
 from lacoc_robots.library import find_robot
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 
@@ -315,6 +319,30 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     closing.callback(desk.close)
     assert desk.card("Jo")["need"] == "hand"
     assert desk.card("Jo")["hand_up_s"] > 1e9
+
+
+@pytest.mark.parametrize("missing", ["the studio", "the robot"])
+def test_a_class_that_can_not_be_opened_leaves_no_folder(
+    missing: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the server's packages (no studio) or without its robot, a class makes no folder."""
+
+    @contextmanager
+    def studio() -> Iterator[str]:
+        if missing == "the studio":
+            raise UserError(say("doctor.no-mujoco-todo"))
+        yield "tcp/127.0.0.1:1"
+
+    monkeypatch.setattr(class_, "own_studio", studio)
+    folder = tmp_path / "class"
+    words = [str(folder), "--no-open", "--listen", "127.0.0.1:0", "--robot", "nobody"]
+    done = CliRunner().invoke(class_.app, words)
+    assert isinstance(done.exception, UserError)
+    assert not folder.exists()
+    folder.write_text("")
+    monkeypatch.setattr(class_, "own_studio", lambda: nullcontext("tcp/127.0.0.1:1"))
+    done = CliRunner().invoke(class_.app, words[:-2])
+    assert "Cannot make the folder" in str(done.exception)
 
 
 @pytest.mark.long

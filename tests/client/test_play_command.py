@@ -185,7 +185,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
     code, said = piped(tmp_path, script, "play", "--terminal", "--ready", *court.where("left"))
 
     assert code == 0
-    assert "Line 1 can't be used: 'w' " in said
+    assert "Line 1 can't be used: 'what' " in said
     assert "The match is finished: time is up." in said
     assert said.rstrip().endswith("You have left. The seat stays yours.")
     assert "refused" not in said

@@ -157,3 +157,30 @@ def test_the_example_draws_the_match(path: Path, example: ModuleType) -> None:
 
     assert len(lines) == 4  # two paths, two scores
     assert "left: Ants" in "".join(root.itertext())
+
+
+def test_the_example_s_axis_has_the_points_of_the_match(path: Path, example: ModuleType) -> None:
+    """The axis of points goes from the fewest points to the most, in round steps."""
+    match = notebook.read(path)
+    score = np.broadcast_to([[15, 21]], match.score.shape)
+    root = ElementTree.fromstring(example.picture(dataclasses.replace(match, score=score)))
+    labels = [one.text or "" for one in root if one.get("text-anchor") == "end"]
+
+    assert [label for label in labels if label.isdecimal()] == [str(n) for n in range(15, 22)]
+
+
+@pytest.mark.parametrize(
+    ("out", "said"),
+    [
+        ("a.png", "its name must end in .svg: a.png does not"),
+        ("none/a.svg", "Cannot write none/a.svg: No such file"),
+    ],
+)
+def test_the_example_explains_a_mistake(
+    out: str, said: str, path: Path, example: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If the picture can't be written where the user wants it, one line says why."""
+    monkeypatch.chdir(path.parent)
+    monkeypatch.setattr("sys.argv", ["plot_match.py", str(path), out])
+    with pytest.raises(SystemExit, match=said):
+        example.main()

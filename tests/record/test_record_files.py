@@ -115,7 +115,7 @@ def test_a_segment_cut_anywhere_gives_every_whole_message(
     path.write_bytes(cut)
     whole = _messages(cut)
     if not whole:
-        with pytest.raises(UserError, match="There is no match in"):
+        with pytest.raises(UserError, match="there is no match in it"):
             Record.read(path)
         return
     record = Record.read(path)
@@ -315,6 +315,9 @@ def test_files_that_are_no_record_of_one_match_are_refused(
     """Files that are not one match's record are refused; the message says what is wrong."""
     table = tmp_path / "table.txt"
     table.write_text("1\t2\n")
+    empty, begun = tmp_path / "empty.mcap", tmp_path / "begun.mcap"
+    empty.touch()
+    begun.write_bytes(MCAP0_MAGIC)
     foreign = tmp_path / "foreign.mcap"
     with foreign.open("wb") as file:
         writer = Writer(file)
@@ -327,7 +330,11 @@ def test_files_that_are_no_record_of_one_match_are_refused(
     mine = write_match(tmp_path)
     for paths, sentence in (
         (tmp_path / "none.mcap", "There is no record"),
+        (tmp_path, "is a folder. Give the path of one"),
         (table, "it is not an MCAP file"),
+        (empty, r"empty.mcap is empty \(0 bytes\), so there is no match in it"),
+        (begun, "begun.mcap has 8 bytes, but not the whole header"),
+        ([empty, begun], "There is no match in the files .*empty.mcap, .*begun.mcap"),
         (foreign, "but not a LACOC record"),
         (newer.path, "has format 7, and this software reads format 1"),
         (late.path, "the segments before it are missing"),
@@ -488,7 +495,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 
 
 def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
-    """Damage in a packed file's index or footer is reported, and the whole match can be read."""
+    """Damage in a packed file's index or footer is a flaw: the whole match is read, and not cut."""
     whole = packed.read_bytes()
     places = {opcode: at for at, opcode in _records_of(whole)}
     path = tmp_path / "m.mcap"
@@ -497,11 +504,35 @@ def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
         data[places[opcode] + 20] ^= 1
         path.write_bytes(data)
         record = Record.read(path)
-        assert record.lost, opcode
-        assert "has a damaged index" in words_of(record)
+        assert (record.lost, record.cut) == (False, None), opcode
+        assert record.flaw is not None
+        assert "has a damaged index. Nothing of the match is lost" in render(record.flaw)
         assert len(record.frames) == 40
     path.write_bytes(whole[:-1])
-    assert Record.read(path).lost
+    assert (Record.read(path).lost, Record.read(path).flaw is not None) == (False, True)
+
+
+def test_damage_that_hides_a_chunk_is_told(
+    tmp_path: Path, write_match: WriteMatch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If damage makes a chunk look like something else, the record says that messages are lost.
+
+    It says so too if the number of messages can't be read, because the index is damaged as well.
+    """
+    monkeypatch.setattr(pack, "CHUNK_BYTES", 1000)
+    path = tmp_path / "m.mcap"
+    pack.pack([write_match(tmp_path)], path)
+    whole = path.read_bytes()
+    places = {opcode: at for at, opcode in _records_of(whole)}
+    chunks = [at for at, opcode in _records_of(whole) if opcode == Opcode.CHUNK]
+    for places_hit in ([chunks[-1]], [chunks[-1], places[Opcode.STATISTICS] + 20]):
+        data = bytearray(whole)
+        for at in places_hit:
+            data[at] ^= 0x40
+        path.write_bytes(data)
+        record = Record.read(path)
+        assert record.lost
+        assert "is damaged between its messages, and some of them are lost" in words_of(record)
 
 
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
@@ -509,7 +540,7 @@ def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed:
     path = tmp_path / "part.mcap"
     data = packed.read_bytes()
     path.write_bytes(data[: len(data) // 2])
-    with pytest.raises(NoMatch, match="not closed or not copied completely, or it is damaged"):
+    with pytest.raises(NoMatch, match="ends too early: it was not copied completely"):
         Record.read(path)
 
 

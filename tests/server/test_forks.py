@@ -1,10 +1,12 @@
 """Tests of forks of a record: unchanged forks repeat it bit for bit, others go on as at a court."""
 
+import json
 import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+from mcap.reader import make_reader
 from msgspec.structs import replace
 from stage import setup
 from typer.testing import CliRunner
@@ -21,14 +23,18 @@ from lacoc_server.simulate.forks.fork import Forked, fork
 from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play
 from lacoc_server.simulate.forks.line import Change, of_bot
 from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.simulate.forks.script import Script
+from lacoc_shared.codec import decode, encode
 from lacoc_shared.decisions import TakeBack
 from lacoc_shared.inputs import Decide, KeySeat, SilentSeat
 from lacoc_shared.messages import DecisionReply
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.commands import app as record_app
 from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import ForkChanges, ForkSeat, Origin
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import render, say
+from lacoc_shared.words import render, say, use
 
 QUICK: dict[str, Any] = {
     "match": {"duration_s": 4.0, "countdown_s": 0.2},
@@ -141,7 +147,7 @@ def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path)
     job = ForkJob(
         file=str(file),
         beat=beat,
-        scripts={"left": ("1", "0.5 x")},
+        scripts={"left": Script("moves/left.txt", ("1", "0.5 x"))},
         restart=("right",),
         match_id="scripted",
         folder=str(tmp_path),
@@ -155,6 +161,12 @@ def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path)
     ]
     assert [key for _, key in own] == [1, 10]
     assert own[1][0] - own[0][0] == 25
+    origin = record.header.setup.origin
+    assert origin is not None
+    assert origin.changes == ForkChanges(
+        seats=(ForkSeat(seat="left", script="left.txt"), ForkSeat(seat="right")),
+        restart=("right",),
+    )
     restarts = [one.seat for one in record.events if one.kind in ("restart", "decision")]
     assert len(restarts) >= 2
     quiet = [x for items in record.inputs.values() for x in items if isinstance(x, SilentSeat)]
@@ -228,6 +240,54 @@ def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path
     assert "same, bit for bit" in said
 
 
+@pytest.mark.slow
+def test_forks_can_be_told_apart(file: Path, source: Source, tmp_path: Path) -> None:
+    """The command, its JSON and `replay info` say in both languages how a fork was made.
+
+    A bot's file is named without its folders, and each of several forks has other delays.
+    """
+    beat, number = flips(source)[0]
+    bot = tmp_path / "my_bot.py"
+    bot.write_text("def bot(sheet, seat):\n    return lambda frame: None\n")
+    words = ("--beat", str(beat + 1), "--seconds", "0.2", "--out", str(tmp_path))
+    code, said = run(fork_app, str(file), *words)
+    assert code == 0, said
+    assert "How it was made: nothing was changed." in said
+    changes = ("--take-back", str(number), "--restart", "right", "--players", f"{bot},-")
+    code, said = run(fork_app, str(file), *words, *changes)
+    assert code == 0, said
+    made = (
+        "left: the bot my_bot.py, right: recorded keys, "
+        f"event {number} taken back, right: robot put back at its start"
+    )
+    assert f"How it was made: {made}." in said
+    code, said = run(fork_app, str(file), *words, *changes, "--times", "2", "--json")
+    assert code == 0, said
+    lines = [line for line in said.splitlines() if line.startswith("{")]
+    first, second, odds = map(json.loads, lines)
+    assert [one["made"]["variant"] for one in (first, second, odds)] == [1, 2, 0]
+    assert first["made"]["seats"][0] == {"seat": "left", "bot": "my_bot.py", "script": ""}
+    path = Path(second["record"])
+    said = run(record_app, "info", str(path))[1]
+    assert f"How it was made  {made}, delays of the bots: number 2\n" in said
+    told = json.loads(run(record_app, "info", str(path), "--json")[1])
+    assert told["fork_of"]["changes"] == second["made"]
+    use("ja")
+    try:
+        assert "left の席はボット my_bot.py" in run(record_app, "info", str(path))[1]
+    finally:
+        use("en")
+
+
+def test_a_fork_of_an_older_version_does_not_say_how(source: Source, tmp_path: Path) -> None:
+    """A record whose origin has no changes, from an older version, is read, and says so."""
+    older = {"match_id": MATCH, "beat": 60, "record_hash": source.hash}
+    assert decode(encode(older), Origin).changes is None
+    forked = fork(source, source.last_beat, match_id="f", folder=tmp_path)
+    said = run(record_app, "info", str(forked.record))[1]
+    assert "How it was made  its record does not say" in said
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -242,8 +302,17 @@ def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path
         (("--beat", "120", "--keys", "left=none.txt"), "Cannot read none.txt"),
         (("--beat", "20", "--take-back", "12"), "Event 12 happens at beat"),
         (("--beat", "120", "--players", "planner,-", "--keys", "left=keys.txt"), "both name"),
-        (("--beat", "120", "--keys", "left=wrong.txt"), "Line 1 can't be used: 'f'"),
+        (
+            ("--beat", "120", "--keys", "left=wrong.txt"),
+            "The script wrong.txt has a mistake. Line 1 can't be used: 'forward'",
+        ),
         (("--beat", "120", "--take-back", "999"), "event 999 can't be taken back"),
+        (("--beat", "120", "--out", "keys.txt"), "Cannot make the folder keys.txt: File exists"),
+        (("--beat", "120", "--out", "keys.txt/a"), "Cannot make the folder keys.txt/a: Not a dir"),
+        (
+            ("--beat", "120", "--out", "keys.txt", "--times", "2", "--players", "planner,planner"),
+            "Cannot make the folder keys.txt",
+        ),
     ],
 )
 def test_a_mistake_is_explained(
@@ -257,7 +326,7 @@ def test_a_mistake_is_explained(
     monkeypatch.chdir(tmp_path)
     Path("keys.txt").write_text("1.0 2\n")
     Path("wrong.txt").write_text("0 forward\n")
-    code, found = run(fork_app, str(file), *words, "--out", str(file.parent))
+    code, found = run(fork_app, str(file), "--out", str(file.parent), *words)
     assert code != 0
     assert said in found
     assert [*file.parent.glob("fork*")] == []
@@ -275,12 +344,16 @@ def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: P
     assert "text.mcap" in said
     damaged = tmp_path / f"{MATCH}.mcap"
     shutil.copy(file, damaged)
+    with damaged.open("rb") as packed:
+        summary = make_reader(packed).get_summary()
+    assert summary is not None
     data = bytearray(damaged.read_bytes())
-    data[len(data) // 2] ^= 0xFF
+    data[summary.chunk_indexes[-1].chunk_start_offset + 100] ^= 0xFF
     damaged.write_bytes(data)
     code, said = run(fork_app, str(damaged), "--beat", "100", "--out", str(tmp_path))
     assert code != 0
-    assert "can't be forked, because a part of the record is lost or damaged" in said
+    assert "A part of the record is lost or damaged, so no match can go on from it." in said
+    assert said.count("again from where it was made") == 1
     record = source.record.until(source.last_beat)
     versions = {**record.header.versions, "mujoco": "1.2.3"}
     record.headers = [replace(record.header, versions=versions)]

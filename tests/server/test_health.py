@@ -154,6 +154,25 @@ def test_repeats_of_a_lossy_link() -> None:
     assert held.left.expected - held.left.arrived <= missed + 4
 
 
+@pytest.mark.parametrize("speed", [0.5, 5.0])
+def test_repeats_at_a_court_of_another_speed(speed: float) -> None:
+    """Controllers repeat ten times in a second of wall time, so at any speed nothing is lost.
+
+    If fewer commands come in a second of wall time, they have got lost.
+    """
+    held, lossy = Held(speed=speed), Held(speed=speed)
+    for beat in range(500):
+        before, after = (round(10 * at / (50 * speed)) for at in (beat, beat + 1))
+        held.heard += after - before
+        lossy.heard = held.heard // 2
+        held.beat(took_s=0.02 / speed)
+        lossy.beat(took_s=0.02 / speed)
+    seconds = int(499 / (50 * speed))
+    assert held.left.expected == 10 * seconds
+    assert held.verdict.advice == ()
+    assert lost(lossy.verdict) == ["left", "right"]
+
+
 def test_repeats_that_come_a_little_early_or_late() -> None:
     """If seconds with 9 and with 11 repeats alternate, at most one repeat counts as lost."""
     held = Held()

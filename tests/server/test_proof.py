@@ -12,12 +12,14 @@ from msgspec import structs
 from typer.testing import CliRunner
 from verdicts import verdict
 
+from lacoc_server.commands.replay.fork import app as fork_app
 from lacoc_server.commands.replay.verify import app as verify_app
 from lacoc_server.journal.section import Difference, Finding
 from lacoc_server.journal.verdict import Kind, Verdict, conclude, other_arithmetic
 from lacoc_server.world import arithmetic
 from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.messages import Frame
+from lacoc_shared.record.commands import app as record_app
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.words import render
@@ -216,6 +218,36 @@ def test_the_command_tells_the_verdict(paths: Sequence[Path]) -> None:
     assert done.exit_code == 0
     assert (told["same"], told["verdict"], told["lost"]) == (True, "same", False)
     assert told["arithmetic"] == {"record": HERE, "here": HERE}
+
+
+@pytest.mark.slow
+def test_a_damaged_index_loses_nothing(tmp_path: Path) -> None:
+    """If only the index of a record is damaged, all of it is proven, with a warning.
+
+    It can be forked too, and `info` says that it is complete.
+    """
+    path = play(tmp_path, 0, 0.5)
+    whole = Record.read(path)
+    data = bytearray(path.read_bytes())
+    data[-200] ^= 1
+    path.write_bytes(data)
+    done = CliRunner().invoke(verify_app, [str(path), "--json"])
+    told = json.loads(done.stdout)
+    assert done.exit_code == 0
+    assert (told["same"], told["verdict"], told["lost"]) == (True, "same", False)
+    assert told["beats"] == whole.last_beat + 1
+    assert "Nothing of the match is lost" in told["flaw"]
+    done = CliRunner().invoke(verify_app, [str(path)])
+    assert done.stdout.startswith("same, bit for bit")
+    assert "has a damaged index" in done.stdout
+    done = CliRunner().invoke(record_app, ["info", str(path), "--json"])
+    told = json.loads(done.stdout)
+    assert (told["complete"], told["cut"]) == (True, "")
+    assert "has a damaged index" in told["flaw"]
+    last = str(whole.last_beat)
+    done = CliRunner().invoke(fork_app, [str(path), "--beat", last, "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert "has a damaged index" in done.stderr
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from rich.table import Table
 from waiting import LIMIT_S
 
 from lacoc_shared.command import screen
@@ -23,6 +24,19 @@ def test_text_is_no_markup_and_is_never_broken(capsys: pytest.CaptureFixture[str
     screen.show(long)
 
     assert capsys.readouterr().out.rstrip() == long.rstrip()
+
+
+def test_a_table_in_a_pipe_is_not_padded(capsys: pytest.CaptureFixture[str]) -> None:
+    """In a pipe, a long cell of a table is not broken, and the lines of other cells are short."""
+    table = Table(show_header=False, box=None)
+    table.add_row("teams", "Ants")
+    table.add_row("how", "word " * 100 + "end")
+    screen.show(table)
+
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.split() == ["teams", "Ants"]
+    assert first == first.rstrip()
+    assert second.endswith("word end")
 
 
 def test_results_and_remarks_go_different_ways(capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,7 +22,7 @@ from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser, unseen
 from lacoc_client.gateway.files import PageFiles
 from lacoc_client.phases.class_file import forget
-from lacoc_shared.command import options, screen
+from lacoc_shared.command import keep, options, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
 
@@ -89,12 +89,12 @@ def open_command(
     folder again: code, students and tables are still there.
     """
     pages.check_pages(terminal=False)
-    folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as stack:
         opened = stack.enter_context(server.listen(listen))
         own = stack.enter_context(own_studio())
         studios = Studios([Asker(address) for address in (own, *(connect or ()))])
         classroom = Classroom(folder, studios, [server.url(opened)], robot)
+        keep.make_folder(folder)  # only now: whoever can't open a class gets no empty folder
         asyncio.run(classroom.open())
         address = server.url(opened)
         teacher = f"{address}{PATH}#key={classroom.state.key}"
@@ -123,7 +123,7 @@ def export_command(
     """Write what students did (evidence.csv) and their newest tables (tables.zip)."""
     files = kept.export(folder / CLASS_FILE)
     place = out or folder
-    place.mkdir(parents=True, exist_ok=True)
+    keep.make_folder(place)
     for name, data in files.items():
         (place / name).write_bytes(data)
         screen.show(say("class.written", file=str(place / name)))

@@ -115,8 +115,8 @@ def film_command(
         if moments is not None:
             parts = [replace(parts[0], chosen=tuple(ranked.from_file(moments)))]
     for part in parts:
-        if part.record.cut:
-            screen.warn(part.record.cut)
+        if part.record.warning:
+            screen.warn(part.record.warning)
     begin_s = time.monotonic()
     browsers = jobs or min(_BROWSERS_MOST, os.cpu_count() or 1)
     with screen.progress() as bar:

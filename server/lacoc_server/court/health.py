@@ -28,9 +28,16 @@ repeats and the next 9.
 
 
 class _Link:
-    """Counts of one seat's link during PLAYING."""
+    """Counts of one seat's link during PLAYING.
 
-    def __init__(self, before: LinkVerdict | None) -> None:
+    Args:
+        before: the counts before the court was killed; None: there are none.
+        second_beats: number of beats in a second of wall time. Controllers repeat their commands by
+            the wall clock, also at a court that runs at another speed.
+    """
+
+    def __init__(self, before: LinkVerdict | None, second_beats: int) -> None:
+        self._second_beats = second_beats
         self.silences = before.silences if before else 0
         self.silent_s = before.silent_s if before else 0.0
         self.expected = before.expected if before else 0
@@ -38,7 +45,7 @@ class _Link:
         self.refused = Counter(before.refused if before else {})
         self._silent = False
         self._heard: int | None = None
-        """Valid commands counted when this second of PLAYING began; None: no second has begun."""
+        """Valid commands counted when this second began; None: no second of PLAYING has begun."""
         self._counted = 0
         """Beats of this second so far."""
         self._carried = 0
@@ -57,7 +64,7 @@ class _Link:
             self._heard, self._counted = heard, 0
             return
         self._counted += 1
-        if self._counted == BEATS_PER_S:
+        if self._counted == self._second_beats:
             came = heard - self._heard + self._carried
             self.expected += REPEATS_HZ
             self.arrived += min(came, REPEATS_HZ)
@@ -108,7 +115,8 @@ class MatchHealth:
         self._worst_late_s = before.worst_late_ms / 1000 if before else 0.0
         self._faults = before.faults if before else 0
         seats = before.seats if before else [None] * len(match.seats)
-        self._links = [_Link(seat) for seat in seats]
+        second_beats = max(1, round(BEATS_PER_S * speed))
+        self._links = [_Link(seat, second_beats) for seat in seats]
 
     def begin(self, now_s: float, late_s: float, doors: Sequence[Door]) -> None:
         """Note that a beat begins.

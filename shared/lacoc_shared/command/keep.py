@@ -1,4 +1,4 @@
-"""Write files without losing older ones of the same name (workshop 4-1, rules 2)."""
+"""Make folders, and write files without losing older ones (workshop 4-1, rules 2)."""
 
 import itertools
 import os
@@ -6,6 +6,19 @@ from pathlib import Path
 
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those above it, if they do not exist.
+
+    Raises:
+        UserError: if it can't be made, for example because a file has its name.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-make-folder", folder=str(folder), why=why)) from None
 
 
 def save(path: Path, data: bytes) -> Path | None:

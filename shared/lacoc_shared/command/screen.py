@@ -62,7 +62,13 @@ def show(what: RenderableType | Phrase, to: Console | None = None) -> None:
     """
     if isinstance(what, Phrase):
         what = render(what)
-    (to or stdout).print(Text(what) if isinstance(what, str) else what)
+    console = to or stdout
+    if isinstance(what, Table) and not console.is_terminal:
+        with console.capture() as drawn:
+            console.print(what)
+        # One long cell must not pad the lines of all others.
+        what = "\n".join(line.rstrip() for line in drawn.get().splitlines())
+    console.print(Text(what) if isinstance(what, str) else what)
 
 
 def note(what: Phrase | str) -> None:

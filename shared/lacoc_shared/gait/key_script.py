@@ -43,15 +43,15 @@ class KeyScript:
             What is wrong with the line, which is then left out; else None.
         """
         self._lines += 1
-        words = line.partition("#")[0].lower().split()
+        words = line.partition("#")[0].split()
         wait_s = _number(words[0]) if len(words) > 1 else None
-        keys = [key for word in words[wait_s is not None :] for key in _keys(word)]
-        wrong = next((key for key in keys if not _known(key)), None)
+        typed = words[wait_s is not None :]
+        wrong = next((word for word in typed if not all(map(_known, _keys(word)))), None)
         if wrong is not None:
             return say("script.no-key", line=self._lines, key=wrong)
         if wait_s is not None and not 0 <= wait_s < math.inf:
             return say("script.no-time", line=self._lines, time=words[0])
-        for index, key in enumerate(keys):
+        for index, key in enumerate(key for word in typed for key in _keys(word)):
             self._steps.append(_Step(0.0 if index else wait_s or 0.0, key))
         return None
 
@@ -83,6 +83,8 @@ class KeyScript:
 
 
 def _keys(word: str) -> list[str]:
+    """Return the keys that a word stands for: one with a name, or one for each character."""
+    word = word.lower()
     return [word] if word in NAMED or len(word) == 1 else list(word)
 
 

@@ -375,7 +375,7 @@ class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
     silent_s: float
     """Time of PLAYING during which the seat was silent [s]."""
     expected: int
-    """Repeats of the seat's command that were due in PLAYING: ten a second."""
+    """Repeats of the seat's command that were due in PLAYING: ten in a second of wall time."""
     arrived: int
     """Repeats that arrived."""
     refused: dict[str, int]

@@ -18,6 +18,7 @@ from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
+from lacoc_shared.record.forked import how
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase, render, say
@@ -51,8 +52,8 @@ def info(
     for name, value in _lines(record, found):
         table.add_row(render(name), Text(render(value)))
     screen.show(table)
-    if record.cut:
-        screen.warn(record.cut)
+    if record.warning:
+        screen.warn(record.warning)
 
 
 @app.command()
@@ -75,7 +76,11 @@ def export(
     ] = False,
     out: Annotated[
         Path,
-        typer.Option(metavar="DIR", help="Folder for the files; it is made if it does not exist."),
+        typer.Option(
+            metavar="DIR",
+            help="Folder for the files; it is made if it does not exist. By default the current "
+            "folder, not that of the record.",
+        ),
     ] = Path(),
 ) -> None:
     """Export tables, the result or a 3D view from a record; without an option, all of them.
@@ -83,8 +88,8 @@ def export(
     An older file of the same name is kept with a number.
     """
     record = Record.read(file)
-    if record.cut:
-        screen.warn(record.cut)
+    if record.warning:
+        screen.warn(record.warning)
     everything = not (pos_data or events or result or picture)
     makers: list[tuple[str, Callable[[Record], bytes]]] = [
         (f"Pos-data-{seat}.txt", partial(exports.pos_data, seat=seat))
@@ -128,11 +133,7 @@ def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
 
 
 def _save(folder: Path, match_id: str, made: list[tuple[str, bytes]]) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise UserError(say("command.cannot-make-folder", folder=str(folder), why=why)) from None
+    keep.make_folder(folder)
     for name, data in made:
         # The names of match and seats come from the record, and may be any text.
         path = folder / _NOT_IN_NAMES.sub("_", f"{match_id}-{name}")
@@ -164,6 +165,7 @@ def _summary(record: Record) -> dict[str, Any]:
         "complete": not record.cut,
         "lost": record.lost,
         "cut": render(record.cut) if record.cut else "",
+        "flaw": render(record.flaw) if record.flaw else "",
         "result": msgspec.to_builtins(record.result),
         "given_s": record.given_s,
         "health": msgspec.to_builtins(record.health),
@@ -271,10 +273,10 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[Phrase, Phrase |
     if record.lost:
         complete = say("info.part-lost")
     origin = record.header.setup.origin
-    fork = [
-        (say("info-name.fork"), say("info.fork", match=one.match_id, beat=one.beat))
-        for one in ([origin] if origin else [])
-    ]
+    fork: list[tuple[Phrase, Phrase | str]] = []
+    if origin is not None:
+        at = say("info.fork", match=origin.match_id, beat=origin.beat)
+        fork = [(say("info-name.fork"), at), (say("info-name.forked"), how(origin.changes))]
     return [
         (say("info-name.match"), match),
         *fork,

@@ -51,8 +51,10 @@ def record_paths(path: Path) -> list[Path]:
         path: a packed file, or any one of the segments of a match.
 
     Raises:
-        UserError: if there is no such file.
+        UserError: if there is no such file, or it is a folder.
     """
+    if path.is_dir():
+        raise UserError(say("recording.folder", folder=str(path)))
     if not path.is_file():
         raise UserError(say("recording.none", file=str(path)))
     name = segment_name(path)

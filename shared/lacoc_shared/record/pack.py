@@ -8,12 +8,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from mcap.writer import Writer
 
 from lacoc_shared import __version__
+from lacoc_shared.command import keep
 from lacoc_shared.command.priority import TO_ALL, give_way
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
@@ -64,7 +65,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         for segment in segments:  # closed by now: Windows removes no open file
             segment.unlink(missing_ok=True)
     except OSError as error:
-        unfinished.unlink(missing_ok=True)
+        _remove(unfinished)
         why = error.strerror or str(error)
         raise UserError(say("pack.no-room", file=str(out), why=why)) from None
 
@@ -77,18 +78,18 @@ def write(messages: Sequence[Message], out: Path) -> None:
         out: the file.
 
     Raises:
-        UserError: if there is such a file already, or it can't be written.
+        UserError: if there is such a file already, or it or its folder can't be made.
     """
     if out.exists():
         raise UserError(say("record.exists", file=str(out)))
     unfinished = out.with_name(f"{out.name}.part")
+    keep.make_folder(out.parent)
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
         _write(messages, unfinished)
         unfinished.rename(out)
         files.sync_folder(out.parent)
     except OSError as error:
-        unfinished.unlink(missing_ok=True)
+        _remove(unfinished)
         why = error.strerror or str(error)
         raise UserError(say("command.cannot-write", path=str(out), why=why)) from None
 
@@ -205,6 +206,12 @@ def main(folder: str, *match_ids: str) -> int:
             print(error, file=sys.stderr)
             code = 2
     return code
+
+
+def _remove(unfinished: Path) -> None:
+    """Remove what was written of a file that could not be finished, as far as the disk allows."""
+    with suppress(OSError):
+        unfinished.unlink(missing_ok=True)
 
 
 def _copy(out: Path, *segments: Path) -> int:

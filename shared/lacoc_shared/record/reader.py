@@ -1,7 +1,7 @@
 """Read a record from its packed file or its segments, even if it is cut off anywhere."""
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
 from pathlib import Path
@@ -54,6 +54,8 @@ class Record:
     """The last beat with any message; -1: none."""
     cut: Phrase | None = None
     """How far the record could be read and why reading stopped; None if it is whole."""
+    flaw: Phrase | None = None
+    """Damage that loses nothing of the match, such as in the file's index; None: there is none."""
 
     gap: bool = False
     """Whether reading stopped because the next segment does not continue where the last one ends.
@@ -71,6 +73,11 @@ class Record:
     def result(self) -> Result | None:
         """The newest result; None if the match has not ended."""
         return self.results[-1] if self.results else None
+
+    @property
+    def warning(self) -> Phrase | None:
+        """What somebody who uses the record should know: where it ends early, or its flaw."""
+        return self.cut or self.flaw
 
     @property
     def given_s(self) -> float:
@@ -144,7 +151,7 @@ class Record:
         if not record.headers and record.lost and record.cut:
             raise NoMatch(say("recording.nothing", cut=record.cut))
         if not record.headers and paths:
-            raise NoMatch(say("recording.no-match", files=[str(path) for path in paths]))
+            raise NoMatch(_no_header(paths))
         if not record.headers:
             raise NoMatch(say("recording.no-files"))
         return record
@@ -160,10 +167,14 @@ class Record:
         if stop and len(self.headers) == before and before:
             return  # the court was killed while it opened this segment: nothing in it counts
         self.lost = stop is not None and stop.damaged
-        self.cut = None
+        self.cut = self.flaw = None
         if stop is not None:
-            beat = self.last_beat if self.last_beat >= 0 and not stop.is_all else None
-            self.cut = say("cut.file", file=str(path), beat=beat, why=stop.why)
+            beat = self.last_beat if self.last_beat >= 0 and not stop.at_end else None
+            said = say("cut.file", file=str(path), beat=beat, why=stop.why)
+            if stop.loses_nothing:
+                self.flaw = said
+            else:
+                self.cut = said
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
         """Add one message."""
@@ -243,6 +254,16 @@ class Record:
         for items in (self.frames, self.snapshots, self.sheets, self.scenes):
             while items and items[-1][0] >= beat:
                 items.pop()
+
+
+def _no_header(paths: Sequence[Path]) -> Phrase:
+    """Say what was found in files of which none has a whole header."""
+    if len(paths) > 1:
+        return say("recording.no-match", files=[str(path) for path in paths])
+    size = paths[0].stat().st_size
+    if size == 0:
+        return say("recording.empty", file=str(paths[0]))
+    return say("recording.no-header", file=str(paths[0]), bytes=size)
 
 
 def _drop(items: dict[int, V], beat: int) -> None:

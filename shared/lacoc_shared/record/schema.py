@@ -10,6 +10,36 @@ from lacoc_shared.messages.office import Assigned
 from lacoc_shared.words import Phrase
 
 
+class ForkSeat(msgspec.Struct, frozen=True, kw_only=True):
+    """Who plays a seat in a fork's own beats; without bot and script, its recorded keys do."""
+
+    seat: str
+    """Id of the seat."""
+    bot: str = ""
+    """The bot that plays it, as it was named; of a file the name alone, without its folders."""
+    script: str = ""
+    """File name of the key script that plays it."""
+
+
+class ForkChanges(msgspec.Struct, frozen=True, kw_only=True):
+    """How a fork's own beats were made from the match that it goes on from."""
+
+    seats: tuple[ForkSeat, ...]
+    """All seats, in the order of the arena."""
+    take_back: int | None = None
+    """Number of the event that was taken back; None: none."""
+    restart: tuple[str, ...] = ()
+    """Ids of the seats whose robots were put back at a start place."""
+    variant: int = 0
+    """Which delays its bots had: forks with other numbers had other ones. 0: none."""
+
+    @property
+    def is_none(self) -> bool:
+        """True if nothing was changed."""
+        players = any(one.bot or one.script for one in self.seats)
+        return not players and self.take_back is None and not self.restart
+
+
 class Origin(msgspec.Struct, frozen=True, kw_only=True):
     """What a fork goes on from: another match, up to a beat."""
 
@@ -18,7 +48,9 @@ class Origin(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     """First beat that the fork plays itself; it has all earlier beats from the other match."""
     record_hash: str
-    """Hash of that match's record (`hashing.record_hash`), hexadecimal."""
+    """Hash of the messages of that match's record, hexadecimal."""
+    changes: ForkChanges | None = None
+    """How the fork was made; None: its record is older and does not say."""
 
 
 class Setup(msgspec.Struct, frozen=True, kw_only=True):

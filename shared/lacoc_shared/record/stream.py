@@ -11,7 +11,7 @@ import msgspec
 import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message
+from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message, Statistics
 from mcap.records import Header as FileHeader
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
@@ -60,16 +60,21 @@ Take = Callable[[str, int, bytes, Any], None]
 
 
 class Stop(NamedTuple):
-    """The reason why a file can't be read any further."""
+    """A fault of a file, which mostly is the reason why it can't be read any further."""
 
     why: Phrase
     """The fault, as the end of a sentence (`cut.*`)."""
     damaged: bool
-    """Whether the file is damaged or incomplete; False: it was only not closed, as by a killed
-    court.
+    """Whether messages are lost, because the file is damaged or incomplete. False: it was only not
+    closed, as by a killed court, or the damage is beside the messages.
     """
-    is_all: bool = False
-    """Whether all messages were read in spite of the fault."""
+    at_end: bool = False
+    """Whether the file was read to the end of its messages in spite of the fault."""
+
+    @property
+    def loses_nothing(self) -> bool:
+        """True if all messages of the file were read in spite of the fault."""
+        return self.at_end and not self.damaged
 
 
 class _Format(msgspec.Struct):
@@ -112,7 +117,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
         raise UserError(say("recording.unreadable", file=str(path), why=why)) from None
     if data[: len(MCAP0_MAGIC)] != MCAP0_MAGIC[: len(data)]:
         raise UserError(say("recording.not-mcap", file=str(path)))
-    beat, whole = -1, len(MCAP0_MAGIC)
+    beat, whole, count = -1, len(MCAP0_MAGIC), 0
     topics: dict[int, str] = {}
     file = BytesIO(data)
     try:
@@ -121,6 +126,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
                 topic = topics[record.channel_id]
                 beat = _next_beat(beat, record.log_time // BEAT_NS, topic)
                 take(topic, beat, record.data)
+                count += 1
             elif isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, DataEnd):
@@ -130,19 +136,47 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
             whole = file.tell()
     except DAMAGE as error:
         if isinstance(error, CRCValidationError) and isinstance(error.record, DataEnd):
-            return _damaged_index()
+            return _damaged_data(data, file.tell(), count)
         if not _is_cut(data, whole):
             lost, told = len(data) - whole, printable(str(error), 200)
             fault = say("cut.damaged", byte=whole, bytes=len(data), error=told, lost=lost)
             return Stop(fault, damaged=True)
-    return Stop(
-        say("cut.no-end", lost=max(0, len(data) - whole) or None),
-        damaged=_is_packed(data),  # a file is packed whole before it gets its name
-    )
+    left = max(0, len(data) - whole) or None
+    if _is_packed(data):  # a file is packed whole before it gets its name
+        return Stop(say("cut.short", lost=left), damaged=True)
+    return Stop(say("cut.no-end", lost=left), damaged=False)
 
 
 def _damaged_index() -> Stop:
-    return Stop(say("cut.index"), damaged=True, is_all=True)
+    return Stop(say("cut.index"), damaged=False, at_end=True)
+
+
+def _damaged_data(data: bytes, at: int, count: int) -> Stop:
+    """Return the fault of a file whose data do not fit their checksum, though each chunk does.
+
+    If the damage made a chunk look like something else, its messages are lost. The statistics say
+    how many messages there should be.
+
+    Args:
+        data: the file.
+        at: byte at which its summary begins.
+        count: number of messages that were read.
+    """
+    if _messages_by_summary(data, at) == count:
+        return _damaged_index()
+    return Stop(say("cut.between"), damaged=True, at_end=True)
+
+
+def _messages_by_summary(data: bytes, at: int) -> int | None:
+    """Return how many messages a file has by its summary; None if the summary is damaged too."""
+    if _is_index_damaged(data, at):
+        return None
+    reader = StreamReader(BytesIO(data[at:]), skip_magic=True, record_size_limit=len(data))
+    try:
+        found = (one.message_count for one in reader.records if isinstance(one, Statistics))
+        return next(found, None)
+    except DAMAGE:
+        return None
 
 
 def _is_index_damaged(data: bytes, at: int) -> bool:

@@ -320,10 +320,24 @@ export interface Whereabouts {
   rank: number;
 }
 
+export interface ForkSeat {
+  seat: string;
+  bot: string;
+  script: string;
+}
+
+export interface ForkChanges {
+  seats: ForkSeat[];
+  take_back: number | null;
+  restart: string[];
+  variant: number;
+}
+
 export interface Origin {
   match_id: string;
   beat: number;
   record_hash: string;
+  changes: ForkChanges | null;
 }
 
 export interface Setup {

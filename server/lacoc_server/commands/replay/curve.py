@@ -64,6 +64,8 @@ def odds_of(
     """
     path = record_paths(file)[0]
     source = opened(str(path))
+    if source.record.warning:
+        screen.warn(source.record.warning)
     wish = Wish(
         file=str(path),
         bots=_bots(source, players, arena),

@@ -10,12 +10,14 @@ import typer
 
 from lacoc_arenas import brains
 from lacoc_server.simulate.forks.fork import Forked
-from lacoc_server.simulate.forks.jobs import ForkJob, attempt, opened, play
+from lacoc_server.simulate.forks.jobs import ForkJob, attempt, changes_of, opened, play
 from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.script import Script
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path, record_paths
+from lacoc_shared.record.forked import how
 from lacoc_shared.record.schema import Result
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, render, say
@@ -105,6 +107,8 @@ def fork_command(
     is a fork of, and is nobody's official result.
     """
     source = opened(str(record_paths(file)[0]))
+    if source.record.warning:
+        screen.warn(source.record.warning)
     bots = tuple(players.split(",")) if players else ()
     if times > 1 and not any(name != brains.RECORDED for name in bots):
         raise UserError(say("fork.times-need-bots"))
@@ -125,17 +129,17 @@ def fork_command(
     for job, forked in _played(forks, jobs):
         played.append(forked)
         if json:
-            screen.print_json(_told(job, forked))
+            screen.print_json(_told(source, job, forked))
         elif times == 1:
             _show(source, job, forked)
         elif forked.record:
             screen.show(str(forked.record))
     if times > 1:
-        _show_odds(source, beat, played, json)
+        _show_odds(source, base, played, json)
 
 
-def _scripts(given: Sequence[str]) -> dict[str, tuple[str, ...]]:
-    scripts: dict[str, tuple[str, ...]] = {}
+def _scripts(given: Sequence[str]) -> dict[str, Script]:
+    scripts: dict[str, Script] = {}
     for one in given:
         seat, mark, file = one.partition("=")
         if not (mark and seat and file):
@@ -145,7 +149,7 @@ def _scripts(given: Sequence[str]) -> dict[str, tuple[str, ...]]:
         except (OSError, UnicodeDecodeError) as error:
             why = getattr(error, "strerror", None) or str(error)
             raise UserError(say("command.cannot-read", path=file, why=why)) from None
-        scripts[seat] = tuple(text.splitlines())
+        scripts[seat] = Script(file, tuple(text.splitlines()))
     return scripts
 
 
@@ -182,12 +186,13 @@ def _played(forks: Sequence[ForkJob], jobs: int | None) -> Iterator[tuple[ForkJo
             yield job, found
 
 
-def _told(job: ForkJob, forked: Forked) -> dict[str, Any]:
+def _told(source: Source, job: ForkJob, forked: Forked) -> dict[str, Any]:
     return {
         "kind": "fork",
         "match_id": job.match_id,
         "beat": job.beat,
         "variant": job.variant,
+        "made": changes_of(job, source),
         "beats": forked.beats,
         "phase": forked.phase.name,
         "decided_beat": forked.decided_beat,
@@ -200,6 +205,7 @@ def _told(job: ForkJob, forked: Forked) -> dict[str, Any]:
 
 def _show(source: Source, job: ForkJob, forked: Forked) -> None:
     screen.show(say("fork.made", match=source.match_id, beat=job.beat))
+    screen.show(say("fork.how", how=how(changes_of(job, source))))
     screen.show(_ending(forked.result, forked.phase))
     was = source.record.result
     if was is not None:
@@ -222,7 +228,8 @@ def _ending(result: Result, phase: Phase) -> Phrase:
     return say("fork.ending", scores=scores, winner=result.computed, why=result.reason)
 
 
-def _show_odds(source: Source, beat: int, played: Sequence[Forked], json: bool) -> None:
+def _show_odds(source: Source, base: ForkJob, played: Sequence[Forked], json: bool) -> None:
+    made = changes_of(base, source)
     over = [one for one in played if one.result.computed]
     won = {
         seat: sum(one.result.computed == seat for one in over) for seat in (*source.seats, "draw")
@@ -230,10 +237,11 @@ def _show_odds(source: Source, beat: int, played: Sequence[Forked], json: bool) 
     others = [one.result.scores for one in played if not one.result.computed]
     leads = [scores[0] - max(scores[1:], default=0) for scores in others]
     if json:
-        told = {"kind": "odds", "beat": beat, "forks": len(played), "won": won, "leads": leads}
-        screen.print_json(told)
+        told = {"kind": "odds", "beat": base.beat, "forks": len(played), "won": won, "leads": leads}
+        screen.print_json({**told, "made": made})
         return
-    screen.show(say("fork.odds", beat=beat, forks=len(played)))
+    screen.show(say("fork.odds", beat=base.beat, forks=len(played)))
+    screen.show(say("fork.how", how=how(made)))
     for seat, count in won.items():
         screen.show(say("fork.won", seat=seat, count=count, percent=100 * count / len(played)))
     if leads:

@@ -52,7 +52,8 @@ def verify_command(
     from its recorded place.
 
     "beat N differs": the record is not what its inputs give. The exit code is 1, also if a part of
-    the record is lost or damaged.
+    the record is lost or damaged. If only the index of the file is damaged, nothing is lost: the
+    whole match is verified, and the exit code is that of the verdict.
 
     A fork ('lacoc replay fork') is verified as any record, and the first line says what it is a
     fork of.
@@ -92,6 +93,7 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
         "worst_section": verdict.worst,
         "text": render(verdict.said),
         "cut": render(record.cut) if record.cut else "",
+        "flaw": render(record.flaw) if record.flaw else "",
         "arithmetic": {"record": record.header.arithmetic, "here": dict(arithmetic.here())},
     }
 
@@ -116,5 +118,5 @@ def _lines(record: Record, verdict: Verdict) -> list[str]:
         there = record.headers[-1].arithmetic
         lines.append(other_arithmetic(there, arithmetic.here()))
     if not record.lost:
-        lines.append(record.cut)
+        lines.append(record.warning)
     return [render(line) for line in lines if line]

@@ -10,12 +10,13 @@ from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate.forks.line import REFEREE, Change, Line
 from lacoc_server.simulate.forks.origin import Source, stem
+from lacoc_shared.command import keep
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.record.pack import read, write
-from lacoc_shared.record.schema import Result
+from lacoc_shared.record.schema import ForkChanges, Result
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
@@ -44,6 +45,7 @@ def fork(
     beat: int,
     change: Change | None = None,
     *,
+    changes: ForkChanges | None = None,
     match_id: str = "fork",
     folder: Path | None = None,
     seconds: float | None = None,
@@ -55,6 +57,7 @@ def fork(
         source: the record.
         beat: first beat that the fork plays itself, at most the one after the record's last.
         change: how the fork differs from the record; None: it does not.
+        changes: the change in the words of the fork's record; None: the record does not say.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
         seconds: how long the fork goes on at most [s]; None: until play ends.
@@ -63,13 +66,15 @@ def fork(
     Raises:
         UserError: if the record has no such beat, if it can't be proven up to there on this
             machine (`journal.replay.resume`), if the match would refuse the change, or if the
-            fork's record exists already or can't be written.
+            fork's record exists already, or it or its folder can't be made.
     """
-    before = stem(source, beat, match_id)
+    before = stem(source, beat, match_id, changes)
     out = packed_path(folder, match_id) if folder else None
     if out is not None and out.exists():
         raise UserError(say("record.exists", file=str(out)))
     match = resume(before.record, folder=arena).match
+    if folder is not None:
+        keep.make_folder(folder)  # before the fork is played, which takes long
     with tempfile.TemporaryDirectory() as scratch:
         segment = before.record.headers[-1].segment + 1
         journal = Journal(match, Path(scratch) if out else None, segment)

@@ -12,8 +12,9 @@ from lacoc_arenas.bot import BotFactory
 from lacoc_server.simulate.forks.fork import Forked, fork
 from lacoc_server.simulate.forks.line import Change, Press, of_bot
 from lacoc_server.simulate.forks.origin import Source, read_source
-from lacoc_server.simulate.forks.script import of_script
+from lacoc_server.simulate.forks.script import Script, of_script
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.schema import ForkChanges, ForkSeat
 from lacoc_shared.words import Phrase, say
 
 
@@ -25,8 +26,8 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     take_back: int | None = None
     restart: tuple[str, ...] = ()
-    scripts: dict[str, tuple[str, ...]] = {}
-    """Lines of a key script, by seat id."""
+    scripts: dict[str, Script] = {}
+    """A key script, by seat id."""
     bots: tuple[str, ...] = ()
     """The bot of each seat, or `brains.RECORDED`; empty: all seats keep their recorded keys."""
     variant: int = 0
@@ -53,6 +54,7 @@ def play(job: ForkJob) -> Forked:
         source,
         job.beat,
         _change(job, source, arena),
+        changes=changes_of(job, source),
         match_id=job.match_id,
         folder=folder,
         seconds=job.seconds,
@@ -89,6 +91,30 @@ def bots_of(source: Source, names: tuple[str, ...], folder: Path | None) -> list
     return [brains.find(arena, name) for name in names]
 
 
+def changes_of(job: ForkJob, source: Source) -> ForkChanges:
+    """Return how a fork is made, as its record names it."""
+    bots = dict(zip(source.seats, job.bots, strict=False))
+    seats = tuple(
+        ForkSeat(seat=seat, bot=_bot_name(bots.get(seat, "")), script=_script_name(job, seat))
+        for seat in source.seats
+    )
+    return ForkChanges(
+        seats=seats, take_back=job.take_back, restart=job.restart, variant=job.variant
+    )
+
+
+def _bot_name(bot: str) -> str:
+    """Return a bot's name for a record: where its file is concerns nobody who gets the record."""
+    if bot == brains.RECORDED:
+        return ""
+    ghost = brains.GHOST if bot.startswith(brains.GHOST) else ""
+    return ghost + Path(bot.removeprefix(ghost)).name
+
+
+def _script_name(job: ForkJob, seat: str) -> str:
+    return Path(job.scripts[seat].file).name if seat in job.scripts else ""
+
+
 def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
     seats = source.seats
     for seat in (*job.restart, *job.scripts):
@@ -102,10 +128,10 @@ def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
         if name != brains.RECORDED:
             (bot,) = bots_of(source, (name,), folder)
             players[index] = of_bot(bot, index, job.variant)
-    for seat, lines in job.scripts.items():
+    for seat, script in job.scripts.items():
         if seats.index(seat) in players:
             raise UserError(say("fork.two-players", seat=seat))
-        players[seats.index(seat)] = of_script(lines, seats.index(seat))
+        players[seats.index(seat)] = of_script(script, seats.index(seat))
     return Change(job.take_back, job.restart, players)
 
 

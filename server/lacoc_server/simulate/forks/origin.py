@@ -13,7 +13,7 @@ from lacoc_shared.messages import Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.pack import Message
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import Header, Origin, Result, Setup
+from lacoc_shared.record.schema import ForkChanges, Header, Origin, Result, Setup
 from lacoc_shared.words import say
 
 COURT = "fork"
@@ -66,7 +66,7 @@ def read_source(path: Path) -> Source:
     messages: list[Message] = []
     record = Record.read(path, lambda *message: messages.append(message))
     if record.lost:
-        raise UserError(say("fork.damaged", file=str(path), cut=record.cut))
+        raise UserError(say("fork.damaged", cut=record.cut))
     return Source(record, tuple(messages))
 
 
@@ -82,13 +82,14 @@ class Stem:
     """Setup of the fork."""
 
 
-def stem(source: Source, beat: int, match_id: str) -> Stem:
+def stem(source: Source, beat: int, match_id: str, changes: ForkChanges | None = None) -> Stem:
     """Return the part of a record that a fork goes on from.
 
     Args:
         source: the record.
         beat: first beat that the fork plays itself.
         match_id: id of the fork.
+        changes: how the fork is made, for its record; None: the record does not say.
 
     Raises:
         UserError: if the record has no such beat.
@@ -96,7 +97,7 @@ def stem(source: Source, beat: int, match_id: str) -> Stem:
     first, last = 1, source.last_beat + 1
     if not first <= beat <= last:
         raise UserError(say("fork.no-beat", beat=beat, first=first, last=last))
-    setup = _setup(source, beat, match_id)
+    setup = _setup(source, beat, match_id, changes)
     before = source.record.until(beat - 1)
     headers = [_header(header, setup) for header in before.headers]
     before.headers = headers
@@ -105,10 +106,15 @@ def stem(source: Source, beat: int, match_id: str) -> Stem:
     return Stem(before, tuple(_messages(source, beat, setup)), setup)
 
 
-def _setup(source: Source, beat: int, match_id: str) -> Setup:
+def _setup(source: Source, beat: int, match_id: str, changes: ForkChanges | None) -> Setup:
     """Return a fork's setup: nothing in it can be taken for the match that was played."""
     was = source.record.header.setup
-    origin = Origin(match_id=was.match_id or source.match_id, beat=beat, record_hash=source.hash)
+    origin = Origin(
+        match_id=was.match_id or source.match_id,
+        beat=beat,
+        record_hash=source.hash,
+        changes=changes,
+    )
     assigned = was.assigned
     if assigned is not None and assigned.call:
         # The call would make this the game of a contest. Seats and files stay, because the match

@@ -1,6 +1,8 @@
 """Plays a seat of a fork from a script of keys (`gait.key_script` has its form)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+
+import msgspec
 
 from lacoc_arenas.bot import Key
 from lacoc_server.match.match import Match
@@ -10,31 +12,40 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEAT_S, RESTART_KEY
+from lacoc_shared.words import say
 
 
-def of_script(lines: Sequence[str], seat: int) -> Callable[[], Press]:
+class Script(msgspec.Struct, frozen=True):
+    """A file with a script."""
+
+    file: str
+    """Path of the file, as it was given."""
+    lines: tuple[str, ...]
+
+
+def of_script(file: Script, seat: int) -> Callable[[], Press]:
     """Return a player that presses the keys of a script; its times count from the fork's start.
 
     Args:
-        lines: the script.
+        file: the script.
         seat: index of the seat.
 
     Raises:
         UserError: if a line has a mistake.
     """
-    _script(lines)
+    _script(file)
 
     def make() -> Press:
-        return _ScriptPress(_script(lines), seat)
+        return _ScriptPress(_script(file), seat)
 
     return make
 
 
-def _script(lines: Sequence[str]) -> KeyScript:
+def _script(file: Script) -> KeyScript:
     script = KeyScript()
-    for line in lines:
+    for line in file.lines:
         if wrong := script.add(line):
-            raise UserError(wrong)
+            raise UserError(say("fork.bad-script", file=file.file, why=wrong))
     return script
 
 
