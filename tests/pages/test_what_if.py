@@ -124,6 +124,8 @@ def test_a_page_with_the_key_goes_on_from_where_it_is(library: Venue, open_page:
     dialog.locator("input[name=restart-left]").check()
     dialog.get_by_role("button", name="Play on").click()
     show.sees(".fork-note", f"a fork of {MATCH} at beat 150")
+    show.sees(".fork-note", "right: the bot straight")
+    show.sees(".fork-note", "left: robot put back at its start")
     show.sees(".scene.two .line:nth-child(2) .line-score", "The match")
     with page.expect_download() as coming:
         page.get_by_text("Save the fork's record").click()

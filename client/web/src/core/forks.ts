@@ -1,6 +1,8 @@
 /** Asks the gateway to go on with one of its recordings: a fork, which is a recording too. */
 
 import { ownPage, runKey } from "./address";
+import type { Phrase } from "./phrase";
+import type { ForkChanges } from "./wire";
 
 /** How to go on. */
 export interface ForkAsk {
@@ -39,4 +41,23 @@ async function ask(name: string, language: string, body?: string): Promise<unkno
   });
   if (!response.ok) throw new Error((await response.text()).trim());
   return response.json();
+}
+
+/** Say how a fork was made, as `lacoc replay info` does; null: its record does not say. */
+export function how(changes: ForkChanges | null): Phrase[] | null {
+  if (!changes) return null;
+  const { seats, take_back, restart, variant } = changes;
+  const played = seats.some(({ bot, script }) => bot || script);
+  return [
+    ...(played ? seats.map(player) : []),
+    ...(take_back === null ? [] : [{ code: "forked.take-back", values: { event: take_back } }]),
+    ...restart.map((seat) => ({ code: "forked.restart", values: { seat } })),
+    ...(variant ? [{ code: "forked.variant", values: { variant } }] : []),
+  ];
+}
+
+function player({ seat, bot, script }: ForkChanges["seats"][number]): Phrase {
+  if (bot) return { code: "forked.bot", values: { seat, bot } };
+  if (script) return { code: "forked.script", values: { seat, script } };
+  return { code: "forked.recorded", values: { seat } };
 }

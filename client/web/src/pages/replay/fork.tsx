@@ -3,9 +3,10 @@
 import type { ReadonlySignal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { ownPage } from "../../core/address";
+import { how } from "../../core/forks";
 import { type Match, scoresOf } from "../../core/match";
 import type { Recording } from "../../core/recording";
-import { t } from "../../i18n";
+import { said, t } from "../../i18n";
 
 interface Props {
   recording: Recording;
@@ -23,7 +24,14 @@ export function ForkNote({ recording, beside, server, onBeside }: Props) {
   if (!origin) return null;
   return (
     <div class="notes fork-note" role="note">
-      <p>{t("replay.fork", { match: origin.match_id, beat: origin.beat })}</p>
+      <p>
+        {t("replay.fork", { match: origin.match_id, beat: origin.beat })}
+        {how(origin.changes)?.map((change) => (
+          <span class="change" key={change.code + change.values?.seat}>
+            {said(change)}
+          </span>
+        ))}
+      </p>
       {onBeside && (
         <button
           class="button quiet"
