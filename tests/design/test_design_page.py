@@ -214,7 +214,8 @@ def searched(page: DesignClient, do: str, **fields: Any) -> Any:
         try:
             found.append(page.ask(do, **fields))
         except Refused as refusal:
-            assert refusal.reply["again"] or str(refusal) == "studio.job-taken"
+            if not refusal.reply["again"] and str(refusal) != "studio.job-taken":
+                raise
         return bool(found)
 
     until(ask)
