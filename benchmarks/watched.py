@@ -3,8 +3,8 @@
 A real court plays a match with two controllers; `--courts 4` are four of them, each with its match.
 The crowd is any number of pages through one gateway and of direct spectators of the first court,
 for instance `--pages 300` or `--direct 100`. Pages watch the courts in turns. Rounds without and
-with the crowd take turns. The time of a beat is its whole work on the wall clock. The crowd stands
-for other machines: its processes run on the last core, when nothing else wants it (Linux only).
+with the crowd take turns. The time of a beat is its whole work on the wall clock. The crowd runs in
+its own processes on the last core, where it disturbs the courts least (Linux only).
 """
 
 import argparse
@@ -137,7 +137,6 @@ def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subpro
         return
     with started(module, *words) as process:
         os.sched_setaffinity(process.pid, sorted(os.sched_getaffinity(0))[-1:])
-        os.sched_setscheduler(process.pid, os.SCHED_IDLE, os.sched_param(0))
         read_line(process)
         yield [process]
 

@@ -16,7 +16,6 @@ from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_client.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
-from lacoc_shared.command.priority import TO_COURTS, give_way
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.entrances import page_key
 from lacoc_shared.contest.file import Contest
@@ -99,7 +98,6 @@ def web_command(
     key, and enter the token of the seat or of the referee. The pages wait for a court that is not
     running yet.
     """
-    give_way(TO_COURTS)  # often on the same machine
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
     home = Home(

@@ -2,8 +2,6 @@
 
 import os
 
-TO_COURTS = 5
-"""For processes that many people wait for, but that must not delay a beat."""
 TO_ALL = 10
 """For work in the background."""
 
@@ -14,7 +12,7 @@ def give_way(steps: int) -> None:
     Threads that run already keep theirs, so call it first.
 
     Args:
-        steps: by how much; `TO_COURTS` or `TO_ALL`.
+        steps: by how much, such as `TO_ALL`.
     """
     if hasattr(os, "nice"):
         os.nice(steps)
