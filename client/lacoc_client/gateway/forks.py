@@ -17,7 +17,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_shared.command import plugins
 from lacoc_shared.command.child import apart, command_line
-from lacoc_shared.command.priority import TO_ALL
+from lacoc_shared.command.priority import BACKGROUND
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.words import render, say
@@ -111,7 +111,7 @@ class Forks:
         self._process = process
         if hasattr(os, "setpriority"):
             with contextlib.suppress(OSError):  # it has ended already
-                os.setpriority(os.PRIO_PROCESS, process.pid, TO_ALL)
+                os.setpriority(os.PRIO_PROCESS, process.pid, BACKGROUND)
         try:
             out, errors = await asyncio.wait_for(_output(process), _LIMIT_S)
         except TimeoutError:

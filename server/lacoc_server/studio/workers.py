@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
 from typing import Any, NamedTuple, ParamSpec, Self, TypeVar
 
-from lacoc_shared.command.priority import TO_ALL, give_way
+from lacoc_shared.command.priority import give_way
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -172,7 +172,7 @@ def _work(connection: "Connection[Any, Any]", background: bool) -> None:
     """Run the functions that come through the pipe until its other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:
-        give_way(TO_ALL)
+        give_way()
     with contextlib.suppress(EOFError, OSError):
         while True:
             function, arguments = connection.recv()

@@ -15,7 +15,7 @@ from mcap.writer import Writer
 
 from lacoc_shared import __version__
 from lacoc_shared.command import keep
-from lacoc_shared.command.priority import TO_ALL, give_way
+from lacoc_shared.command.priority import give_way
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.reader import Record
@@ -192,7 +192,7 @@ def main(folder: str, *match_ids: str) -> int:
     With "--copy" in place of the folder, the other arguments are the path of a packed file and the
     segments of one match. The segments are packed into that file, and stay.
     """
-    give_way(TO_ALL)  # the next match is running
+    give_way()  # the next match is running
     if folder == "--copy":
         return _copy(*map(Path, match_ids))
     code = 0
