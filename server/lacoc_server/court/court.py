@@ -28,6 +28,7 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import Unfinished
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
+from lacoc_shared.command.priority import go_first
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Abort, Halt
 from lacoc_shared.inputs import THE_COURT, Advice, Decide, Input, JoinSeat
@@ -132,6 +133,8 @@ class Court:
         An error in the loop ends the court but not its match: the next start goes on with it. It
         also goes on with an assigned match that is not over: the office waits for its result.
         """
+        if self._settings.speed <= 1:  # a faster court takes too much time to go first
+            go_first()
         pace = self._pace
         self._archive.pack(self.match_id)
         try:

@@ -1,9 +1,30 @@
-"""Lets work in the background give way where there are not enough processors for all."""
+"""Says which work goes first where there are not enough processors for all."""
 
+import contextlib
 import os
+import sys
 
 BACKGROUND = 10
 """By how much the priority of work in the background is lower (`nice`)."""
+_LOWEST_REAL_TIME = 1
+
+
+def go_first() -> bool:
+    """Give this thread real-time priority, so that it need not wait for ordinary programs.
+
+    For a thread that has little to do, at moments that matter. Threads and processes that it starts
+    have the usual priority.
+
+    Returns:
+        Whether the system allows it. Only Linux does, for root and for those with a limit `rtprio`.
+    """
+    if sys.platform != "linux":
+        return False
+    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+    with contextlib.suppress(PermissionError):
+        os.sched_setscheduler(0, policy, os.sched_param(_LOWEST_REAL_TIME))
+        return True
+    return False
 
 
 def give_way() -> None:

@@ -1,0 +1,53 @@
+"""Which work goes first: real-time priority for a thread, where the system allows it."""
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from lacoc_shared.command.priority import go_first
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has this priority")
+
+
+def policy() -> int:
+    return os.sched_getscheduler(0)
+
+
+def test_a_thread_goes_first() -> None:
+    """The thread alone gets the priority, not the threads and programs that it starts."""
+    with ThreadPoolExecutor(1) as thread:
+        if not thread.submit(go_first).result():
+            pytest.skip("this system does not allow it")
+        assert thread.submit(policy).result() & os.SCHED_FIFO
+        started = thread.submit(_policies_of_started).result()
+    assert policy() == os.SCHED_OTHER
+    assert started == [os.SCHED_OTHER, os.SCHED_OTHER]
+
+
+def _policies_of_started() -> list[int]:
+    with ThreadPoolExecutor(1) as inner:
+        thread = inner.submit(policy).result()
+    said = subprocess.check_output([sys.executable, "-c", _SAY_POLICY], text=True)
+    return [thread, int(said)]
+
+
+_SAY_POLICY = "import os; print(os.sched_getscheduler(0))"
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid(), reason="only root can forbid it")
+def test_a_system_may_forbid_it() -> None:
+    """Without the right to it nothing changes."""
+    said = subprocess.check_output([sys.executable, "-c", _WITHOUT_RIGHTS], text=True)
+    assert said.split() == ["False", str(os.SCHED_OTHER)]
+
+
+_WITHOUT_RIGHTS = """
+import os, resource
+from lacoc_shared.command.priority import go_first
+resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+os.setuid(65534)
+print(go_first(), os.sched_getscheduler(0))
+"""
