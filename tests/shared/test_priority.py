@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from lacoc_shared.command.priority import go_first
+from lacoc_shared.command.priority import go_first, take_turns
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has this priority")
 
@@ -23,6 +23,8 @@ def test_a_thread_goes_first() -> None:
             pytest.skip("this system does not allow it")
         assert thread.submit(policy).result() & os.SCHED_FIFO
         started = thread.submit(_policies_of_started).result()
+        thread.submit(take_turns).result()
+        assert thread.submit(policy).result() == os.SCHED_OTHER
     assert policy() == os.SCHED_OTHER
     assert started == [os.SCHED_OTHER, os.SCHED_OTHER]
 

@@ -28,7 +28,7 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import Unfinished
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
-from lacoc_shared.command.priority import go_first
+from lacoc_shared.command.priority import go_first, take_turns
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Abort, Halt
 from lacoc_shared.inputs import THE_COURT, Advice, Decide, Input, JoinSeat
@@ -43,6 +43,8 @@ from lacoc_shared.words import Phrase, say
 
 HEALTH_BEATS = BEATS_PER_S // 2
 """Beats between two health messages: two messages a second."""
+_LEAST_FACTOR = 0.9
+"""A court that is slower than this share of real time does not go before other programs."""
 
 
 @dataclass(frozen=True)
@@ -133,8 +135,6 @@ class Court:
         An error in the loop ends the court but not its match: the next start goes on with it. It
         also goes on with an assigned match that is not over: the office waits for its result.
         """
-        if self._settings.speed <= 1:  # a faster court takes too much time to go first
-            go_first()
         pace = self._pace
         self._archive.pack(self.match_id)
         try:
@@ -335,6 +335,11 @@ class Court:
         self._network.publish_health(health)
         self._log.health(self.match_id, health)
         self.metrics.health(self.match_id, health, self._network.doors())
+        # A court that always has work would leave nothing to others if it went first.
+        if self._settings.speed <= 1 and health.real_time_factor > _LEAST_FACTOR:
+            go_first()
+        else:
+            take_turns()
 
 
 def _offset_s(locators: tuple[str, ...]) -> float:

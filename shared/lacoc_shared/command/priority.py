@@ -27,6 +27,12 @@ def go_first() -> bool:
     return False
 
 
+def take_turns() -> None:
+    """Give this thread the usual priority again."""
+    if sys.platform == "linux":
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+
 def give_way() -> None:
     """Lower the priority of this process, on systems that have `nice`.
 
