@@ -24,6 +24,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+import dask
 from distributed import LocalCluster
 
 from lacoc_arenas import arena as arenas
@@ -40,6 +41,7 @@ from lacoc_shared.contest.tokens import new_token
 _DASK_MOST = 1.05
 """Most that Dask may cost, as a multiple of the pool's time."""
 _AGAIN_MOST_S = 2.0
+_SETTINGS = Path(__file__).parents[1] / "examples" / "dask.yaml"
 _STAGE = """
 [contest]
 name = "Headless"
@@ -161,6 +163,7 @@ def _cluster(workers: int) -> Iterator[str]:
 
 
 def _serve(workers: int, pipe: Connection) -> None:
+    dask.config.update(dask.config.config, dask.config.collect([str(_SETTINGS)], env={}))
     with LocalCluster(workers, threads_per_worker=1, dashboard_address=None) as cluster:
         pipe.send(cluster.scheduler_address)
         pipe.recv()
