@@ -148,6 +148,8 @@ class Court:
         except BaseException:
             self._journal.leave()
             raise
+        finally:
+            take_turns()
         match = self._journal.match
         if match.assigned is not None and not match.is_over:
             self._journal.leave()
