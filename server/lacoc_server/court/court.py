@@ -145,6 +145,8 @@ class Court:
                 self._health.begin(now_s, pace.late_s, self._network.doors())
                 self._beat(now_s)
                 self.metrics.beat(time.monotonic() - now_s)
+                if self._journal.match.beats % HEALTH_BEATS == 0:
+                    self._choose_priority()
         except BaseException:
             self._journal.leave()
             raise
@@ -156,6 +158,13 @@ class Court:
         else:
             self._close()
         self._archive.close()
+
+    def _choose_priority(self) -> None:
+        """Go before other programs, unless that left nothing to them: then there is always work."""
+        if self._settings.speed <= 1 and self._pace.real_time_factor > _LEAST_FACTOR:
+            go_first()
+        else:
+            take_turns()
 
     def _beat(self, now_s: float) -> None:
         try:
@@ -337,11 +346,6 @@ class Court:
         self._network.publish_health(health)
         self._log.health(self.match_id, health)
         self.metrics.health(self.match_id, health, self._network.doors())
-        # A court that always has work would leave nothing to others if it went first.
-        if self._settings.speed <= 1 and health.real_time_factor > _LEAST_FACTOR:
-            go_first()
-        else:
-            take_turns()
 
 
 def _offset_s(locators: tuple[str, ...]) -> float:

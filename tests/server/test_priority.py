@@ -4,10 +4,16 @@ import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
+from running import served, until, write_contest
 
+from lacoc_client.spectator import Spectator
 from lacoc_shared.command.priority import go_first, take_turns
+from lacoc_shared.contest.file import load
+from lacoc_shared.network.session import open_client
+from lacoc_shared.seat import BEATS_PER_S
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has this priority")
 
@@ -18,6 +24,7 @@ def policy() -> int:
 
 def test_a_thread_goes_first() -> None:
     """The thread alone gets the priority, not the threads and programs that it starts."""
+    before = policy()
     with ThreadPoolExecutor(1) as thread:
         if not thread.submit(go_first).result():
             pytest.skip("this system does not allow it")
@@ -25,7 +32,7 @@ def test_a_thread_goes_first() -> None:
         started = thread.submit(_policies_of_started).result()
         thread.submit(take_turns).result()
         assert thread.submit(policy).result() == os.SCHED_OTHER
-    assert policy() == os.SCHED_OTHER
+    assert policy() == before
     assert started == [os.SCHED_OTHER, os.SCHED_OTHER]
 
 
@@ -53,3 +60,20 @@ resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
 os.setuid(65534)
 print(go_first(), os.sched_getscheduler(0))
 """
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [1, 2])
+def test_a_courts_beats_go_first(tmp_path: Path, speed: int) -> None:
+    """In real time they do; at twice the speed they would take too much from other programs."""
+    with ThreadPoolExecutor(1) as thread:
+        is_allowed = thread.submit(go_first).result()
+    contest = write_contest(tmp_path / "contest.toml")
+    with (
+        served(contest, tmp_path, "--speed", str(speed)) as court,
+        open_client([load(contest).court()[1].address()]) as session,
+    ):
+        view = Spectator(session, "main")
+        until([view], lambda: view.health is not None and view.health.beat > BEATS_PER_S)
+        goes_first = bool(os.sched_getscheduler(court.pid) & os.SCHED_FIFO)
+    assert goes_first == (is_allowed and speed == 1)
