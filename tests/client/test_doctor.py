@@ -13,6 +13,7 @@ import pytest
 from court_process import OpenCourt, environment
 from court_stub import CourtStub
 from keyed import KeyedCourt, keyed_file
+from ports import free_port
 
 from lacoc_client.doctor import machine as doctor
 from lacoc_client.doctor.link import link
@@ -29,13 +30,6 @@ def taken() -> Iterator[int]:
         listener.bind(("127.0.0.1", 0))
         listener.listen()
         yield listener.getsockname()[1]
-
-
-def free() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def look(
@@ -62,7 +56,7 @@ def contest(folder: Path, port: int) -> str:
 
 def test_this_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Doctor checks this machine without a court, and leaves no file behind."""
-    found = look(capsys, tmp_path / "records", "--web", f"127.0.0.1:{free()}")
+    found = look(capsys, tmp_path / "records", "--web", f"127.0.0.1:{free_port()}")
     assert {"python", "lacoc", "packages", "graphics", "clock", "disk"} <= found.keys()
     assert found["python"]["status"] == found["packages"]["status"] == "ok"
     assert "eclipse-zenoh 1.10" in found["packages"]["found"]
@@ -148,7 +142,7 @@ def test_ports_that_are_taken(
     assert found["court main"]["status"] == "problem"
     assert doctor.court_port("127.0.0.1", taken, None).status is Status.NOTE
     assert doctor.court_port("127.0.0.1", taken, "main").status is Status.PROBLEM
-    assert doctor.court_port("192.0.2.7", free(), "main").status is Status.PROBLEM
+    assert doctor.court_port("192.0.2.7", free_port(), "main").status is Status.PROBLEM
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a folder in which nobody can write")
@@ -205,7 +199,7 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
     """Doctor checks the links to all courts of a contest; with --court, it checks only one."""
     with CourtStub() as court:
         text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
-        port = free()
+        port = free_port()
         hall = Path(contest(tmp_path, port)).read_text().replace("court.main", "court.hall")
         file = tmp_path / "contest.toml"
         file.write_text(hall + text)
@@ -222,12 +216,12 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
 
 def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """A court that does not run is reported as a problem in one sentence."""
-    there = f"tcp/127.0.0.1:{free()}"
+    there = f"tcp/127.0.0.1:{free_port()}"
     found = look(capsys, tmp_path, "--connect", there)
     assert found["court main"]["status"] == "problem"
     assert "No program answers at" in found["court main"]["found"]
     # Who names an address expects a court there, also beside a contest file.
-    found = look(capsys, tmp_path, "--contest", contest(tmp_path, free()), "--connect", there)
+    found = look(capsys, tmp_path, "--contest", contest(tmp_path, free_port()), "--connect", there)
     assert found["court main"]["status"] == "problem"
 
 
@@ -235,11 +229,11 @@ def test_a_contest_that_does_not_run_yet(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     """Before a contest no court runs: that is a note, also for a court with two addresses."""
-    file = contest(tmp_path, free())
+    file = contest(tmp_path, free_port())
     assert look(capsys, tmp_path, "--contest", file)["court main"]["status"] == "note"
     text = Path(file).read_text()
     office = '[office]\ntoken = "the token of the office"\n'
-    Path(file).write_text(f'{text}elsewhere = "tcp/127.0.0.1:{free()}"\n{office}')
+    Path(file).write_text(f'{text}elsewhere = "tcp/127.0.0.1:{free_port()}"\n{office}')
     found = look(capsys, tmp_path, "--contest", file)["court main"]
     assert (found["status"], found["found"].count("tcp/")) == ("note", 2)
 
