@@ -75,5 +75,7 @@ def test_a_courts_beats_go_first(tmp_path: Path, speed: int) -> None:
     ):
         view = Spectator(session, "main")
         until([view], lambda: view.health is not None and view.health.beat > BEATS_PER_S)
-        goes_first = bool(os.sched_getscheduler(court.pid) & os.SCHED_FIFO)
-    assert goes_first == (is_allowed and speed == 1)
+        if is_allowed and speed == 1:  # on a busy machine the court may have to catch up first
+            until([view], lambda: bool(os.sched_getscheduler(court.pid) & os.SCHED_FIFO))
+        else:
+            assert not os.sched_getscheduler(court.pid) & os.SCHED_FIFO
