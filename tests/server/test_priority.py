@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has 
 
 
 def policy() -> int:
-    return os.sched_getscheduler(0)
+    return os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
 
 
 def test_a_thread_goes_first() -> None:
@@ -28,7 +28,7 @@ def test_a_thread_goes_first() -> None:
     with ThreadPoolExecutor(1) as thread:
         if not thread.submit(go_first).result():
             pytest.skip("this system does not allow it")
-        assert thread.submit(policy).result() & os.SCHED_FIFO
+        assert thread.submit(policy).result() == os.SCHED_FIFO
         started = thread.submit(_policies_of_started).result()
         thread.submit(take_turns).result()
         assert thread.submit(policy).result() == os.SCHED_OTHER
@@ -47,18 +47,25 @@ _SAY_POLICY = "import os; print(os.sched_getscheduler(0))"
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid(), reason="only root can forbid it")
-def test_a_system_may_forbid_it() -> None:
-    """Without the right to it nothing changes."""
-    said = subprocess.check_output([sys.executable, "-c", _WITHOUT_RIGHTS], text=True)
-    assert said.split() == ["False", str(os.SCHED_OTHER)]
+def test_a_user_may_always_give_it_back() -> None:
+    """Without the right to the priority a thread can't take it, but it can give it back."""
+    with ThreadPoolExecutor(1) as thread:
+        is_allowed = thread.submit(go_first).result()
+    said = subprocess.check_output([sys.executable, "-c", _AS_USER], text=True)
+    first = os.SCHED_FIFO if is_allowed else os.SCHED_OTHER
+    assert said.split() == [str(first), str(os.SCHED_OTHER), "False", str(os.SCHED_OTHER)]
 
 
-_WITHOUT_RIGHTS = """
+_AS_USER = """
 import os, resource
-from lacoc_shared.command.priority import go_first
+from lacoc_shared.command.priority import go_first, take_turns
+policy = lambda: os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
 resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+go_first()
 os.setuid(65534)
-print(go_first(), os.sched_getscheduler(0))
+print(policy())
+take_turns()
+print(policy(), go_first(), policy())
 """
 
 

@@ -18,19 +18,23 @@ def go_first() -> bool:
     Returns:
         Whether the system allows it. Only Linux does, for root and for those with a limit `rtprio`.
     """
-    if sys.platform != "linux":
-        return False
-    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, policy, os.sched_param(_LOWEST_REAL_TIME))
-        return True
-    return False
+    return sys.platform == "linux" and _schedule(os.SCHED_FIFO, _LOWEST_REAL_TIME)
 
 
 def take_turns() -> None:
     """Give this thread the usual priority again."""
     if sys.platform == "linux":
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        _schedule(os.SCHED_OTHER, 0)
+
+
+def _schedule(policy: int, priority: int) -> bool:
+    """Set how this thread is scheduled; return whether the system allows it."""
+    assert sys.platform == "linux"
+    with contextlib.suppress(PermissionError):
+        # Only root may take the flag away again, so it is always there.
+        os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
+        return True
+    return False
 
 
 def give_way() -> None:
