@@ -36,6 +36,7 @@ from lacoc_server.contest.headless.pool import Pool
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
+from lacoc_shared.command import screen
 from lacoc_shared.contest.tokens import new_token
 
 _DASK_MOST = 1.05
@@ -84,7 +85,11 @@ def main() -> None:
         took_s: dict[str, list[float]] = {"pool": [], "dask": [], "one": []}
         for way in (*("pool", "dask") * options.rounds, "one"):
             name = f"{way}-{len(took_s[way])}"
-            engine = Cluster(address) if way == "dask" else Pool(1 if way == "one" else cores)
+            engine = (
+                Cluster(address, screen.warn)
+                if way == "dask"
+                else Pool(1 if way == "one" else cores)
+            )
             file = _contest(
                 folder / name, options.teams, options.seconds, folder / f"{name}-records"
             )
@@ -92,13 +97,19 @@ def main() -> None:
             took_s[way].append(seconds)
             assert played == games
         found |= {f"{way}_s": took for way, took in took_s.items()}
+        ratios = [there / here for there, here in zip(took_s["dask"], took_s["pool"], strict=True)]
+        found["dask"] = round(statistics.median(ratios), 3)
+        print(json.dumps(found), flush=True)
+        # A LocalCluster removes a worker that is not there 15 s after it was killed, even if it was
+        # there in between and was killed again. 'dask worker' does not do that.
+        dask.config.set({"distributed.deploy.lost-worker-timeout": "1h"})
         with LocalCluster(cores, threads_per_worker=1, dashboard_address=None) as cluster:
             file = _contest(folder / "kill", options.teams, options.seconds, folder / "k-records")
             stop = threading.Event()
             killer = threading.Thread(target=_kill, args=(cluster, options.kills, stop))
             killer.start()
             found["played_with_kills"], _, tables["kill"] = _play(
-                file, Cluster(cluster.scheduler_address)
+                file, Cluster(cluster.scheduler_address, screen.warn)
             )
             stop.set()
             killer.join()
@@ -113,8 +124,6 @@ def main() -> None:
         )
         found["played_changed"], _, _ = _play(other, Pool(cores))
     found["same"] = len({repr(one) for one in tables.values()}) == 1
-    ratios = [dask / pool for dask, pool in zip(took_s["dask"], took_s["pool"], strict=True)]
-    found["dask"] = round(statistics.median(ratios), 3)
     print(json.dumps(found))
     right = found["same"] and found["played_again"] == 0 and found["again_s"] < _AGAIN_MOST_S
     right = right and found["played_changed"] == 2 * (options.teams - 1)

@@ -1,17 +1,23 @@
 """Tests of contests that are played by a Dask cluster: real workers, of which some are killed."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from benchmarks.contest_played import enter
+from benchmarks.contest_played import CONTEST, SWISS, enter
 from distributed import LocalCluster
+from waiting import until
 
 from lacoc_server.contest import organiser
+from lacoc_server.contest.headless import cluster as cluster_module
 from lacoc_server.contest.headless.cluster import Cluster
 from lacoc_server.contest.headless.pool import Pool
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase
 
 
 @pytest.mark.long
@@ -30,7 +36,7 @@ def test_a_cluster_gives_the_same_tables(tmp_path: Path) -> None:
                 os.kill(nanny.process.pid, signal.SIGKILL)
                 killed.append(nanny.process.pid)
 
-        engine = Cluster(cluster.scheduler_address)
+        engine = Cluster(cluster.scheduler_address, pytest.fail)
         other, played = organiser.play_headless(there, "planner", engine, progress)
     assert killed
     assert played == games
@@ -38,7 +44,34 @@ def test_a_cluster_gives_the_same_tables(tmp_path: Path) -> None:
     assert [view.tables for view in other.stages] == tables
 
 
+@pytest.mark.long
+@pytest.mark.slow
+def test_a_cluster_without_workers_is_told_and_its_loss_ends_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Games wait while there is no worker, and this is told; without a scheduler the run ends."""
+    monkeypatch.setattr(cluster_module, "_LOOK_S", 0.2)
+    file = enter(tmp_path, CONTEST + SWISS)
+    where = tmp_path / "scheduler.json"
+    command = ["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0"]
+    command += ["--no-dashboard", "--scheduler-file", str(where)]
+    with subprocess.Popen([sys.executable, *command], stderr=subprocess.DEVNULL) as scheduler:
+        until(where.exists)
+        address = json.loads(where.read_text())["address"]
+        told: list[str] = []
+
+        def tell(what: Phrase) -> None:
+            told.append(what.code)
+            scheduler.kill()
+
+        with pytest.raises(UserError, match="does not answer any more"):
+            organiser.play_headless(file, "planner", Cluster(address, tell), lambda *_: None)
+    assert told == ["cluster.no-worker"]
+    played = organiser.play_headless(file, "planner", Pool(2), lambda *_: None)[1]
+    assert played == 4
+
+
 def test_a_cluster_that_does_not_answer_is_refused(tmp_path: Path) -> None:
     """If no cluster answers at the address, the error names the command that starts one."""
     with pytest.raises(UserError, match="dask scheduler"):
-        Cluster("tcp://127.0.0.1:1")
+        Cluster("tcp://127.0.0.1:1", pytest.fail)

@@ -137,7 +137,7 @@ def run(
             from lacoc_server.contest import organiser
             from lacoc_server.contest.headless.cluster import Cluster
 
-            engine = Pool(jobs) if cluster is None else Cluster(cluster)
+            engine = Pool(jobs) if cluster is None else Cluster(cluster, screen.warn)
             sheet, played = organiser.play_headless(file, steer, engine, changed)
         else:
             sheet, played = _live(file, changed, speed, listen, browser, entries, json), None

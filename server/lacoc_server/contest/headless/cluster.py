@@ -1,9 +1,12 @@
 """Plays games on the machines of a Dask cluster (docs/cluster.md)."""
 
+from collections.abc import Callable
 from concurrent.futures import Future
+from contextlib import suppress
+from threading import Event, Thread
 from typing import Self
 
-from lacoc_server.contest.headless.pool import Ended, Job, attempt
+from lacoc_server.contest.headless.pool import Ended, EngineLost, Job, attempt
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -11,22 +14,28 @@ from lacoc_shared.words import Phrase, say
 _CONNECT_S = 10
 _RETRIES = 3
 """How often a game is played again because its worker was lost."""
+_LOOK_S = 5.0
+"""Time between two looks at the workers [s]."""
+_MISSED_LOOKS = 2
+"""Looks without a worker after which this is told; a worker that starts again needs less time."""
 
 
 class Cluster:
     """Plays games at the workers of a cluster; used as a context manager.
 
     A game's record comes back with its result, so the workers need no common disk. What a worker
-    had not delivered when it was lost is played again by another one.
+    had not delivered when it was lost is played again by another one. While there is no worker,
+    games wait.
 
     Args:
         address: address of the cluster's scheduler, such as tcp://192.168.1.20:8786.
+        tell: called from another thread when the cluster has no worker, and when it has one again.
 
     Raises:
         UserError: if `distributed` is not installed, or nobody answers at the address.
     """
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, tell: Callable[[Phrase], None]) -> None:
         try:
             from distributed import Client
         except ModuleNotFoundError:
@@ -35,11 +44,17 @@ class Cluster:
             self._client = Client(address, timeout=_CONNECT_S)
         except (OSError, ValueError) as error:
             raise UserError(say("cluster.no-answer", address=address, why=str(error))) from None
+        self._address = address
+        self._tell = tell
+        self._waiting: set[Future[Ended | Phrase]] = set()
+        self._closed = Event()
 
     def __enter__(self) -> Self:
+        Thread(target=self._look, daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._closed.set()
         self._client.close()
 
     def submit(self, job: Job) -> "Future[Ended | Phrase]":
@@ -47,8 +62,10 @@ class Cluster:
         from distributed import KilledWorker
 
         ours: Future[Ended | Phrase] = Future()
+        self._waiting.add(ours)
 
         def done(theirs: "Future[Ended | Phrase]") -> None:
+            self._waiting.discard(ours)
             error = None if theirs.cancelled() else theirs.exception()
             if theirs.cancelled() or isinstance(error, KilledWorker):
                 ours.set_exception(WorkerDied())
@@ -61,3 +78,25 @@ class Cluster:
         theirs = self._client.submit(attempt, job, key=job.match_id, retries=_RETRIES)
         theirs.add_done_callback(done)
         return ours
+
+    def _look(self) -> None:
+        """Tell when there is no worker, and when there is one again; end games of a lost cluster."""
+        missed = 0
+        while not self._closed.wait(_LOOK_S):
+            workers = self._client.scheduler_info(n_workers=0).get("n_workers", 0)
+            if self._client.status == "closed":  # Dask could not connect again in _CONNECT_S
+                self._lose()
+            elif not workers:
+                missed += 1
+                if missed == _MISSED_LOOKS:
+                    self._tell(say("cluster.no-worker", address=self._address))
+            else:
+                if missed >= _MISSED_LOOKS:
+                    self._tell(say("cluster.workers", workers=workers))
+                missed = 0
+
+    def _lose(self) -> None:
+        """End all games with an error; Dask leaves them without an end."""
+        while self._waiting:
+            ours = self._waiting.pop()
+            ours.set_exception(EngineLost(say("cluster.lost", address=self._address)))

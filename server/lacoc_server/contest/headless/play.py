@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 
 import msgspec
 
-from lacoc_server.contest.headless.pool import Ended, Job, ended, first_done
+from lacoc_server.contest.headless.pool import Ended, EngineLost, Job, ended, first_done
 from lacoc_server.contest.kept.entries import Entry
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
 from lacoc_server.contest.kept.store import FactStore
@@ -86,6 +86,7 @@ def play(
         How many games this call played; games whose result was already there do not count.
 
     Raises:
+        EngineLost: if the engine can play no more games; what was played is kept.
         UserError: if something can't be written; what was played is kept. Also if a game can't be
             played, for example because a bot has a mistake; all other games are played first.
     """
@@ -123,6 +124,8 @@ def play(
                     continue  # it is played again
             try:
                 record = ended(game.job, future).record
+            except EngineLost:
+                raise
             except UserError as error:  # a bot with a mistake ends no game of other teams
                 failed[game.name] = (game.job, error.phrase)
                 continue

@@ -64,6 +64,10 @@ class Ended(NamedTuple):
     """The record, if the job brings it."""
 
 
+class EngineLost(UserError):
+    """What plays the games is gone, so no game can be played."""
+
+
 @contextmanager
 def interrupted_by_signals() -> Iterator[None]:
     """Let a request to end (SIGTERM) do what Ctrl-C does, so that no half record is left."""
@@ -112,6 +116,7 @@ def ended(job: Job, future: "Future[Ended | Phrase]") -> Ended:
     """Return the result of a job that is done.
 
     Raises:
+        EngineLost: if no game can be played any more.
         UserError: if its files or its record have a mistake, or its process died.
     """
     try:
