@@ -138,6 +138,33 @@ def test_the_rules_hold_for_any_courts(scripts: list[Script], ahead_s: float) ->
 
 @settings(max_examples=25, deadline=None)
 @given(SCRIPTS, AHEAD)
+def test_the_second_picture_shows_another_court(scripts: list[Script], ahead_s: float) -> None:
+    """The second picture shows a court that is there and not on air; each stays two seconds.
+
+    It shows a moment from at most 1 s before it to at most 3 s after it.
+    """
+    event = invented(scripts)
+    director = Director(ahead_s)
+    before, since_s = None, 0.0
+    for look in range(round((160.0 + ahead_s) / LOOK_S)):
+        now_s = look * LOOK_S
+        shot = director.look(now_s, event(now_s))
+        shown_s, aside = now_s - ahead_s, director.aside
+        assert shot is not None or aside is None
+        there = [one.name for one in event(max(0.0, shown_s))]
+        if aside is not None and shot is not None:
+            assert aside.court != shot.court
+            assert aside.court in there
+            assert aside.at_s - 1.0 - LOOK_S <= shown_s <= aside.at_s + 3.0
+        if aside is None or before is None or aside.court != before.court:
+            if before is not None and shot is not None and before.court in there:
+                assert shown_s - since_s >= 2.0 or before.court == shot.court
+            since_s = shown_s
+        before = aside
+
+
+@settings(max_examples=25, deadline=None)
+@given(SCRIPTS, AHEAD)
 def test_a_court_that_vanishes_is_left(scripts: list[Script], ahead_s: float) -> None:
     """A court that is not there is left as soon as the rules allow another cut."""
     event = invented(scripts)
@@ -238,6 +265,18 @@ def halted(time_s: float) -> list[CourtNow]:
     final = CourtNow("final", "1", phase, 20.0, (10, 10), 3.0, has_begun=time_s > 5.0)
     other = CourtNow("other", "1", Phase.PLAYING, 150.0, (30 if time_s < 41.0 else 60, 0))
     return [final, other]
+
+
+def test_what_is_not_worth_a_cut_is_in_the_second_picture() -> None:
+    """A large swing during the close end of the court on air comes into the second picture."""
+    director = Director(AHEAD_S)
+    pictures = set()
+    for look in range(160):
+        now_s = look * LOOK_S
+        shot = director.look(now_s, halted(now_s))
+        pictures.add((shot and shot.court, director.aside and director.aside.court))
+    assert ("final", "other") in pictures
+    assert ("other", "final") not in pictures
 
 
 @pytest.mark.parametrize("ahead_s", [0.0, AHEAD_S])

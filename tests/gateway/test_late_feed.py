@@ -1,4 +1,4 @@
-"""Tests of a court that pages see later than it plays."""
+"""Tests of courts that pages see later than they play, and of a picture that shows several."""
 
 import time
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.late_feed import LateFeed
+from lacoc_client.gateway.programme import Channel
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
@@ -79,4 +80,46 @@ def test_a_page_sees_a_court_as_it_was() -> None:
     late.add(Viewer(last))  # type: ignore[arg-type]
     assert last.kinds == [Kind.LINK, Kind.SHEET, Kind.EVENT]
     assert last.messages[2] == wire.opened(other)
+    threads.close()
+
+
+def test_a_picture_goes_from_court_to_court() -> None:
+    """Its pages get the court that it shows, from then on only that one, and each change once."""
+    threads = Threads(1)
+    feeds = [
+        CourtFeed(Access(court=c, connect="tcp/127.0.0.1:1"), threads) for c in ("east", "west")
+    ]
+    east, west = (LateFeed(feed, 0.0) for feed in feeds)
+    told = [wire.map_message(Kind.PROGRAMME, {"why": why}) for why in ("first", "swing", "lead")]
+    sheets = [wire.message(Kind.SHEET, court) for court in (b"east", b"west")]
+
+    def send(*framed: bytes) -> None:
+        for feed, one in zip(feeds, framed, strict=True):
+            feed.audience.send(one)
+        for late in (east, west):
+            late.play(time.monotonic())
+
+    send(*sheets)
+    channel, page = Channel(), Written()
+    viewer = Viewer(page)  # type: ignore[arg-type]
+    channel.show(east, told[0])
+    channel.add(viewer)
+    channel.show(east, told[0])
+    opened = [wire.opened(one) for one in (*told, *sheets)]
+    assert [one for one in page.messages if one[0] is not Kind.LINK] == [opened[0], opened[3]]
+
+    page.messages.clear()
+    channel.show(west, told[1])
+    assert [one for one in page.messages if one[0] is not Kind.LINK] == [opened[1], opened[4]]
+    page.messages.clear()
+    send(*reversed(sheets))
+    assert page.messages == [opened[3]]  # it came from west
+
+    page.messages.clear()
+    channel.show(west, told[2])
+    assert page.messages == [opened[2]]
+    channel.remove(viewer)
+    channel.show(east, told[0])
+    send(*sheets)
+    assert page.messages == [opened[2]]
     threads.close()

@@ -1,6 +1,7 @@
 """A page that follows the director: it goes from court to court without a reload."""
 
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,34 +23,59 @@ COURTS = ("east", "west")
 PHONE = {"width": 390, "height": 844}
 
 
-def write_contest(folder: Path) -> Path:
-    """Write a contest file of two courts."""
-    seats = "".join(f'[court.{{0}}.seat.{s}]\ntoken = "{t}"\n' for s, t in TOKENS.items())
-    court = (
-        '[court.{0}]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{1}"]\n'
-        f'{seats}[court.{{0}}.referee]\ntoken = "{REFEREE}"\n'
-    )
+CLOSE = "settings.match = { duration_s = 30.0, countdown_s = 1.0 }"
+"""A match of 30 s in which nothing happens is close to its end, so the director stays."""
+SWING = """\
+settings.match = { countdown_s = 1.0 }
+settings.game = { clearance_m = 0.05, corner_points = 20, starts = [[0.45, 0.8]] }"""
+"""A robot that walks straight on takes a corner worth 20 points."""
+
+
+def write_contest(folder: Path, **settings: str) -> Path:
+    """Write a contest file of two courts: `east` plays Robot-Othello, `west` Flag-Strike."""
+    parts = []
+    for court, arena in zip(COURTS, ("othello", "flag-strike"), strict=True):
+        parts += [f"[court.{court}]", f'arena = "{arena}"', settings.get(court, "")]
+        parts += [f'listen = ["tcp/127.0.0.1:{free_port()}"]', f'referee.token = "{REFEREE}"']
+        parts += [f'seat.{seat}.token = "{token}"' for seat, token in TOKENS.items()]
     file = folder / "contest.toml"
-    file.write_text("".join(court.format(name, free_port()) for name in COURTS))
+    file.write_text("\n".join(parts) + "\n")
     return file
 
 
-def play_and_abort(url: str, key: str, court: str, stack: ExitStack) -> PageClient:
-    """Play a match at a court for a moment, and abort it; return the referee's page."""
+@contextmanager
+def running(
+    folder: Path, **settings: str
+) -> Iterator[tuple[dict[str, Process], Process, ExitStack]]:
+    """Run both courts and a gateway; yield the courts, the gateway, and what closes more."""
+    file = write_contest(folder, **settings)
+    with ExitStack() as stack:
+
+        def run(*words: str, name: str) -> Process:
+            process = Process(folder, *words, "--contest", str(file), "--json", name=name)
+            stack.callback(process.close)
+            return process
+
+        courts = {one: run("serve", "--court", one, name=one) for one in COURTS}
+        yield courts, run("web", "--listen", f"127.0.0.1:{free_port()}", name="web"), stack
+
+
+def begin(url: str, key: str, court: str, stack: ExitStack) -> tuple[PageClient, PageClient]:
+    """Begin a match at a court; return the left contestant's and the referee's page."""
+    pages = []
     for seat, name in (("left", "Ants"), ("right", "Bees")):
         contestant = PageClient(url, key, court=court)
         stack.callback(contestant.close)
         contestant.ask("join", seat=seat, token=TOKENS[seat], name=name)
         contestant.ask("ready", ready=True)
+        pages.append(contestant)
     referee = PageClient(url, key, court=court)
     stack.callback(referee.close)
     referee.ask("enter", token=REFEREE, by="Kim")
     referee.phase(Phase.READY)
     decide(referee, type="start")
     referee.phase(Phase.PLAYING)
-    decide(referee, "for the test", type="abort")
-    referee.phase(Phase.VOID)
-    return referee
+    return pages[0], referee
 
 
 def test_pages_follow_the_director(
@@ -60,16 +86,7 @@ def test_pages_follow_the_director(
     When this court is killed, both pages go to another court without a reload.
     """
     console.expect("WebSocket")  # the gateway ends before the pages
-    file = write_contest(tmp_path)
-    with ExitStack() as stack:
-
-        def run(*words: str, name: str) -> Process:
-            process = Process(tmp_path, *words, "--contest", str(file), "--json", name=name)
-            stack.callback(process.close)
-            return process
-
-        courts = {one: run("serve", "--court", one, name=one) for one in COURTS}
-        web = run("web", "--listen", f"127.0.0.1:{free_port()}", name="web")
+    with running(tmp_path) as (courts, web, stack):
         url = web.opened["url"]
         paths = ("/watch?director=1&q=low&lang=en", "/overlay?director=1&q=low&lang=ja")
         watch, overlay = (
@@ -79,7 +96,9 @@ def test_pages_follow_the_director(
         watch.sees(".event", "The director begins in")
         expect(watch.find(".banner")).to_have_count(0)
         overlay.sees(".waits", "ディレクター")
-        referee = play_and_abort(url, web.opened["key"], "east", stack)
+        _, referee = begin(url, web.opened["key"], "east", stack)
+        decide(referee, "for the test", type="abort")
+        referee.phase(Phase.VOID)
         watch.sees(".result")
         decide(referee, type="next")
         for show in (watch, overlay):
@@ -95,3 +114,38 @@ def test_pages_follow_the_director(
             expect(gone).to_be_visible()
             assert show.page.evaluate("window.stays")
             expect(show.find(".log, .thirds", has_text="Ants")).to_have_count(0)
+
+
+SHOWN = """() => {
+  const aside = document.querySelector(".aside:not([hidden])");
+  const canvas = aside?.querySelector("canvas");
+  if (!canvas || !/2\\d : 0/.test(aside.textContent)) return null;
+  const box = canvas.getBoundingClientRect();
+  const court = (where) => where.querySelector(".on-air").dataset.court;
+  return { beside: court(aside), first: court(document), width: box.width, right: box.right };
+}"""
+"""What a page shows when the second picture has the points."""
+
+
+def test_a_swing_elsewhere_is_in_the_second_picture(
+    tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
+) -> None:
+    """During the close end of one court, a second picture shows the swing at another one."""
+    console.expect("WebSocket")  # the gateway ends before the pages
+    with running(tmp_path, east=CLOSE, west=SWING) as (_, web, stack):
+        url, key = web.opened["url"], web.opened["key"]
+        paths = ("/watch?director=1&q=low&lang=ja", "/overlay?director=1&q=low&lang=en")
+        pages = [
+            Show(open_page(viewport=PHONE if one == 0 else None), url, path, drawn=False).page
+            for one, path in enumerate(paths)
+        ]
+        begin(url, key, "east", stack)
+        walker, _ = begin(url, key, "west", stack)
+        walker.ask("key", level=1, key=2)
+        shown = [page.wait_for_function(SHOWN).json_value() for page in pages]
+        for page, found in zip(pages, shown, strict=True):
+            assert (found["first"], found["beside"]) == ("east", "west")
+            width = page.viewport_size["width"]
+            assert width / 10 < found["width"] < width / 2
+            assert found["right"] <= width
+            assert violations(page) == []

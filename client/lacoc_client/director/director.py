@@ -5,6 +5,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
+from lacoc_client.director.aside import ASIDE_SHARE, Aside
 from lacoc_client.director.courts import CourtNow
 from lacoc_client.director.moments import Moment, Track
 from lacoc_client.director.moments import Why as Moving
@@ -46,7 +47,8 @@ class Director:
     What is on air is shown later than it is played, by `ahead_s`. So the director knows what comes,
     and cuts to a moment before it happens. It never cuts away from the last 30 s of a close match
     nor from a fresh result, and never cuts more than four times in any minute. Only a court that
-    has vanished is left in spite of the first two rules.
+    has vanished is left in spite of the first two rules. A second picture shows the best moments
+    at other courts.
 
     Args:
         ahead_s: how much later all is shown [s].
@@ -61,6 +63,9 @@ class Director:
         self._moments: deque[Moment] = deque()
         """The moments of the last minutes and those that come, in the order of time."""
         self._cuts: deque[float] = deque(maxlen=CUTS_MOST)
+        self._aside = Aside()
+        self.aside: Moment | None = None
+        """What the second picture shows; None: there is none now."""
         self._empty: tuple[str, str, float] = ("", "", 0.0)
         """The court on air, its match, and since when it is on air without play."""
 
@@ -86,11 +91,17 @@ class Director:
                 self._shot = Shot(self._richest(shown_s, shown), "first", shown_s)
             return self._shot
         self._note_empty(shown_s, shown.get(self._shot.court))
+        due = [
+            one
+            for one in self._coming(shown_s)
+            if one.at_s <= shown_s + _EARLY_S and one.court in shown
+        ]
         if may_cut(self._cuts, shown_s):
-            next_ = self._next(shown_s, shown, self._shot)
+            next_ = self._next(shown_s, shown, self._shot, due)
             if next_ is not None:
                 self._shot = next_
                 self._cuts.append(shown_s)
+        self.aside = self._aside.look(shown_s, self._shot.court, [*shown], self._best(due))
         return self._shot
 
     def _see(self, now_s: float, courts: Sequence[CourtNow]) -> None:
@@ -101,8 +112,14 @@ class Director:
         while self._moments and self._moments[0].at_s < now_s - _KNOWN_S:
             self._moments.popleft()
 
-    def _next(self, shown_s: float, shown: Mapping[str, CourtNow], shot: Shot) -> Shot | None:
-        """Return what to cut to; None: stay."""
+    def _coming(self, shown_s: float) -> list[Moment]:
+        """Return the moments that are not over, at any court."""
+        return [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
+
+    def _next(
+        self, shown_s: float, shown: Mapping[str, CourtNow], shot: Shot, due: Sequence[Moment]
+    ) -> Shot | None:
+        """Return what to cut to, of the courts and the moments that begin now; None: stay."""
         now = shown.get(shot.court)
         if now is None:
             return Shot(self._richest(shown_s, shown), "gone", shown_s) if shown else None
@@ -111,7 +128,7 @@ class Director:
         empty_s = shown_s - self._empty[2]
         if now.is_over and empty_s < RESULT_S:
             return None
-        moment = self._moment(shown_s, shown, shot.court)
+        moment = self._moment(shown_s, shot.court, due)
         if moment is not None:
             return Shot(moment.court, moment.why, shown_s)
         richest = self._richest(shown_s, shown)
@@ -126,20 +143,22 @@ class Director:
         if now is not None and (now.is_played or self._empty[:2] != (now.name, now.match)):
             self._empty = (now.name, now.match, shown_s)
 
-    def _moment(self, shown_s: float, shown: Mapping[str, CourtNow], on_air: str) -> Moment | None:
+    def _moment(self, shown_s: float, on_air: str, due: Sequence[Moment]) -> Moment | None:
         """Return the moment at another court that is worth a cut now; None: there is none."""
-        coming = [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
-        due = [
-            one
-            for one in coming
-            if one.at_s <= shown_s + _EARLY_S and one.court != on_air and one.court in shown
-        ]
-        if not due:
+        others = [one for one in due if one.court != on_air]
+        if not others:
             return None
         prices = Prices(self._moments)
-        best = max(due, key=lambda one: (one.points, -one.at_s))
-        later = [one for one in coming if one != best]
+        best = max(others, key=lambda one: (one.points, -one.at_s))
+        later = [one for one in self._coming(shown_s) if one != best]
         return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
+
+    def _best(self, due: Sequence[Moment]) -> list[Moment]:
+        """Return those moments that are worth a second picture."""
+        if not due:
+            return []
+        least = Prices(self._moments).least(ASIDE_SHARE)
+        return [one for one in due if one.points >= least]
 
     def _locked(self, court: str, at_s: float) -> bool:
         """Return whether a court has a close end or a fresh result at a time."""

@@ -58,8 +58,8 @@ class Prices:
 
     def __init__(self, known: Sequence[Moment]) -> None:
         self._sorted = sorted((one.points for one in known), reverse=True)
-        self._least = self._rank(_LOOKED_AT)
-        self._costs = [_NEARLY * worth(self._rank(share)) for share in _RANKS]
+        self._least = self.least(_LOOKED_AT)
+        self._costs = [_NEARLY * worth(self.least(share)) for share in _RANKS]
 
     def value(self, moment: Moment) -> float:
         """Return what a moment is worth on air; all but the best moments are worth 0."""
@@ -69,7 +69,8 @@ class Prices:
         """Return what a cut costs while `left` cuts are left, 1 to `CUTS_MOST`."""
         return self._costs[left - 1]
 
-    def _rank(self, share: float) -> float:
+    def least(self, share: float) -> float:
+        """Return the points of the least of the best moments, which are this share of all."""
         if len(self._sorted) < _KNOWN_LEAST:
             return _AT_FIRST * math.sqrt(0.1 / share)
         return self._sorted[max(0, int(len(self._sorted) * share) - 1)]

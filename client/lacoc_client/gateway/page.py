@@ -123,7 +123,7 @@ class Page:
         if asked.director:
             self._follows = programme = self._courts.programme
             viewer.send(self._welcome(None))
-            programme.add(viewer)
+            programme.add(viewer, asked.aside)
             self._answers.reply(asked.id, {})
             return True
         try:

@@ -1,4 +1,4 @@
-"""Shows the court that the director chooses to all pages that follow it."""
+"""Shows the courts that the director chooses to all pages that follow it."""
 
 import asyncio
 import math
@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 from lacoc_client.director.courts import OVER, CourtNow
 from lacoc_client.director.director import AHEAD_S, Director
+from lacoc_client.director.moments import Moment
 from lacoc_client.director.results import Result, Results
 from lacoc_client.director.stakes import stake
 from lacoc_client.gateway import wire
@@ -22,6 +23,47 @@ _LOOKS = 5
 """Beats between two looks of the director."""
 
 
+class Channel:
+    """One picture of the programme: the court that it shows, and the pages that see it."""
+
+    def __init__(self) -> None:
+        self.court = ""
+        self._late: LateFeed | None = None
+        self._told = b""
+        self._viewers: dict[Viewer, None] = {}
+
+    def add(self, viewer: Viewer) -> None:
+        """Let a page see it; send it everything that is known of its court."""
+        assert self._late is not None
+        self._viewers[viewer] = None
+        viewer.send(self._told)
+        self._late.add(viewer)
+
+    def remove(self, viewer: Viewer) -> None:
+        """Let a page see it no longer."""
+        if viewer in self._viewers:
+            assert self._late is not None
+            del self._viewers[viewer]
+            self._late.audience.remove(viewer)
+
+    def show(self, late: LateFeed, told: bytes) -> None:
+        """Show a court from now on.
+
+        Args:
+            late: the late feed of the court.
+            told: the programme message that says so.
+        """
+        if told == self._told:
+            return
+        before, self._late, self._told, self.court = self._late, late, told, late.court
+        for viewer in self._viewers:
+            if before is not None and before is not late:
+                before.audience.remove(viewer)
+            viewer.send(told)
+            if before is not late:
+                late.add(viewer)
+
+
 class Programme:
     """What is on air; used from the event loop only, except `audience`.
 
@@ -35,28 +77,24 @@ class Programme:
     def __init__(self, feeds: Callable[[], Sequence[CourtFeed]]) -> None:
         self._feeds = feeds
         self._late: dict[str, LateFeed] = {}
-        self._followers: dict[Viewer, None] = {}
+        self._first = Channel()
+        self._second = Channel()
         self._behind_s = 0.0
         self._begins_s = 0.0
         self._director = Director(0.0)
         self._results = Results(0.0)
-        self._on_air = ""
-        self._told = b""
         self._running: asyncio.Task[None] | None = None
 
-    def add(self, viewer: Viewer) -> None:
-        """Let a page follow; send it everything that is known of what is on air."""
+    def add(self, viewer: Viewer, aside: bool) -> None:
+        """Let a page follow the first picture, or (`aside`) the second one."""
         if self._running is None:
             self._begin()
-        self._followers[viewer] = None
-        viewer.send(self._told)
-        self._late[self._on_air].add(viewer)
+        (self._second if aside else self._first).add(viewer)
 
     def remove(self, viewer: Viewer) -> None:
         """Let a page follow no longer."""
-        if viewer in self._followers:
-            del self._followers[viewer]
-            self._late[self._on_air].audience.remove(viewer)
+        self._first.remove(viewer)
+        self._second.remove(viewer)
 
     def audience(self, court: str) -> Audience | None:
         """Return the pages to which this court is shown late; None: it has no late feed yet.
@@ -80,7 +118,6 @@ class Programme:
         self._behind_s = AHEAD_S if len(feeds) > 1 else 0.0
         self._begins_s = time.monotonic() + self._behind_s
         self._director, self._results = Director(self._behind_s), Results(self._behind_s)
-        self._on_air = feeds[0].court
         self._look(time.monotonic())
         self._running = asyncio.get_running_loop().create_task(self._run())
 
@@ -111,27 +148,29 @@ class Programme:
         going = [(one.name, one.match) for one in courts if one.phase not in OVER]
         self._results.see(now_s, over, going)
         shot = self._director.look(now_s, courts)
-        self._tell(now_s, self._on_air if shot is None else shot.court, shot and shot.why)
+        first = self._first.court or self._feeds()[0].court if shot is None else shot.court
+        self._tell(now_s, first, shot.why if shot else "first", self._director.aside)
 
-    def _tell(self, now_s: float, court: str, why: str | None) -> None:
-        """Tell the pages what is on air, if that has changed, and show them the court."""
-        body = {
-            "court": court,
-            "why": why or "first",
+    def _tell(self, now_s: float, court: str, why: str, aside: Moment | None) -> None:
+        """Show the courts that are on air, and tell the pages why, if that has changed."""
+        behind = {
             "behind_s": self._behind_s,
             "begins_s": max(0, math.ceil(self._begins_s - now_s)),
-            "results": self._results.shown(now_s),
         }
-        told = wire.map_message(Kind.PROGRAMME, body)
-        if told == self._told:
-            return
-        before, self._told, self._on_air = self._on_air, told, court
-        for viewer in self._followers:
-            if before != court:
-                self._late[before].audience.remove(viewer)
-            viewer.send(told)
-            if before != court:
-                self._late[court].add(viewer)
+        results = self._results.shown(now_s)
+        first = {"court": court, "why": why, "is_shown": True, **behind, "results": results}
+        self._first.show(self._late[court], wire.map_message(Kind.PROGRAMME, first))
+        # Without a second picture its channel stays at a court, so that its pages are told nothing
+        # new, and the next one is there at once.
+        beside = aside.court if aside else self._second.court or court
+        second = {
+            "court": beside,
+            "why": aside.why if aside else "",
+            "is_shown": aside is not None,
+            **behind,
+            "results": (),
+        }
+        self._second.show(self._late[beside], wire.map_message(Kind.PROGRAMME, second))
 
 
 def _now(name: str, stands: FramePart, played: SheetPart) -> CourtNow:

@@ -81,6 +81,8 @@ class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
     court: _Short | None = None
     director: bool = False
     """Whether the page follows the director, and not one court; it can't act then."""
+    aside: bool = False
+    """Whether it follows the director's second picture, not the first one."""
     hz: float | None = None
     key: _Token | None = None
 

@@ -41,10 +41,14 @@ export function recoloured(sheet: ReadonlySignal<Sheet | null>): ReadonlySignal<
   });
 }
 
-/** Keep `--seat-N` and what can be read on it as the sheet says, until the returned is called. */
-export function followColours(match: Match): () => void {
+/**
+ * Keep `--seat-N` and what can be read on it as the sheet says, until the returned is called.
+ *
+ * @param element What they hold in.
+ */
+export function followColours(match: Match, element = document.documentElement): () => void {
   return effect(() => {
-    const style = document.documentElement.style;
+    const { style } = element;
     for (const [index, seat] of (match.sheet.value?.seats ?? []).entries()) {
       style.setProperty(`--seat-${index}`, seat.colour);
       style.setProperty(`--ink-${index}`, isLight(seat.colour) ? "#16100a" : "#ffffff");

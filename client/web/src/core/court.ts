@@ -39,6 +39,9 @@ const DELAYED: ReadonlySet<Message["kind"]> = new Set([
   "programme",
 ]);
 
+/** What a page watches: one court, or the first or the second picture of the director. */
+export type Watched = "court" | "director" | "aside";
+
 /** A court, watched through a gateway. */
 export class Court implements Match {
   readonly welcome = signal<Welcome | null>(null);
@@ -49,7 +52,7 @@ export class Court implements Match {
   readonly health = signal<Health | null>(null);
   readonly link = signal<Link | null>(null);
   readonly seat = signal<HeldSeat | null>(null);
-  /** What the director has on air; null where the page follows a court. */
+  /** What the director shows in this picture; null where the page follows a court. */
   readonly programme = signal<Programme | null>(null);
   readonly referee = signal<RefereeState | null>(null);
   /** The files on this machine; null until the gateway has sent them. */
@@ -78,12 +81,12 @@ export class Court implements Match {
    * @param hz Frames a second to ask for.
    * @param delayMs Everything is shown so much later, scores and events too: for a stream that
    *   must not help anyone.
-   * @param directed Whether to follow the director, and not one court.
+   * @param watched Whether to follow one court, or the director.
    */
   constructor(
     private readonly hz: number,
     readonly delayMs = 0,
-    readonly directed = false,
+    private readonly watched: Watched = "court",
   ) {
     this.sheet = recoloured(this.published);
     this.timeline = new Timeline();
@@ -94,6 +97,11 @@ export class Court implements Match {
     );
     setInterval(() => this.look(), LOOK_MS);
     if (delayMs) setInterval(() => this.playOut(), PLAYOUT_MS);
+  }
+
+  /** Whether it follows the director, and not one court. */
+  get directed(): boolean {
+    return this.watched !== "court";
   }
 
   sample(nowMs: number): Moment | null {
@@ -111,9 +119,10 @@ export class Court implements Match {
     });
     this.seat.value = null;
     this.referee.value = null;
-    const { hz, directed } = this;
-    const fields = { court: setting("court") || null, director: directed, hz, key: runKey() };
-    return this.ask("watch", fields);
+    const { hz, directed: director } = this;
+    const aside = this.watched === "aside";
+    const court = setting("court") || null;
+    return this.ask("watch", { court, director, aside, hz, key: runKey() });
   }
 
   private receive(message: Message, arrivedMs: number): void {

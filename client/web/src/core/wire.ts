@@ -93,11 +93,13 @@ export interface RefereeState {
   mine: boolean;
 }
 
-/** What the director has on air, for the pages that follow it. */
+/** What a picture of the director shows, for the pages that follow it. */
 export interface Programme {
   court: string;
-  /** Why this court is on air: name of a message `director.why.…`. */
+  /** Why this court is shown: name of a message `director.why.…`; "" if it is not. */
   why: string;
+  /** False: there is no second picture now. */
+  is_shown: boolean;
   /** How much later all is shown than it is played [s]. */
   behind_s: number;
   /** The programme begins in so many seconds; 0: it has begun. */

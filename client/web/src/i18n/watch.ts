@@ -17,6 +17,7 @@ export const watch = {
   "director.name": ["Director", "ディレクター"],
   "director.onAir": ["On air", "放送中"],
   "director.court": ["court {court}", "コート {court}"],
+  "director.meanwhile": ["Meanwhile", "同時刻"],
   "director.begins": [
     "The director begins in {seconds} s. It shows everything a little later than it is played, so that it knows what comes next.",
     "ディレクターの映像は {seconds} 秒後に始まります。次に何が起こるかを知ってコートを選べるように、試合より少し遅れて表示します。",

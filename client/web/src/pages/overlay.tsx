@@ -10,14 +10,17 @@ import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
 import { isOver, waitsFor } from "../ui/banner";
 import { LatestResults, OnAir } from "../ui/on_air";
+import { Aside } from "./watch/aside";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 
 const court = new Court(
   USUAL_HZ,
   1000 * amount("delay", 0, 0, DELAY_MOST_S),
-  flag("director", false),
+  flag("director", false) ? "director" : "court",
 );
+/** The director's second picture. */
+const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside") : null;
 const style: Style = {
   camera: cameraOfAddress(),
   quality: qualityOfAddress() ?? "auto",
@@ -51,6 +54,7 @@ export default function Overlay() {
         scale={scale}
         belowScore={<OnAir court={court} />}
         inCentre={<LatestResults court={court} />}
+        beside={aside && <Aside court={aside} />}
       />
       <Waiting />
     </main>

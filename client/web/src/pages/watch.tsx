@@ -20,6 +20,7 @@ import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
+import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys } from "./watch/cameras";
 import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
 import { EventCard, useBetween } from "./watch/event";
@@ -33,8 +34,10 @@ const DIRECTOR = "";
 const court = new Court(
   amount("hz", USUAL_HZ, LEAST_HZ, MOST_HZ),
   1000 * amount("delay", 0, 0, DELAY_MOST_S),
-  flag("director", false),
+  flag("director", false) ? "director" : "court",
 );
+/** The director's second picture. */
+const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside") : null;
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
@@ -129,6 +132,7 @@ function Hud() {
       <div class="lower">
         <Thirds match={court} />
       </div>
+      {aside && <Aside court={aside} />}
       <div class="foot">
         {(court.begun.value || !court.directed) && (
           <Cameras camera={camera} sheet={court.sheet.value} />

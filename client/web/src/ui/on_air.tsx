@@ -3,7 +3,7 @@
 import { useMemo } from "preact/hooks";
 import type { Court } from "../core/court";
 import { phaseOf } from "../core/match";
-import { Phase, type ShownResult } from "../core/wire";
+import { Phase, type Programme, type ShownResult } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
 import "./on_air.css";
 
@@ -13,10 +13,15 @@ const BETWEEN = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
 export function OnAir({ court }: { court: Court }) {
   const programme = court.programme.value;
   if (!programme || programme.begins_s > 0) return null;
-  const why = t(`director.why.${programme.why}` as MessageName);
+  return <Shown programme={programme} label={t("director.onAir")} />;
+}
+
+/** Which court a picture shows, and why. */
+export function Shown({ programme, label }: { programme: Programme; label: string }) {
+  const why = programme.why && t(`director.why.${programme.why}` as MessageName);
   return (
     <p class="on-air" data-court={programme.court} data-why={programme.why}>
-      <b>{t("director.onAir")}</b>
+      <b>{label}</b>
       <span>
         {t("director.court", { court: programme.court })}
         {why && ` · ${why}`}

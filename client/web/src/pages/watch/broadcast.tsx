@@ -45,6 +45,7 @@ interface Props {
 interface More {
   belowScore?: ComponentChildren;
   inCentre?: ComponentChildren;
+  beside?: ComponentChildren;
   /** Whether no other match follows. */
   isLast?: boolean;
 }
@@ -122,7 +123,7 @@ function Windows({ match, style, scale }: Props) {
   );
 }
 
-function Hud({ match, belowScore, inCentre, isLast = false }: { match: Match } & More) {
+function Hud({ match, belowScore, inCentre, beside, isLast = false }: { match: Match } & More) {
   return (
     <div class="hud">
       <header class="head">
@@ -141,6 +142,7 @@ function Hud({ match, belowScore, inCentre, isLast = false }: { match: Match } &
       <div class="lower">
         <Thirds match={match} />
       </div>
+      {beside}
     </div>
   );
 }
