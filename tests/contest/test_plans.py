@@ -33,6 +33,11 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
         ),
         (GROUPS + "teams = -1\n", r"groups.*teams: .*at least 0"),
         (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, draw, teams'),
+        (
+            GROUPS + "third_place = true\n",
+            r'"round-robin" has no setting "third_place"; it has games, rounds, groups',
+        ),
+        (GROUPS + "options = { x = 1 }\n", r'has no setting "options"'),
         (GROUPS + 'tie_breaks = ["luck"]\n', r'no tie-break "luck"\. Choose from points'),
         (GROUPS + 'after = "groups"\n', r'comes after "groups", but no stage of this name'),
         (

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from contextlib import suppress
 from threading import Event, Thread
 from typing import Self
 
@@ -80,7 +79,7 @@ class Cluster:
         return ours
 
     def _look(self) -> None:
-        """Tell when there is no worker, and when there is one again; end games of a lost cluster."""
+        """Tell when workers are gone, and when they are back; end the games of a lost cluster."""
         missed = 0
         while not self._closed.wait(_LOOK_S):
             workers = self._client.scheduler_info(n_workers=0).get("n_workers", 0)

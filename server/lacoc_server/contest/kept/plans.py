@@ -108,6 +108,12 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     stage = msgspec.convert(own, _Stage)
     if stage.draw not in _DRAWS:
         raise UserError(say("contest.stage-draw", draw=text_of(stage.draw), known=[*_DRAWS]))
+    if stage.format not in FORMATS:
+        raise UserError(say("league.unknown-format", format=stage.format, known=[*FORMATS]))
+    read = FORMATS[stage.format].settings
+    if idle := [key for key in rest if key not in read]:
+        known = [key for key in _SETTINGS if key in read]
+        raise UserError(say("contest.stage-idle", entry=idle[0], format=stage.format, known=known))
     plan = new(
         Planned,
         stage=name,
@@ -133,8 +139,6 @@ def _check(plan: Planned, before: Mapping[str, Planned]) -> None:
     Raises:
         UserError: at the first name that is not known, or the first setting that does not fit.
     """
-    if plan.format not in FORMATS:
-        raise UserError(say("league.unknown-format", format=plan.format, known=[*FORMATS]))
     if plan.after and plan.after not in before:
         raise UserError(say("contest.stage-after", after=plan.after, before=[*before] or None))
     most = _most_teams(plan, before)

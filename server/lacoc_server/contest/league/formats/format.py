@@ -36,6 +36,8 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
 class Format(Protocol):
     """A format; pure."""
 
+    settings: frozenset[str]
+    """The names of the settings that it reads, such as "rounds"."""
     decisive: bool
     """True: a match must have a winner."""
     balanced: bool

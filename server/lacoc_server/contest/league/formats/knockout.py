@@ -26,6 +26,7 @@ class Knockout(DrawnAtOnce):
             double: True: a team is out after two defeats.
         """
         self.double = double
+        self.settings = frozenset({"games", "extra_games", "reset" if double else "third_place"})
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
         """Return the bracket."""

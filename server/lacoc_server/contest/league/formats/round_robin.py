@@ -13,6 +13,7 @@ ORDER = ("points", "direct", "difference", "scored", "wins", "seed")
 class RoundRobin(DrawnAtOnce):
     """Groups in which everybody meets everybody, by the circle method."""
 
+    settings = frozenset({"games", "groups", "rounds", "tie_breaks"})
     decisive = False
     balanced = False
 

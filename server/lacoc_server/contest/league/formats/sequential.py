@@ -21,6 +21,7 @@ _LAPS = 10
 class Sequential(DrawnByRound):
     """The format."""
 
+    settings = frozenset({"confidence", "games", "places", "rounds", "tie_breaks"})
     decisive = False
     balanced = False
     order = ORDER

@@ -51,6 +51,7 @@ class Player(msgspec.Struct, kw_only=True):
 class Swiss(DrawnByRound):
     """The format."""
 
+    settings = frozenset({"games", "rounds", "tie_breaks"})
     decisive = False
     balanced = False
     order = ORDER
