@@ -160,8 +160,7 @@ class Programme:
         results = self._results.shown(now_s)
         first = {"court": court, "why": why, "is_shown": True, **behind, "results": results}
         self._first.show(self._late[court], wire.map_message(Kind.PROGRAMME, first))
-        # Without a second picture its channel stays at a court, so that its pages are told nothing
-        # new, and the next one is there at once.
+        # Without a second picture its channel stays at its last court.
         beside = aside.court if aside else self._second.court or court
         second = {
             "court": beside,

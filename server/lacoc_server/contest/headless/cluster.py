@@ -46,6 +46,7 @@ class Cluster:
         self._address = address
         self._tell = tell
         self._waiting: set[Future[Ended | Phrase]] = set()
+        """Games without an end; whoever takes one out ends it."""
         self._closed = Event()
 
     def __enter__(self) -> Self:
@@ -64,7 +65,10 @@ class Cluster:
         self._waiting.add(ours)
 
         def done(theirs: "Future[Ended | Phrase]") -> None:
-            self._waiting.discard(ours)
+            try:
+                self._waiting.remove(ours)
+            except KeyError:  # the cluster is lost
+                return
             error = None if theirs.cancelled() else theirs.exception()
             if theirs.cancelled() or isinstance(error, KilledWorker):
                 ours.set_exception(WorkerDied())
