@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -71,7 +72,12 @@ def test_a_cluster_without_workers_is_told_and_its_loss_ends_the_run(
     assert played == 4
 
 
-def test_a_cluster_that_does_not_answer_is_refused(tmp_path: Path) -> None:
-    """If no cluster answers at the address, the error names the command that starts one."""
-    with pytest.raises(UserError, match="dask scheduler"):
-        Cluster("tcp://127.0.0.1:1", pytest.fail)
+def test_what_is_no_cluster_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """If no scheduler answers, or the address is wrong, the error says what to do."""
+    monkeypatch.setattr(cluster_module, "_CONNECT_S", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        for port in (1, silent.getsockname()[1]):
+            with pytest.raises(UserError, match="dask scheduler"):
+                Cluster(f"tcp://127.0.0.1:{port}", pytest.fail)
+    with pytest.raises(UserError, match="Write it as in tcp://"):
+        Cluster("tcp://127.0.0.1", pytest.fail)

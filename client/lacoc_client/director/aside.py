@@ -7,6 +7,8 @@ from lacoc_client.director.plan import LEAST_S
 
 ASIDE_SHARE = 0.12
 """The second picture shows the best moments: this share of all."""
+ASIDE_WHYS = ("swing", "lead")
+"""Only these moments are worth it. When a match begins or ends, there is nothing to see at once."""
 _STAYS_S = 2.5
 """So long after its moment the second picture stays [s]."""
 

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from lacoc_client.director.aside import ASIDE_SHARE, Aside
+from lacoc_client.director.aside import ASIDE_SHARE, ASIDE_WHYS, Aside
 from lacoc_client.director.courts import CourtNow
 from lacoc_client.director.moments import Moment, Track
 from lacoc_client.director.moments import Why as Moving
@@ -158,7 +158,7 @@ class Director:
         if not due:
             return []
         least = Prices(self._moments).least(ASIDE_SHARE)
-        return [one for one in due if one.points >= least]
+        return [one for one in due if one.points >= least and one.why in ASIDE_WHYS]
 
     def _locked(self, court: str, at_s: float) -> bool:
         """Return whether a court has a close end or a fresh result at a time."""

@@ -24,7 +24,7 @@ export function Shown({ programme, label }: { programme: Programme; label: strin
       <b>{label}</b>
       <span>
         {t("director.court", { court: programme.court })}
-        {why && ` · ${why}`}
+        {why && <span class="why"> · {why}</span>}
       </span>
     </p>
   );

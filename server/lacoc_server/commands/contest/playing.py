@@ -217,7 +217,7 @@ def _show(sheet: "ContestSheet") -> None:
     for view in sheet.stages:
         for table in view.tables:
             shown = screen.table(*titles)
-            title = say("contest.stage-title", stage=view.name, group=table.section or None)
+            title = say("contest.stage-title", stage=view.name, group=table.section.upper() or None)
             shown.title = render(title)
             for row in table.rows:
                 numbers = (row.won, row.drawn, row.lost, row.points)

@@ -1,9 +1,10 @@
 """Plays games on the machines of a Dask cluster (docs/cluster.md)."""
 
+import logging
 from collections.abc import Callable
 from concurrent.futures import Future
 from threading import Event, Thread
-from typing import Self
+from typing import Any, Self
 
 from lacoc_server.contest.headless.pool import Ended, EngineLost, Job, attempt
 from lacoc_server.studio.workers import WorkerDied
@@ -31,18 +32,11 @@ class Cluster:
         tell: called from another thread when the cluster has no worker, and when it has one again.
 
     Raises:
-        UserError: if `distributed` is not installed, or nobody answers at the address.
+        UserError: if `distributed` is not installed, or no scheduler answers at the address.
     """
 
     def __init__(self, address: str, tell: Callable[[Phrase], None]) -> None:
-        try:
-            from distributed import Client
-        except ModuleNotFoundError:
-            raise UserError(say("cluster.not-installed")) from None
-        try:
-            self._client = Client(address, timeout=_CONNECT_S)
-        except (OSError, ValueError) as error:
-            raise UserError(say("cluster.no-answer", address=address, why=str(error))) from None
+        self._client = _connected(address)
         self._address = address
         self._tell = tell
         self._waiting: set[Future[Ended | Phrase]] = set()
@@ -103,3 +97,28 @@ class Cluster:
         while self._waiting:
             ours = self._waiting.pop()
             ours.set_exception(EngineLost(say("cluster.lost", address=self._address)))
+
+
+def _connected(address: str) -> Any:
+    """Return a client of the scheduler at an address; for the errors see `Cluster`."""
+    try:
+        from distributed import Client
+    except ModuleNotFoundError:
+        raise UserError(say("cluster.not-installed")) from None
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # it says what we say
+    found: Future[Any] = Future()
+
+    def connect() -> None:
+        try:
+            found.set_result(Client(address, timeout=_CONNECT_S))
+        except Exception as error:  # of any kind, if a server of another kind answers
+            found.set_exception(error)
+
+    # Dask waits for ever for a server that takes the connection and then says nothing.
+    Thread(target=connect, daemon=True).start()
+    try:
+        return found.result(2 * _CONNECT_S)
+    except ValueError:
+        raise UserError(say("cluster.bad-address", address=address)) from None
+    except Exception:
+        raise UserError(say("cluster.no-answer", address=address)) from None

@@ -33,6 +33,10 @@ _STEP_S = 0.05
 """Time between two looks at the courts."""
 _FAREWELL_S = 5.0
 """The courts stay for so long after the end, so that all teams hear that the contest is over."""
+_LATE_S = 30.0
+"""With several courts at real time they stay for so long: pages that follow the director show the
+end 20 s later, and then the result.
+"""
 _COPY_S = 60.0
 """Longest further wait for the newest records of courts on other machines."""
 _SHOWN_S = 60.0
@@ -129,10 +133,14 @@ def play_live(
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
         opened(Opened(url, addresses, f"{url}/office#organiser={key}", code))
         over_s = math.inf  # when the contest was over, as far as is known
-        shown_s = _SHOWN_S if entering else _FAREWELL_S
+        is_late = speed <= 1 and len(addresses) > 1
+        farewell_s = _LATE_S if is_late else _FAREWELL_S
+        shown_s = _SHOWN_S if entering else farewell_s
         while True:
             office.step()
             now_s = time.monotonic()
+            if office.over and over_s == math.inf and is_late and not entering:
+                tell(say("contest.stays", seconds=farewell_s))
             over_s = min(over_s, now_s) if office.over else math.inf
             for elsewhere in away:
                 elsewhere.step(office, closing=now_s - over_s > shown_s)
@@ -140,7 +148,7 @@ def play_live(
             bots.follow(office.contest)
             for line in ticker.newest(office.contest, office.facts, office.known):
                 news(line)
-            if not entering and _farewell_over(now_s - over_s, away):
+            if not entering and _is_done(now_s - over_s - farewell_s, away):
                 return writer.write()
             time.sleep(_STEP_S)
 
@@ -152,7 +160,6 @@ def _run_here(
     return venue.court(where, name, logs / name, speed, tell, here=True)
 
 
-def _farewell_over(passed_s: float, away: Sequence[AwayCourt]) -> bool:
-    """Return whether the office may end: teams have heard, and all records are here."""
-    is_copied = all(one.is_copied for one in away)
-    return passed_s > _FAREWELL_S and (is_copied or passed_s > _FAREWELL_S + _COPY_S)
+def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:
+    """Return whether the office may end, so long after the farewell: all records are here."""
+    return passed_s > 0 and (passed_s > _COPY_S or all(one.is_copied for one in away))
