@@ -82,6 +82,15 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     assert contest_played.play(again) == 2
 
 
+def test_a_game_without_an_end_is_refused(tmp_path: Path) -> None:
+    """A stage whose games have no time limit is refused before anything is played."""
+    file = contest_played.enter(
+        tmp_path, CONTEST + SWISS.replace("duration_s = 4.0", "duration_s = 0")
+    )
+    with pytest.raises(UserError, match='stage "swiss" has no time limit'):
+        contest_played.play(file)
+
+
 def test_a_contest_that_runs_is_not_run_again(copied: Path) -> None:
     """While one program runs a contest, another one is refused; later it may."""
     with ContestFolder(copied).alone(), pytest.raises(UserError, match="another program"):

@@ -12,7 +12,7 @@ from lacoc_server.contest.headless.play import Engine, play
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import Entry, HandedIn, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
-from lacoc_server.contest.kept.plans import note_plans
+from lacoc_server.contest.kept.plans import game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
@@ -238,12 +238,15 @@ def play_headless(
         The sheet at the end, and how many games this call played.
 
     Raises:
-        UserError: if the contest runs already, has no stage or too few teams, or something goes
-            wrong.
+        UserError: if the contest runs already, has no stage or too few teams, a game has no time
+            limit, or something goes wrong.
     """
     where = ContestFolder(file)
     with where.alone(), FactStore(where.facts) as store:
         prepare(where, store)
+        for plan in where.plans:
+            if not game(plan).match.duration_s:
+                raise UserError(say("contest.no-end", stage=plan.stage))
         writer = SheetWriter(where, progress)
         with engine as opened:
             played = play(where, store, opened, steer, writer)

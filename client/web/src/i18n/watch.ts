@@ -82,6 +82,10 @@ export const watch = {
   "result.state.down": ["down", "倒れた状態"],
   "result.struck": ["Taken back: {what}", "取り消し：{what}"],
   "result.replay": ["Watch the replay", "リプレイを見る"],
+  "result.nextOfOffice": [
+    "The office of the contest opens the next match",
+    "次の試合は大会本部が始めます",
+  ],
   "result.next": ["The referee opens the next match", "次の試合は審判が始めます"],
   "result.close": ["Look at the field", "フィールドを見る"],
 } as const satisfies Record<string, readonly [string, string]>;

@@ -23,6 +23,12 @@ interface Props {
   isLast?: boolean;
 }
 
+/** What comes next; in a contest the office opens the matches. */
+function nextOf(phase: number, inContest: boolean): MessageName {
+  if (phase === Phase.FINISHED) return "hint.finished";
+  return inContest ? "result.nextOfOffice" : "result.next";
+}
+
 /** Nothing until the match is over. */
 export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
@@ -53,9 +59,7 @@ export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
         </div>
       )}
       <Explained match={match} />
-      {!isLast && (
-        <p class="next">{t(phase === Phase.FINISHED ? "hint.finished" : "result.next")}</p>
-      )}
+      {!isLast && <p class="next">{t(nextOf(phase, !!sheet.fixture))}</p>}
       <p class="row">
         {withReplay && <ReplayLink match={match} />}
         {onClose && (
