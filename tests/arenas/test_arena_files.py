@@ -142,7 +142,7 @@ def test_file_is_the_only_source() -> None:
         for key in arena.load(name).settings["game"]:
             settings = copy.deepcopy(arena.load(name).settings)
             del settings["game"][key]
-            with pytest.raises(UserError, match=f"missing required field `{key}`"):
+            with pytest.raises(UserError, match=f'entry "{key}" is missing'):
                 arena.from_settings(name, settings)
 
 
@@ -160,7 +160,7 @@ def move(colour: int, flag: int, *places: list[float]) -> dict[str, Any]:
 
 
 WRONG: list[tuple[str, dict[str, Any], str]] = [
-    ("othello", {"pich_m": 0.3}, "unknown field `pich_m`"),
+    ("othello", {"pich_m": 0.3}, 'no entry "pich_m"'),
     ("othello", {"pitch_m": "wide"}, ": pitch_m: expected a number, without quotes, found text"),
     ("othello", {"pitch_m": float("nan")}, ": pitch_m: expected a number above 0"),
     ("othello", {"wall_m": float("inf")}, ": wall_m: expected a number of at most 20"),
@@ -289,11 +289,11 @@ def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
         ({"match": {"levels": []}}, ": match.levels: "),
         ({"match": {"levels": ["C"]}}, ": match.levels[0]: "),
         ({"match": {"start": "now"}}, ": match.start: "),
-        ({"match": {"minutes": 3}}, "unknown field `minutes`. Allowed entries: duration_s, "),
+        ({"match": {"minutes": 3}}, 'no entry "minutes". Allowed entries: duration_s, '),
         ({"seat": [{"id": "left", "colour": "blue"}]}, ": seat[0].colour: "),
         ({"seat": [{"id": "left", "colour": "#0072b2"}]}, "needs 2 [[seat]] tables"),
         ({"seat": [{"id": "a", "colour": "#0072b2"}] * 2}, "each with its own id; found a and a"),
-        ({"titel": "x"}, "unknown field `titel`. Allowed entries: title, match, seat, game."),
+        ({"titel": "x"}, 'no entry "titel". Allowed entries: title, match, seat, game.'),
     ],
 )
 def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:

@@ -24,7 +24,7 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
     ("stages", "said"),
     [
         ('[stage.a]\nformat = "league"\n', r'There is no format "league"\. Choose double-knockout'),
-        ("[stage.a]\n", r"missing required field `format`"),
+        ("[stage.a]\n", r"entry \"format\" is missing"),
         ('[stage."A b"]\nformat = "swiss"\n', r"stage"),
         (GROUPS + "games = 0\n", r"groups.*games: .*at least 1"),
         (
