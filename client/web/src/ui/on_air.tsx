@@ -20,7 +20,12 @@ export function OnAir({ court }: { court: Court }) {
 export function Shown({ programme, label }: { programme: Programme; label: string }) {
   const why = programme.why && t(`director.why.${programme.why}` as MessageName);
   return (
-    <p class="on-air" data-court={programme.court} data-why={programme.why}>
+    <p
+      key={`${programme.court}/${programme.why}`}
+      class="on-air"
+      data-court={programme.court}
+      data-why={programme.why}
+    >
       <b>{label}</b>
       <span>
         {t("director.court", { court: programme.court })}
