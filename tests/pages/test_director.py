@@ -12,6 +12,7 @@ from playwright.sync_api import expect
 from ports import free_port
 from show import Show, decide, violations
 from venue import Process
+from waiting import until
 
 from lacoc_shared.seat import Phase
 
@@ -24,11 +25,7 @@ PHONE = {"width": 390, "height": 844}
 
 
 CLOSE = "settings.match = { duration_s = 30.0, countdown_s = 1.0 }"
-"""A match of 30 s in which nothing happens is close to its end, so the director stays."""
-SWING = """\
-settings.match = { countdown_s = 1.0 }
-settings.game = { clearance_m = 0.05, corner_points = 20, starts = [[0.45, 0.8]] }"""
-"""A robot that walks straight on takes a corner worth 20 points."""
+"""A match of 30 s without points is close to its end, so the director stays."""
 
 
 def write_contest(folder: Path, **settings: str) -> Path:
@@ -60,22 +57,20 @@ def running(
         yield courts, run("web", "--listen", f"127.0.0.1:{free_port()}", name="web"), stack
 
 
-def begin(url: str, key: str, court: str, stack: ExitStack) -> tuple[PageClient, PageClient]:
-    """Begin a match at a court; return the left contestant's and the referee's page."""
-    pages = []
+def begin(url: str, key: str, court: str, stack: ExitStack) -> PageClient:
+    """Begin a match at a court; return the referee's page."""
     for seat, name in (("left", "Ants"), ("right", "Bees")):
         contestant = PageClient(url, key, court=court)
         stack.callback(contestant.close)
         contestant.ask("join", seat=seat, token=TOKENS[seat], name=name)
         contestant.ask("ready", ready=True)
-        pages.append(contestant)
     referee = PageClient(url, key, court=court)
     stack.callback(referee.close)
     referee.ask("enter", token=REFEREE, by="Kim")
     referee.phase(Phase.READY)
     decide(referee, type="start")
     referee.phase(Phase.PLAYING)
-    return pages[0], referee
+    return referee
 
 
 def test_pages_follow_the_director(
@@ -96,7 +91,7 @@ def test_pages_follow_the_director(
         watch.sees(".event", "The director begins in")
         expect(watch.find(".banner")).to_have_count(0)
         overlay.sees(".waits", "ディレクター")
-        _, referee = begin(url, web.opened["key"], "east", stack)
+        referee = begin(url, web.opened["key"], "east", stack)
         decide(referee, "for the test", type="abort")
         referee.phase(Phase.VOID)
         watch.sees(".result")
@@ -119,33 +114,41 @@ def test_pages_follow_the_director(
 SHOWN = """() => {
   const aside = document.querySelector(".aside:not([hidden])");
   const canvas = aside?.querySelector("canvas");
-  if (!canvas || !/2\\d : 0/.test(aside.textContent)) return null;
+  if (!canvas || !/[1-9]\\d* : 0/.test(aside.textContent)) return null;
   const box = canvas.getBoundingClientRect();
   const court = (where) => where.querySelector(".on-air").dataset.court;
   return { beside: court(aside), first: court(document), width: box.width, right: box.right };
 }"""
-"""What a page shows when the second picture has the points."""
+"""What a page shows while the second picture has points of the left team."""
 
 
 def test_a_swing_elsewhere_is_in_the_second_picture(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:
-    """During the close end of one court, a second picture shows the swing at another one."""
+    """During the close end of one court, a second picture shows the swings at another one."""
     console.expect("WebSocket")  # the gateway ends before the pages
-    with running(tmp_path, east=CLOSE, west=SWING) as (_, web, stack):
+    with running(tmp_path, east=CLOSE) as (_, web, stack):
         url, key = web.opened["url"], web.opened["key"]
         paths = ("/watch?director=1&q=low&lang=ja", "/overlay?director=1&q=low&lang=en")
         pages = [
             Show(open_page(viewport=PHONE if one == 0 else None), url, path, drawn=False).page
             for one, path in enumerate(paths)
         ]
-        begin(url, key, "east", stack)
-        walker, _ = begin(url, key, "west", stack)
-        walker.ask("key", level=1, key=2)
-        shown = [page.wait_for_function(SHOWN).json_value() for page in pages]
-        for page, found in zip(pages, shown, strict=True):
-            assert (found["first"], found["beside"]) == ("east", "west")
+        decide(begin(url, key, "east", stack), "for the test", type="halt")
+        west = begin(url, key, "west", stack)
+        found: list[Any] = []
+
+        def swing() -> bool:
+            """Let the score at the other court swing; return whether both pages show it."""
+            decide(west, "for the test", type="adjust", seat="left", points=20)
+            pages[0].wait_for_timeout(1000)
+            found[:] = [page.evaluate(SHOWN) for page in pages]
+            return all(found)
+
+        until(swing)
+        for page, shown in zip(pages, found, strict=True):
+            assert (shown["first"], shown["beside"]) == ("east", "west")
             width = page.viewport_size["width"]
-            assert width / 10 < found["width"] < width / 2
-            assert found["right"] <= width
+            assert width / 10 < shown["width"] < width / 2
+            assert shown["right"] <= width
             assert violations(page) == []
