@@ -19,7 +19,7 @@ from lacoc_arenas.checked_game import Source, checked
 from lacoc_arenas.game import AnyGame
 from lacoc_shared.command import plugins
 from lacoc_shared.contest.toml_text import BadToml, read_toml
-from lacoc_shared.contest.wrong_value import NO_ENTRY, place_and_words
+from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import Colour, Pattern
@@ -285,7 +285,7 @@ def _require_whole(module: ModuleType) -> None:
 
 def _entries(where: str, wrong: Phrase | str) -> Sequence[str] | None:
     """Return the entries that a table of the file can have, if one in it is unknown."""
-    if isinstance(wrong, str) or wrong.code != NO_ENTRY:
+    if isinstance(wrong, str) or wrong.code != "value.no-entry":
         return None
     kind = {"": _File, "match": MatchSettings}.get(where, SeatSettings)
     return kind.__struct_fields__

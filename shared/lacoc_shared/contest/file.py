@@ -20,7 +20,7 @@ from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.contest.key_folder import KeyFolder
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
-from lacoc_shared.contest.wrong_value import MISSING_ENTRY, NO_ENTRY, place_and_words
+from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.network.address import (
@@ -404,8 +404,8 @@ def _convert(value: Any, kind: type[T], where: str) -> T:
         place, what = place_and_words(error)
         at = ".".join(filter(None, (where, place)))
         fields = getattr(kind, "__struct_fields__", ())
-        is_about_entry = isinstance(what, Phrase) and what.code in (NO_ENTRY, MISSING_ENTRY)
-        known = fields if is_about_entry else None
+        codes = ("value.no-entry", "value.missing-entry")
+        known = fields if isinstance(what, Phrase) and what.code in codes else None
         raise _Wrong(say("contest.bad-entry", where=at or None, error=what, known=known)) from None
 
 

@@ -9,10 +9,6 @@ from lacoc_shared.words import Phrase, say
 _EXPECTED = re.compile(
     r"Expected `(\w+)(?: \| null)?`(?:, got `(\w+)`| (of length )?([<>]=?) (.+))?"
 )
-NO_ENTRY = "value.no-entry"
-"""Code of a phrase that a table has an entry of an unknown name."""
-MISSING_ENTRY = "value.missing-entry"
-"""Code of a phrase that a table lacks an entry."""
 _ENTRY = re.compile(r"Object (contains unknown|missing required) field `(.+)`")
 _KINDS = {
     "float": say("robot.number"),
@@ -43,8 +39,9 @@ def place_and_words(error: msgspec.ValidationError) -> tuple[str, Phrase | str]:
 
 def _words(what: str) -> Phrase | str:
     if (entry := _ENTRY.fullmatch(what)) is not None:
-        code = NO_ENTRY if entry[1] == "contains unknown" else MISSING_ENTRY
-        return say(code, entry=entry[2])
+        if entry[1] == "contains unknown":
+            return say("value.no-entry", entry=entry[2])
+        return say("value.missing-entry", entry=entry[2])
     found = _EXPECTED.fullmatch(what)
     if found is None or found[1] not in _KINDS:
         return what

@@ -382,6 +382,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "sequences.empty": ["Key {key} of level B has no posture. Give it one, such as 0.", "レベル B のキー {key} に姿勢がありません。0 などの姿勢を 1 つ以上入れてください。"],
   "sequences.no-posture": ["Key {key} of level B uses posture {posture}, but {file} has only {postures}. Choose postures that the file has.", "レベル B のキー {key} は姿勢 {posture} を使いますが、{file} には {postures} しかありません。ファイルにある姿勢を指定してください。"],
   "value.expected": ["expected {kind}<, found {found}>", "{kind}を書いてください<（入力：{found}）>"],
+  "value.no-entry": ["there is no entry {entry:quoted}", "{entry:quoted}という項目はありません"],
+  "value.missing-entry": ["the entry {entry:quoted} is missing", "{entry:quoted}の項目がありません"],
   "value.quoted": ["expected {kind}, without quotes, found text in quotes", "{kind}を引用符なしで書いてください（入力：引用符付きのテキスト）"],
   "value.limited": ["expected {kind} {limit}", "{limit}{kind}を書いてください"],
   "value.length": ["expected {kind} with a length {limit}", "長さが {limit}{kind}を書いてください"],
