@@ -127,19 +127,33 @@ def test_a_match_goes_back_to_the_lobby_and_to_other_robots() -> None:
     assert match.save() == hexapods
 
 
-def test_without_take_backs_only_they_are_lost() -> None:
-    """A lean save forgets which events can be taken back, and nothing else."""
-    script = Script(poses={2: {LEFT: SPOTS["othello"][14]}, 4: {LEFT: SPOTS["othello"][20]}})
+def test_a_match_that_keeps_nothing_loses_only_take_backs() -> None:
+    """It forgets which events can be taken back, loaded ones and new ones, and nothing else."""
+    script = Script(
+        poses={
+            2: {LEFT: SPOTS["othello"][14]},
+            4: {LEFT: SPOTS["othello"][20]},
+            1505: {LEFT: SPOTS["othello"][21]},
+        }
+    )
     stage = Stage("othello", QUICK, script=script).to_playing()
     stage.run(1500)
     (flip,) = stage.numbers("flip")
-    whole, lean = stage.match.save(), stage.match.save(take_backs=False)
-    assert len(lean) < 10_000 < 100_000 < len(whole)
+    whole = stage.match.save()
     match = Match(setup("othello", QUICK), stage._make)
-    match.load(lean)
-    assert not match.history.knows(flip)
-    for _ in range(5):
+    match.history.keep_nothing()
+    match.load(whole)
+    lean = match.save()
+    assert len(lean) < 10_000 < 100_000 < len(whole)
+    for _ in range(10):
         assert shown(match, ()) == shown(stage.match, ())
+    second = stage.match.event_count
+    assert second > flip
+    assert all(map(stage.match.history.knows, (flip, second)))
+    assert not any(map(match.history.knows, (flip, second)))
+    assert len(match.save()) < 10_000
+    match.load(lean)
+    assert match.save() == lean
 
 
 def test_bytes_of_another_game_are_refused() -> None:

@@ -9,7 +9,7 @@ bit, while it learns and while it plays (docs/environments.md).
 
 from collections.abc import Sequence
 from struct import Struct
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,27 +30,9 @@ posture that its robot moves to, and for how long keys are still refused."""
 CLOCK = ("left_s", "played_s")
 """Names of the numbers of the clock: time left to play (0 without a limit), and time played."""
 
-_POSE = Struct("<7f")
+_POSE = 7
+"""Numbers of a robot in `Frame.poses` before its joint angles: position and quaternion."""
 _FLOAT = np.dtype("<f4")
-_TWO, _FOUR, _SIX = (Struct(f"<{count}f").pack for count in (2, 4, 6))
-
-
-class Robot(NamedTuple):
-    """Where the numbers of one robot are in a frame's poses."""
-
-    pose: int
-    """Index of its first byte in `Frame.poses`."""
-    joints: int
-
-    @property
-    def first(self) -> int:
-        """Index of the first byte of the robot's joint angles in `Frame.poses`."""
-        return self.pose + _POSE.size
-
-    @property
-    def end(self) -> int:
-        """Index after the last byte of the robot's joint angles in `Frame.poses`."""
-        return self.first + _FLOAT.itemsize * self.joints
 
 
 class Senses:
@@ -68,20 +50,23 @@ class Senses:
         self._seats = len(sheet.seats)
         self._duration_ticks = round(sheet.duration_s * BEATS_PER_S)
         self._markers = len(sheet.markers)
-        self._robots: list[Robot] = []
-        offset = 0
-        for seat in sheet.seats:
-            joints = JOINTS_PER_LEG * len(seat.legs)
-            self._robots.append(Robot(offset, joints))
-            offset += _POSE.size + _FLOAT.itemsize * joints
+        self._joints = [JOINTS_PER_LEG * len(seat.legs) for seat in sheet.seats]
         turned = partners(sheet.markers) if self._seats == 2 else None
         self._turned = turned
         self.names = tuple(self._names(sheet))
         """What each number is; the seats are "own" and "other"."""
         self.size = len(self.names)
-        self._angles = [(robot.first, robot.end) for robot in self._robots]
+        angles = [f"{_FLOAT.itemsize * joints}s" for joints in self._joints]
+        self._unpack = Struct("<" + "".join(f"{_POSE}f{size}" for size in angles)).unpack
         seats = range(self._seats)
         self._orders = [(seat, *(s for s in seats if s != seat)) for seat in seats]
+        rest = f"{self._seats * len(SEAT) + len(CLOCK)}f{_FLOAT.itemsize * self._markers}s"
+        self._packs = [
+            Struct(
+                "<" + "".join(f"{len(BODY)}f{angles[robot]}" for robot in order) + rest
+            ).pack_into
+            for order in self._orders
+        ]
         self._packed: bytes | None = None
         self._boards: list[bytes] = []
         self._frame: Frame | None = None
@@ -94,30 +79,32 @@ class Senses:
         """
         if frame is not self._frame:
             self._frame, self._parts = frame, self._read(frame)
-        bodies, angles, commands, clock = self._parts
+        bodies, commands, clock = self._parts
         turns = seat == 1 and self._turned is not None
-        parts: list[bytes] = []
+        values: list[Any] = []
         for robot in self._orders[seat]:
-            parts += (bodies[robot][turns], angles[robot])
-        parts += [commands[robot] for robot in self._orders[seat]]
-        parts += (clock, self._boards[seat])
-        return np.frombuffer(bytearray().join(parts), _FLOAT)
+            values += bodies[robot][turns]
+        for robot in self._orders[seat]:
+            values += commands[robot]
+        numbers = np.empty(self.size, _FLOAT)
+        self._packs[seat](numbers.data, 0, *values, *clock, self._boards[seat])
+        return numbers
 
     def _read(self, frame: Frame) -> tuple[Any, ...]:
-        """Return the packed numbers of a frame: bodies, angles and commands by seat, the clock."""
+        """Return the numbers of a frame: by seat bodies and commands, and the clock."""
         if frame.markers != self._packed:
             self._packed, self._boards = frame.markers, self._read_board(frame.markers)
-        poses = frame.poses
+        poses = self._unpack(frame.poses)
         played = frame.clock_ticks
         left = max(0, self._duration_ticks - played) if self._duration_ticks else 0
+        size = _POSE + 1
         return (
-            [_body(poses, robot.pose) for robot in self._robots],
-            [poses[first:end] for first, end in self._angles],
+            [_body(*poses[size * seat : size * (seat + 1)]) for seat in range(self._seats)],
             [
-                _FOUR(seat.score, seat.key, seat.posture, seat.locked_ticks / BEATS_PER_S)
+                (seat.score, seat.key, seat.posture, seat.locked_ticks / BEATS_PER_S)
                 for seat in frame.seats
             ],
-            _TWO(left / BEATS_PER_S, played / BEATS_PER_S),
+            (left / BEATS_PER_S, played / BEATS_PER_S),
         )
 
     def _read_board(self, packed: bytes) -> list[bytes]:
@@ -134,9 +121,9 @@ class Senses:
     def _names(self, sheet: Sheet) -> list[str]:
         whose = ("own", *("other" for _ in range(self._seats - 1)))
         names = []
-        for owner, robot in zip(whose, self._robots, strict=True):
+        for owner, joints in zip(whose, self._joints, strict=True):
             names += [f"{owner} {name}" for name in BODY]
-            names += [f"{owner} angle {joint} [rad]" for joint in range(robot.joints)]
+            names += [f"{owner} angle {joint} [rad]" for joint in range(joints)]
         names += [f"{owner} {name}" for owner in whose for name in SEAT]
         return [*names, *CLOCK, *(marker.name for marker in sheet.markers)]
 
@@ -164,9 +151,10 @@ def _value(state: int, seat: int) -> float:
     return (0.0, -1.0, -1.0, 0.5)[state]
 
 
-def _body(poses: bytes, offset: int) -> tuple[bytes, bytes]:
-    """Return the packed numbers of a body, as it is and after a turn by 180 degrees."""
-    x, y, z, qw, qx, qy, qz = _POSE.unpack_from(poses, offset)
+def _body(
+    x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: float, angles: bytes
+) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Return the numbers of a robot, as it is and after a turn by 180 degrees."""
     ahead_x, ahead_y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
     up = 1 - 2 * (qx * qx + qy * qy)
-    return _SIX(x, y, z, ahead_x, ahead_y, up), _SIX(-x, -y, z, -ahead_x, -ahead_y, up)
+    return (x, y, z, ahead_x, ahead_y, up, angles), (-x, -y, z, -ahead_x, -ahead_y, up, angles)

@@ -2,11 +2,11 @@
 
 MuJoCo's distance between two geoms decides. It is computed only for pairs that may touch. These are
 found in a top view, in which an upright probe is a circle, and two points are never farther apart
-than in space. Probes far from a whole robot, or from a whole leg, are skipped at once.
+than in space. Which limbs are near a probe is found again only after the robot's body has moved a
+little, as a neighbour list of molecular dynamics is.
 """
 
 import math
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -16,10 +16,13 @@ import numpy as np
 from lacoc_server.world.robot import Robot
 from lacoc_shared.messages import MarkerInfo
 
+PROBE = "probe:"
+"""Beginning of the name of a geom that robots touch; the name of its marker follows."""
+
 _TOUCH_M = 1e-3
 """Margin of the top view [m], larger than the error of MuJoCo's distance."""
-_CELL_M = 0.04
-"""Side of a square of the floor; each square lists the probes within a robot's reach."""
+_SKIN_M = 0.03
+"""How far a body moves before the limbs near a probe are found again [m]."""
 
 
 class _Probe(NamedTuple):
@@ -39,17 +42,24 @@ class _Part(NamedTuple):
     radius_m: float
     half_m: float
     """Half the distance between the centres of the capsule's two ends."""
+    middle: int
+    """Index of its centre in `geom_xpos`, taken as one row of numbers."""
+    axes: int
+    """Index of its orientation in `geom_xmat`, taken as one row of numbers."""
 
 
 class _Limb(NamedTuple):
-    """A leg, or the robot's own body: a run of parts."""
+    """A leg, or the robot's own body."""
 
-    first: int
-    """Index of its first part."""
-    end: int
-    """Index after its last part."""
+    parts: tuple[_Part, ...]
+    origin: int
+    """Index in `xpos`, taken as one row of numbers, of the origin of its first body."""
     reach_m: float
-    """Upper bound of the distance [m] of its points from its first part's centre, at all angles."""
+    """Upper bound of the distance of its points from that origin, at all joint angles."""
+
+
+_Pair = tuple[_Probe, tuple[_Part, ...]]
+"""A probe, and the parts of one robot that it may touch."""
 
 
 class TouchTest:
@@ -82,14 +92,15 @@ class TouchTest:
         """
         if not self._can_touch:
             return self._none
-        near = [robot.probes_near(gap_m) for robot in self._robots]
-        if not any(near):
+        room_m = _TOUCH_M + abs(gap_m)
+        gone = [robot for robot in self._robots if robot.has_gone(room_m)]
+        if not gone and not any(robot.near for robot in self._robots):
             return self._none
         # After mj_step the geoms are still where the last step began.
         mujoco.mj_kinematics(self._model, self._data)
-        return [
-            robot.touched(probes, gap_m) for robot, probes in zip(self._robots, near, strict=True)
-        ]
+        for robot in gone:
+            robot.look_around(room_m)
+        return [robot.touched(gap_m, room_m) if robot.near else () for robot in self._robots]
 
 
 class _Outline:
@@ -105,69 +116,73 @@ class _Outline:
     def __init__(self, model: Any, data: Any, robot: Robot, probes: Sequence[_Probe]) -> None:
         self._model, self._data = model, data
         geoms = robot.geoms.tolist()  # MuJoCo numbers them body by body, outward along each leg
-        self._parts = [_part(model, geom) for geom in geoms]
-        self._limbs = _limbs(model, geoms)
+        self._limbs, self._arm_m = _limbs(model, geoms)
+        self._reach_m = self._arm_m + max(limb.reach_m for limb in self._limbs)
         self._probes = probes
         # Views into MuJoCo's own arrays: they always show the present values.
-        self._root_m = data.qpos[robot.root_qpos : robot.root_qpos + 2]
-        self._middles_m = data.geom_xpos[geoms[0] : geoms[-1] + 1, :2]
-        self._axes = data.geom_xmat[geoms[0] : geoms[-1] + 1, 2:6:3]  # x and y of the z axis
-        root = model.geom_bodyid[geoms[0]]
-        self._near = _map(probes, max(_reach_m(model, geom, root) for geom in geoms))
+        self._pose = memoryview(data.qpos)[robot.root_qpos : robot.root_qpos + 7]
+        self._origins_m = memoryview(data.xpos.reshape(-1))
+        self._middles_m = memoryview(data.geom_xpos.reshape(-1))
+        self._axes = memoryview(data.geom_xmat.reshape(-1))
+        self._seen_from: Sequence[float] = [math.nan] * 7
+        self._room_m = 0.0
+        self.near: list[_Pair] = []
+        """All pairs that may touch until the robot `has_gone`, in the order of the markers."""
 
-    def probes_near(self, gap_m: float) -> Sequence[_Probe]:
-        """Return the probes near the robot's body: all that it may touch, and perhaps others."""
-        if gap_m > 0:  # the map holds for real touches only
-            return self._probes
-        x_m, y_m = self._root_m.tolist()
-        return self._near.get((x_m // _CELL_M, y_m // _CELL_M), ())
+    def has_gone(self, room_m: float) -> bool:
+        """Return whether `near` may lack a pair with a distance of at most `room_m`."""
+        now, then = self._pose.tolist(), self._seen_from
+        turned = math.dist(now[3:], then[3:])  # a point at 1 m has moved at most twice as far
+        gone_m = math.dist(now[:2], then[:2]) + 2 * self._arm_m * turned
+        return not gone_m <= _SKIN_M or room_m > self._room_m
 
-    def touched(self, probes: Sequence[_Probe], gap_m: float) -> tuple[int, ...]:
-        """Find the markers whose probe the robot touches.
+    def look_around(self, room_m: float) -> None:
+        """Find the pairs that are `near`; the positions of bodies must be the present ones."""
+        self._seen_from, self._room_m = self._pose.tolist(), room_m
+        x_m, y_m = self._seen_from[:2]
+        self.near = []
+        for probe in self._probes:
+            more_m = probe.radius_m + room_m + _SKIN_M
+            if math.dist((x_m, y_m), (probe.x_m, probe.y_m)) <= self._reach_m + more_m:
+                parts = tuple(self._parts_near(probe, more_m))
+                if parts:
+                    self.near.append((probe, parts))
+
+    def _parts_near(self, probe: _Probe, more_m: float) -> Iterator[_Part]:
+        for parts, origin, reach_m in self._limbs:
+            x_m, y_m = self._origins_m[origin], self._origins_m[origin + 1]
+            if math.dist((x_m, y_m), (probe.x_m, probe.y_m)) <= reach_m + more_m:
+                yield from parts
+
+    def touched(self, gap_m: float, room_m: float) -> tuple[int, ...]:
+        """Find the markers whose probe the robot touches; geoms must be where they are now.
 
         Args:
-            probes: the probes to test, in the order of their markers.
             gap_m: the largest distance that counts as a touch.
+            room_m: pairs that are farther apart than this in the top view don't touch.
         """
-        if not probes:
-            return ()
-        room_m = _TOUCH_M + abs(gap_m)
-        middles_m, axes = self._middles_m.tolist(), self._axes.tolist()
-        return tuple(
-            probe.marker
-            for probe in probes
-            if any(
-                self._distance_m(part, probe, room_m) <= gap_m
-                for part in self._close(probe, room_m, middles_m, axes)
-            )
-        )
-
-    def _close(
-        self, probe: _Probe, room_m: float, middles_m: list[list[float]], axes: list[list[float]]
-    ) -> Iterator[_Part]:
-        """Yield all parts that may be at most `room_m` from a probe in the top view."""
-        _, _, probe_x_m, probe_y_m, probe_radius_m = probe
-        around_m = probe_radius_m + room_m
-        for first, end, reach_m in self._limbs:
-            x_m, y_m = middles_m[first]
-            if (probe_x_m - x_m) ** 2 + (probe_y_m - y_m) ** 2 > (reach_m + around_m) ** 2:
-                continue
-            for index in range(first, end):
-                part = self._parts[index]
-                apart_m = part.radius_m + around_m
-                x_m, y_m = middles_m[index]
-                dx_m, dy_m = probe_x_m - x_m, probe_y_m - y_m
-                gap_m2 = dx_m * dx_m + dy_m * dy_m
-                if gap_m2 > (apart_m + part.half_m) ** 2:
+        middles_m, axes = self._middles_m, self._axes
+        touched = []
+        for probe, parts in self.near:
+            _, probe_geom, probe_x_m, probe_y_m, probe_radius_m = probe
+            around_m = probe_radius_m + room_m
+            for geom, radius_m, half_m, middle, axis in parts:
+                apart_m = radius_m + around_m
+                x_m, y_m = probe_x_m - middles_m[middle], probe_y_m - middles_m[middle + 1]
+                if x_m * x_m + y_m * y_m > (apart_m + half_m) ** 2:
                     continue
-                axis_x, axis_y = axes[index]
-                end_x_m, end_y_m = part.half_m * axis_x, part.half_m * axis_y
-                if _gap_m2(dx_m, dy_m, end_x_m, end_y_m) <= apart_m * apart_m:
-                    yield part
+                if half_m:
+                    end_x_m, end_y_m = half_m * axes[axis + 2], half_m * axes[axis + 5]
+                    if _gap_m2(x_m, y_m, end_x_m, end_y_m) > apart_m * apart_m:
+                        continue
+                if self._distance_m(geom, probe_geom, room_m) <= gap_m:
+                    touched.append(probe.marker)
+                    break
+        return tuple(touched)
 
-    def _distance_m(self, part: _Part, probe: _Probe, most_m: float) -> float:
+    def _distance_m(self, geom: int, probe: int, most_m: float) -> float:
         model, data = self._model, self._data
-        distance_m: float = mujoco.mj_geomDistance(model, data, part.geom, probe.geom, most_m, None)
+        distance_m: float = mujoco.mj_geomDistance(model, data, geom, probe, most_m, None)
         return distance_m
 
 
@@ -179,30 +194,9 @@ def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
     return (x_m - share * end_x_m) ** 2 + (y_m - share * end_y_m) ** 2
 
 
-def _map(probes: Sequence[_Probe], reach_m: float) -> dict[tuple[float, float], list[_Probe]]:
-    """Map each square of the floor to what a robot can touch while its body is in it.
-
-    Args:
-        probes: all probes.
-        reach_m: upper bound of the distance of the robot's points from its body's origin [m].
-    """
-    near: dict[tuple[float, float], list[_Probe]] = defaultdict(list)
-    for probe in probes:
-        # The robot may be anywhere in the square, up to half a diagonal from its centre.
-        apart_m = reach_m + probe.radius_m + _TOUCH_M + _CELL_M * math.sqrt(0.5)
-        around = math.ceil(apart_m / _CELL_M)
-        column, row = round(probe.x_m / _CELL_M), round(probe.y_m / _CELL_M)
-        for i in range(column - around, column + around + 1):
-            for j in range(row - around, row + around + 1):
-                middle_m = ((i + 0.5) * _CELL_M, (j + 0.5) * _CELL_M)
-                if math.dist(middle_m, (probe.x_m, probe.y_m)) <= apart_m:
-                    near[i, j].append(probe)
-    return dict(near)
-
-
 def _probes(model: Any, data: Any, markers: Sequence[MarkerInfo]) -> Iterator[_Probe]:
     for marker, info in enumerate(markers):
-        geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, f"probe:{info.name}")
+        geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, f"{PROBE}{info.name}")
         if geom >= 0:
             x_m, y_m, _ = data.geom_xpos[geom].tolist()
             yield _Probe(marker, geom, x_m, y_m, float(model.geom_size[geom, 0]))
@@ -210,21 +204,30 @@ def _probes(model: Any, data: Any, markers: Sequence[MarkerInfo]) -> Iterator[_P
 
 def _part(model: Any, geom: int) -> _Part:
     radius_m, half_m, _ = model.geom_size[geom].tolist()
-    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE:
-        return _Part(geom, radius_m, half_m)
-    return _Part(geom, float(model.geom_rbound[geom]), 0.0)
+    if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_CAPSULE:
+        radius_m, half_m = float(model.geom_rbound[geom]), 0.0
+    return _Part(geom, radius_m, half_m, 3 * geom, 9 * geom)
 
 
-def _limbs(model: Any, geoms: Sequence[int]) -> list[_Limb]:
-    """Split a robot into limbs: its body, then each leg from the root hinge outward."""
-    bodies = [_limb_of(model, geom) for geom in geoms]
-    limbs = []
-    for body in dict.fromkeys(bodies):
-        first, count = bodies.index(body), bodies.count(body)
-        reach_m = max(_reach_m(model, geom, body) for geom in geoms[first : first + count])
-        middle_m = _middle_m(model, geoms[first])
-        limbs.append(_Limb(first, first + count, middle_m + reach_m))
-    return limbs
+def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:
+    """Split a robot into limbs: its body, then each leg from the root hinge outward.
+
+    Returns:
+        The limbs; and the largest distance of a limb's origin from the robot's origin [m].
+    """
+    limbs: dict[int, list[int]] = {}
+    for geom in geoms:
+        limbs.setdefault(_limb_of(model, geom), []).append(geom)
+    root = model.body_rootid[model.geom_bodyid[geoms[0]]]
+    arms_m = [float(np.linalg.norm(model.body_pos[body])) for body in limbs if body != root]
+    return [
+        _Limb(
+            tuple(_part(model, geom) for geom in own),
+            3 * body,
+            max(_reach_m(model, geom, body) for geom in own),
+        )
+        for body, own in limbs.items()
+    ], max(arms_m)
 
 
 def _limb_of(model: Any, geom: int) -> int:
@@ -241,14 +244,10 @@ def _reach_m(model: Any, geom: int, base: int) -> float:
 
     The bound holds at all joint angles, because each hinge goes through the origin of its own body.
     """
-    reach_m = _middle_m(model, geom) + float(model.geom_rbound[geom])
+    middle_m = np.linalg.norm(model.geom_pos[geom])
+    reach_m = float(middle_m) + float(model.geom_rbound[geom])
     body = model.geom_bodyid[geom]
     while body != base:
         reach_m += float(np.linalg.norm(model.body_pos[body]))
         body = model.body_parentid[body]
     return reach_m
-
-
-def _middle_m(model: Any, geom: int) -> float:
-    """Return the distance of a geom's centre from the origin of its body [m]."""
-    return float(np.linalg.norm(model.geom_pos[geom]))

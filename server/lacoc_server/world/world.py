@@ -18,7 +18,7 @@ from lacoc_server.match.entry import Entry
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.robot import Robot
 from lacoc_server.world.scene import make_scene
-from lacoc_server.world.touch import TouchTest
+from lacoc_server.world.touch import PROBE, TouchTest
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY
@@ -49,8 +49,10 @@ _WARNINGS = {
 class World:
     """Robots on a field, stepped tick by tick; implements `match.physics.Physics`.
 
-    The model is compiled when the world is made. The same state and angles give the same bits after
-    a tick, on one version of MuJoCo and one kind of machine.
+    The model is compiled when the world is made. MuJoCo steps a copy of it without the geoms that
+    are only drawn, because it would move them in each step: the bits are the same, in less time.
+    The same state and angles give the same bits after a tick, on one version of MuJoCo and one kind
+    of machine.
 
     Args:
         arena: the field and its game.
@@ -75,12 +77,15 @@ class World:
                 rgba=_rgba(arena.seats[index].colour),
             )
         self._extend(spec)
-        self.model = spec.compile()
+        self.drawn = spec.compile()
+        """The whole model, for pictures; its hash is `model_hash`."""
+        self.model = _without_drawings(spec)
+        """The model that MuJoCo steps; its geoms have other ids."""
         self.data = mujoco.MjData(self.model)
-        self.scene = make_scene(self.model, arena.game, seats)
+        self.scene = make_scene(self.drawn, arena.game, seats)
         self.scene_hash = message_hash(encode(self.scene))
-        buffer = np.empty(mujoco.mj_sizeModel(self.model), np.uint8)
-        mujoco.mj_saveModel(self.model, None, buffer)
+        buffer = np.empty(mujoco.mj_sizeModel(self.drawn), np.uint8)
+        mujoco.mj_saveModel(self.drawn, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
         self.digest = bytes(8)
         self.robots = [Robot.find(self.model, entry, seats[i]) for i, entry in enumerate(entries)]
@@ -233,6 +238,19 @@ def chained(digest: bytes, state: bytes | memoryview) -> bytes:
     following = hashlib.sha256(digest)
     following.update(state)
     return following.digest()[:8]
+
+
+def _without_drawings(spec: mujoco.MjSpec) -> Any:
+    """Compile the model without its geoms that nothing can touch; `spec` is changed.
+
+    A pair or a sensor may name such a geom. If there is one, all geoms stay.
+    """
+    if not spec.pairs and not spec.sensors:
+        for geom in list(spec.geoms):
+            is_solid = geom.contype or geom.conaffinity or geom.mass != 0
+            if not is_solid and not geom.name.startswith(PROBE):
+                spec.delete(geom)
+    return spec.compile()
 
 
 def _weights(model: Any) -> npt.NDArray[np.float64]:

@@ -77,7 +77,7 @@ _MOST_BYTES = 1 << 28
 """Longer bytes are refused; a match of three minutes is 1 MB."""
 
 
-def save(match: MatchState, take_backs: bool) -> bytes:
+def save(match: MatchState) -> bytes:
     """Return the match as bytes; see `Match.save`."""
     return encode(
         _Saved(
@@ -85,7 +85,7 @@ def save(match: MatchState, take_backs: bool) -> bytes:
             _made_of(match),
             match.physics.save() if _has_robots(match) else None,
             match.staging.save(),
-            match.history.save(take_backs),
+            match.history.save(),
             tuple(_SavedSeat(*(getattr(seat, f) for f in _SEAT_FIELDS)) for seat in match.seats),
             *(getattr(match, name) for name in _PLAIN_FIELDS),
         )

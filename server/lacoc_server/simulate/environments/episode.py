@@ -97,7 +97,7 @@ class Begun:
                     _steer(match)
             if match.phase is not Phase.PLAYING:
                 raise UserError(say("environment.no-start", phase=match.phase.word))
-            self._saved[place] = match.save(take_backs=False)
+            self._saved[place] = match.save()
         match.load(self._saved[place])
 
 
@@ -219,7 +219,7 @@ class Episode:
                 self.opening,
                 self.begun.angles,
                 self.begun.robots,
-                self.match.save(take_backs=False),
+                self.match.save(),
                 bytes(self._pressed),
                 tuple(self._seqs),
                 encode(extra),
@@ -328,7 +328,8 @@ class Episode:
     def _match(self, place: int) -> Match:
         if place not in self._matches:
             folder = self.begun.arena.folder
-            self._matches[place] = Match(self.begun.setup(place), World, folder)
+            match = self._matches[place] = Match(self.begun.setup(place), World, folder)
+            match.history.keep_nothing()  # an environment has no referee who takes events back
         return self._matches[place]
 
 

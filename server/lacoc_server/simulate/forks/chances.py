@@ -229,7 +229,8 @@ def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
     match = resume(before, folder=Path(arena) if arena else None).match
     while match.beats < beat - 1:  # beats in which nothing was recorded
         match.beat()
-    return match, match.save(take_backs=False)
+    match.history.keep_nothing()
+    return match, match.save()
 
 
 def _two_seats(source: Source) -> tuple[str, str]:
