@@ -61,9 +61,9 @@ def test_every_marker_has_a_shape_for_each_of_its_states(arena: str) -> None:
 def test_what_cannot_be_seen_is_left_out() -> None:
     """Invisible shapes (probes of flags, planes of walls) are not in the scene."""
     it = World(arenas.load("flag-strike"), [entry()] * 2)
-    hidden = int((it.drawn.geom_rgba[:, 3] == 0).sum())
+    hidden = int((it.whole.geom_rgba[:, 3] == 0).sum())
     assert hidden == 4 + 20
-    assert len(it.scene.geoms) == it.drawn.ngeom - hidden
+    assert len(it.scene.geoms) == it.whole.ngeom - hidden
 
 
 def test_whose_colour() -> None:

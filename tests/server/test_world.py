@@ -5,7 +5,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from types import SimpleNamespace
 
 import mujoco
 import numpy as np
@@ -13,12 +12,13 @@ import pytest
 from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, B, Stage, X, entry, key
 
 from lacoc_arenas import arena as arenas
-from lacoc_arenas import field
 from lacoc_arenas.game import Place
 from lacoc_server.match.drive import Drive
 from lacoc_server.match.entry import Entry
 from lacoc_server.match.physics import Fault
-from lacoc_server.world.world import World
+from lacoc_server.world.models import compile_models
+from lacoc_server.world.robot import Robot
+from lacoc_server.world.world import STATE, SUBSTEPS, World
 from lacoc_shared import decisions as d
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY, Phase
@@ -113,24 +113,65 @@ def test_a_state_of_another_model_is_refused() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
-def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
-    """Rules 6: with flags or discs on the field, the paths have the same bits as without."""
-    full = arenas.load(arena)
-    bare = SimpleNamespace(
-        seats=full.seats,
-        game=SimpleNamespace(markers=(), starts=full.game.starts),
-        build_field=lambda spec: field.ground(spec, full.game.size_m),
-    )
-    with_markers, without = World(full, [HEXAPOD] * 2), World(bare, [HEXAPOD] * 2)  # type: ignore[arg-type]
-    assert with_markers.model.ngeom > without.model.ngeom
-    touched = set()
-    for angles in commands(700):
-        with_markers.step(angles)
-        touched.update(*with_markers.touched())
-        without.step(angles)
-        assert with_markers.digest == without.digest
-    assert bool(touched) is (arena == "flag-strike")
+@pytest.mark.parametrize(
+    ("arena", "robot"),
+    [
+        ("flag-strike", "hexapod"),
+        pytest.param("othello", "hexapod", marks=pytest.mark.long),
+        pytest.param("practice", "octopod", marks=pytest.mark.long),
+        pytest.param("flag-strike", "long-legs", marks=pytest.mark.long),
+    ],
+)
+def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
+    """Rules 6: what is only drawn or touched, and how contacts are found, changes no bit.
+
+    MuJoCo alone steps the whole model. The robots get into each other's legs, along a wall too.
+    """
+    ground = arenas.load(arena)
+    it = World(ground, [entry(robot)] * len(ground.seats))
+    whole = mujoco.MjData(it.whole)
+    assert it.whole.ngeom > it.model.ngeom
+    wall_m = ground.game.size_m[0] / 2 - 0.1
+    rng = np.random.default_rng(1)
+    contacts = set()
+    for x_m in (0.0, wall_m):
+        for seat in range(len(ground.seats)):
+            it.place(seat, Place(x_m, -0.12 + 0.24 * seat, math.pi / 2 - math.pi * seat))
+        mujoco.mj_setState(it.whole, whole, np.frombuffer(it.save()[8:]), STATE)
+        for tick in range(250):
+            if tick % 10 == 0:
+                turns = rng.uniform(-0.6, 0.6, (len(it.robots), it.robots[0].entry.robot.joints))
+                angles = [
+                    tuple((np.array(own.entry.robot.start_posture) + turn).tolist())
+                    for own, turn in zip(it.robots, turns, strict=True)
+                ]
+            assert it.step(angles) is None
+            it.touched()
+            whole.ctrl[:] = it.data.ctrl
+            mujoco.mj_step(it.whole, whole, nstep=SUBSTEPS)
+            state = np.empty(mujoco.mj_stateSize(it.whole, STATE))
+            mujoco.mj_getState(it.whole, whole, state, STATE)
+            assert state.tobytes() == it.save()[8:], tick
+            bodies = it.whole.geom_bodyid[whole.contact.geom]
+            contacts |= {tuple(pair) for pair in (it.whole.body_rootid[bodies] > 0).tolist()}
+    if len(ground.seats) > 1:
+        assert (True, True) in contacts, "no robot met the other one"
+
+
+def test_geoms_that_a_pair_names_stay() -> None:
+    """A field may let two geoms collide by their names; then MuJoCo steps all of its geoms."""
+    spec = mujoco.MjSpec()
+    ball = spec.worldbody.add_body(pos=[0, 0, 0.2])
+    ball.add_freejoint()
+    ball.add_geom(name="ball", size=[0.1, 0, 0], mass=1.0, contype=0, conaffinity=0)
+    spec.worldbody.add_geom(name="pad", size=[0.1, 0, 0], mass=0, contype=0, conaffinity=0)
+    assert compile_models(spec.copy()).stepped.ngeom == 1
+    spec.add_pair(geomname1="ball", geomname2="pad")
+    models = compile_models(spec)
+    assert (models.stepped.ngeom, models.touching) == (2, None)
+    data = mujoco.MjData(models.stepped)
+    mujoco.mj_step(models.stepped, data, nstep=50)
+    assert data.ncon == 1
 
 
 def test_the_model_is_compiled_before_the_match() -> None:
@@ -371,64 +412,94 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
 
 
 def _lower_than_a_pole(it: World) -> bool:
-    it.touched()  # updates the positions of the geoms
+    mujoco.mj_kinematics(it.model, it.data)
     geoms = it.robots[LEFT].geoms
     heights = it.data.geom_xpos[geoms, 2]
     reach = it.model.geom_rbound[geoms]
     return bool((heights + reach).max() < REACH_M and (heights - reach).min() > -0.05)
 
 
+class AllPairs:
+    """What robots touch by MuJoCo's distance of each part from each pole, in the whole model."""
+
+    def __init__(self, it: World) -> None:
+        self.it, self.model, self.data = it, it.whole, mujoco.MjData(it.whole)
+        seats = ("left", "right")
+        self.geoms = [
+            Robot.find(it.whole, own.entry, seat).geoms.tolist()
+            for own, seat in zip(it.robots, seats, strict=True)
+        ]
+        self.probes = {
+            marker: it.whole.geom(f"probe:{info.name}").id
+            for marker, info in enumerate(arenas.load("flag-strike").game.markers)
+            if info.kind == "flag"
+        }
+
+    def touched(self, gap_m: float = 0.0) -> list[tuple[int, ...]]:
+        self.data.qpos[:] = self.it.data.qpos
+        mujoco.mj_kinematics(self.model, self.data)
+        room_m = 1e-3 + abs(gap_m)
+        return [
+            tuple(
+                marker
+                for marker, probe in self.probes.items()
+                if any(
+                    mujoco.mj_geomDistance(self.model, self.data, geom, probe, room_m, None)
+                    <= gap_m
+                    for geom in own
+                )
+            )
+            for own in self.geoms
+        ]
+
+
 @pytest.mark.parametrize("robot", ["hexapod", "long-legs", "quadruped", "octopod"])
 def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
     """`touched` finds the same flags as MuJoCo's distance of each part from each pole.
 
-    Robots are in random poses, also over the top of a pole and on their backs.
+    Robots are in random poses, also over the top of a pole and on their backs. From each pose they
+    move on a little, so that what was near before is used again.
     """
     it = world(robot=robot)
+    pairs = AllPairs(it)
     markers = arenas.load("flag-strike").game.markers
-    probes = {
-        marker: it.model.geom(f"probe:{info.name}").id
-        for marker, info in enumerate(markers)
-        if info.kind == "flag"
-    }
     rng = np.random.default_rng(3)
     touching = 0
     for _ in range(150):
         for own in it.robots:
             at = own.root_qpos
-            flag = markers[rng.choice(list(probes))]
+            flag = markers[rng.choice(list(pairs.probes))]
             turn = rng.normal(size=4) * (1.0, 0.3, 0.3, 1.0)
             it.data.qpos[at : at + 2] = rng.normal((flag.x_m, flag.y_m), 0.12)
             it.data.qpos[at + 2] = rng.uniform(0.0, 0.35)
             it.data.qpos[at + 3 : at + 7] = turn / np.linalg.norm(turn)
             low, high = np.array(own.entry.robot.ranges_rad).T
             it.data.qpos[own.joint_qpos] = rng.uniform(low, high)
-        found = it.touched()
-        mujoco.mj_kinematics(it.model, it.data)
-        assert list(found) == [
-            tuple(
-                marker
-                for marker, probe in probes.items()
-                if any(
-                    mujoco.mj_geomDistance(it.model, it.data, geom, probe, 1e-3, None) <= 0
-                    for geom in own.geoms.tolist()
-                )
-            )
-            for own in it.robots
-        ]
-        touching += sum(map(len, found))
-    assert touching > 50
+        for gap_m in (0.0, 0.02, -0.005, 0.0):
+            found = it.touched(gap_m)
+            assert list(found) == pairs.touched(gap_m)
+            touching += sum(map(len, found))
+            for own in it.robots:
+                at = own.root_qpos
+                it.data.qpos[at : at + 2] += rng.normal(0.0, 0.005, 2)
+                turn = it.data.qpos[at + 3 : at + 7] + rng.normal(0.0, 0.03, 4)
+                it.data.qpos[at + 3 : at + 7] = turn / np.linalg.norm(turn)
+                it.data.qpos[own.joint_qpos] += rng.normal(0.0, 0.2, len(own.joint_qpos))
+    assert touching > 200
 
 
 def test_touch_costs_no_bit() -> None:
-    """Asking what a robot touches does not change its path."""
+    """Asking what a robot touches does not change its path; each answer is right."""
     asked, quiet = world(), world()
+    pairs = AllPairs(asked)
     for it in (asked, quiet):
         it.place(LEFT, Place(-0.3, 0.0, 0.0))
     touched = set()
     for angles in commands(150):
         asked.step(angles)
-        touched.update(asked.touched()[LEFT])
+        found = asked.touched()
+        assert list(found) == pairs.touched()
+        touched.update(found[LEFT])
         quiet.step(angles)
         assert asked.digest == quiet.digest
         assert asked.save() == quiet.save()

@@ -37,6 +37,8 @@ from lacoc_shared.seat import RESTART_KEY, Phase
 from lacoc_shared.words import Phrase, say
 
 PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
+# Each beat asks for these, and Python looks up a member of an enum slowly.
+_CREATED, _COUNTDOWN, _PLAYING = Phase.CREATED, Phase.COUNTDOWN, Phase.PLAYING
 
 MOST_STRAYS = 3
 """A team is no longer ready when its robot has left its start place this often before play."""
@@ -115,9 +117,9 @@ class Match(MatchState):
             sheet_changed,
         )
 
-    def skip(self) -> None:
-        """Let one beat without inputs pass, whose results nobody needs."""
-        self._pass(())
+    def skip(self, inputs: Sequence[Input] = ()) -> None:
+        """Let one beat pass whose results nobody needs; `frame` shows the match after it."""
+        self._pass(inputs)
 
     def _pass(self, inputs: Sequence[Input]) -> tuple[tuple[Outcome, ...], bool]:
         """Let one beat pass; return the outcomes, and whether a tick of physics passed."""
@@ -125,9 +127,9 @@ class Match(MatchState):
         self._events = []
         self._touch = None
         self._result_changed = False
-        if self.phase is Phase.CREATED:
+        if self.phase is _CREATED:
             self.enter(Phase.LOBBY)
-        if self.phase is Phase.COUNTDOWN:
+        if self.phase is _COUNTDOWN:
             self.countdown_beats -= 1
         outcomes = self._take_all(inputs) if inputs else ()
         self.staging.put_back(self.seats)
@@ -169,11 +171,15 @@ class Match(MatchState):
 
     def _move_on(self) -> None:
         """Change the phase where nobody has to decide."""
-        is_silent = all(seat.silent for seat in self.seats)
-        self.silent_beats = self.silent_beats + 1 if is_silent else 0
-        if self.phase is not Phase.PLAYING:
+        for seat in self.seats:
+            if not seat.silent:
+                self.silent_beats = 0
+                break
+        else:
+            self.silent_beats += 1
+        if self.phase is not _PLAYING:
             self._move_to_play()
-        if self.phase is Phase.PLAYING and self.time_is_up:  # after a referee moved the clock
+        if self.phase is _PLAYING and self.time_is_up:  # after a referee moved the clock
             self.finish(say("over.time"))
         # A match without a referee ends when nobody is there, but never in a countdown.
         if self.rules.start == "ready" and self.phase in (Phase.PLAYING, Phase.HALTED):
@@ -193,7 +199,7 @@ class Match(MatchState):
             self.back_to_lobby()
         elif self.phase is Phase.READY and self.rules.start == "ready":
             self.begin_countdown()
-        if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
+        if self.phase is _COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
 
     def _tick(self) -> bool:
@@ -210,7 +216,7 @@ class Match(MatchState):
         for seat, state in zip(self.seats, states, strict=True):
             seat.state = state
         self.staging.look()
-        if self.phase is Phase.PLAYING:
+        if self.phase is _PLAYING:
             self._judge()
         else:
             self._hold_places()
@@ -246,7 +252,7 @@ class Match(MatchState):
     def _fail(self, fault: Fault) -> None:
         """Log a fault. A match in play halts; before play no seat is ready any more."""
         self.tell("fault", say("event.fault", why=fault.why), seat=fault.seat)
-        if self.phase is Phase.PLAYING:
+        if self.phase is _PLAYING:
             self.enter(Phase.HALTED)
         else:
             for seat in self.seats:
@@ -263,7 +269,7 @@ class Match(MatchState):
             self.setup.match,
             self.beats,
             int(self.phase),
-            self.countdown_beats if self.phase is Phase.COUNTDOWN else 0,
+            self.countdown_beats if self.phase is _COUNTDOWN else 0,
             self.clock_ticks,
             tuple([seat.frame(score, ticks) for seat, score in zip(seats, scores, strict=True)]),
             board,

@@ -12,12 +12,13 @@ from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
+from lacoc_server.world.models import PROBE
 from lacoc_server.world.robot import Robot
 from lacoc_shared.messages import MarkerInfo
 
-PROBE = "probe:"
-"""Beginning of the name of a geom that robots touch; the name of its marker follows."""
+Floats = npt.NDArray[np.float64]
 
 _TOUCH_M = 1e-3
 """Margin of the top view [m], larger than the error of MuJoCo's distance."""
@@ -42,45 +43,48 @@ class _Part(NamedTuple):
     radius_m: float
     half_m: float
     """Half the distance between the centres of the capsule's two ends."""
-    middle: int
-    """Index of its centre in `geom_xpos`, taken as one row of numbers."""
-    axes: int
-    """Index of its orientation in `geom_xmat`, taken as one row of numbers."""
 
 
 class _Limb(NamedTuple):
     """A leg, or the robot's own body."""
 
     parts: tuple[_Part, ...]
-    origin: int
-    """Index in `xpos`, taken as one row of numbers, of the origin of its first body."""
+    body: int
+    """Its first body."""
     reach_m: float
-    """Upper bound of the distance of its points from that origin, at all joint angles."""
+    """Upper bound of the distance of its points from that body's origin, at all joint angles."""
 
 
-_Pair = tuple[_Probe, tuple[_Part, ...]]
-"""A probe, and the parts of one robot that it may touch."""
+class _Pair(NamedTuple):
+    """A part of a robot and a probe that it may touch."""
+
+    geom: int
+    half_m: float
+    """`half_m` of the part."""
+    middle_m2: float
+    """In the top view, the square of their distance if their centres are farthest apart."""
+    axis_m2: float
+    """The same for the axis of the part instead of its centre."""
 
 
 class TouchTest:
-    """Finds the markers that each robot touches.
+    """Finds the markers that each robot touches, in a model of its own.
 
     Args:
-        model: the compiled model.
-        data: its data, with the robots where they are now.
-        robots: the robots, in the order of the seats.
-        markers: markers of the game; the probe of a marker is the geom "probe:NAME".
+        model: a compiled model of the robots and the probes; a marker's probe is "probe:NAME".
+        qpos: the positions of the robots, from the data that are stepped; always the present ones.
+        robots: the robots of this model, in the order of the seats.
+        markers: markers of the game.
     """
 
     def __init__(
-        self, model: Any, data: Any, robots: Sequence[Robot], markers: Sequence[MarkerInfo]
+        self, model: Any, qpos: Floats, robots: Sequence[Robot], markers: Sequence[MarkerInfo]
     ) -> None:
-        self._model, self._data = model, data
-        mujoco.mj_kinematics(model, data)
-        probes = list(_probes(model, data, markers))
-        self._can_touch = bool(probes)
-        """False if no marker has a probe: then robots touch nothing."""
-        self._robots = [_Outline(model, data, robot, probes) for robot in robots]
+        self._model, self._data = model, mujoco.MjData(model)
+        self._from, self._qpos = qpos, self._data.qpos
+        self._look()
+        probes = list(_probes(model, self._data, markers))
+        self._robots = [_Outline(model, self._data, qpos, robot, probes) for robot in robots]
         self._none: list[tuple[int, ...]] = [()] * len(robots)
         """The answer when no robot touches anything."""
 
@@ -90,17 +94,19 @@ class TouchTest:
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
-        if not self._can_touch:
-            return self._none
         room_m = _TOUCH_M + abs(gap_m)
         gone = [robot for robot in self._robots if robot.has_gone(room_m)]
         if not gone and not any(robot.near for robot in self._robots):
             return self._none
-        # After mj_step the geoms are still where the last step began.
-        mujoco.mj_kinematics(self._model, self._data)
+        self._look()
         for robot in gone:
             robot.look_around(room_m)
-        return [robot.touched(gap_m, room_m) if robot.near else () for robot in self._robots]
+        return [robot.touched(gap_m) if robot.near else () for robot in self._robots]
+
+    def _look(self) -> None:
+        """Put all geoms where they are now."""
+        self._qpos[:] = self._from
+        mujoco.mj_kinematics(self._model, self._data)
 
 
 class _Outline:
@@ -109,25 +115,32 @@ class _Outline:
     Args:
         model: the compiled model.
         data: its data.
+        qpos: the present positions of the robots.
         robot: the robot.
         probes: all probes, in the order of their markers.
     """
 
-    def __init__(self, model: Any, data: Any, robot: Robot, probes: Sequence[_Probe]) -> None:
+    def __init__(
+        self, model: Any, data: Any, qpos: Floats, robot: Robot, probes: Sequence[_Probe]
+    ) -> None:
         self._model, self._data = model, data
         geoms = robot.geoms.tolist()  # MuJoCo numbers them body by body, outward along each leg
         self._limbs, self._arm_m = _limbs(model, geoms)
         self._reach_m = self._arm_m + max(limb.reach_m for limb in self._limbs)
         self._probes = probes
-        # Views into MuJoCo's own arrays: they always show the present values.
-        self._pose = memoryview(data.qpos)[robot.root_qpos : robot.root_qpos + 7]
-        self._origins_m = memoryview(data.xpos.reshape(-1))
-        self._middles_m = memoryview(data.geom_xpos.reshape(-1))
-        self._axes = memoryview(data.geom_xmat.reshape(-1))
+        # Views: they always show the present values.
+        self._pose: Any = qpos.data[robot.root_qpos : robot.root_qpos + 7]
+        self._origins_m = data.xpos
+        self._x_m, self._y_m = memoryview(data.geom_xpos[:, 0]), memoryview(data.geom_xpos[:, 1])
+        # x and y of the geoms' z axes.
+        self._axis_x, self._axis_y = (
+            memoryview(data.geom_xmat[:, 2]),
+            memoryview(data.geom_xmat[:, 5]),
+        )
         self._seen_from: Sequence[float] = [math.nan] * 7
         self._room_m = 0.0
-        self.near: list[_Pair] = []
-        """All pairs that may touch until the robot `has_gone`, in the order of the markers."""
+        self.near: list[tuple[_Probe, list[_Pair]]] = []
+        """All pairs that may touch until the robot `has_gone`, by probe, in their order."""
 
     def has_gone(self, room_m: float) -> bool:
         """Return whether `near` may lack a pair with a distance of at most `room_m`."""
@@ -139,49 +152,51 @@ class _Outline:
     def look_around(self, room_m: float) -> None:
         """Find the pairs that are `near`; the positions of bodies must be the present ones."""
         self._seen_from, self._room_m = self._pose.tolist(), room_m
-        x_m, y_m = self._seen_from[:2]
         self.near = []
         for probe in self._probes:
-            more_m = probe.radius_m + room_m + _SKIN_M
-            if math.dist((x_m, y_m), (probe.x_m, probe.y_m)) <= self._reach_m + more_m:
-                parts = tuple(self._parts_near(probe, more_m))
-                if parts:
-                    self.near.append((probe, parts))
+            at_m = (probe.x_m, probe.y_m)
+            room_m = probe.radius_m + self._room_m
+            if math.dist(self._seen_from[:2], at_m) <= self._reach_m + room_m + _SKIN_M:
+                pairs = [
+                    _Pair(
+                        part.geom,
+                        part.half_m,
+                        (part.half_m + part.radius_m + room_m) ** 2,
+                        (part.radius_m + room_m) ** 2,
+                    )
+                    for limb in self._limbs
+                    if math.dist(self._origins_m[limb.body, :2], at_m)
+                    <= limb.reach_m + room_m + _SKIN_M
+                    for part in limb.parts
+                ]
+                if pairs:
+                    self.near.append((probe, pairs))
 
-    def _parts_near(self, probe: _Probe, more_m: float) -> Iterator[_Part]:
-        for parts, origin, reach_m in self._limbs:
-            x_m, y_m = self._origins_m[origin], self._origins_m[origin + 1]
-            if math.dist((x_m, y_m), (probe.x_m, probe.y_m)) <= reach_m + more_m:
-                yield from parts
-
-    def touched(self, gap_m: float, room_m: float) -> tuple[int, ...]:
+    def touched(self, gap_m: float) -> tuple[int, ...]:
         """Find the markers whose probe the robot touches; geoms must be where they are now.
 
         Args:
             gap_m: the largest distance that counts as a touch.
-            room_m: pairs that are farther apart than this in the top view don't touch.
         """
-        middles_m, axes = self._middles_m, self._axes
+        x_m, y_m, axis_x, axis_y = self._x_m, self._y_m, self._axis_x, self._axis_y
         touched = []
-        for probe, parts in self.near:
-            _, probe_geom, probe_x_m, probe_y_m, probe_radius_m = probe
-            around_m = probe_radius_m + room_m
-            for geom, radius_m, half_m, middle, axis in parts:
-                apart_m = radius_m + around_m
-                x_m, y_m = probe_x_m - middles_m[middle], probe_y_m - middles_m[middle + 1]
-                if x_m * x_m + y_m * y_m > (apart_m + half_m) ** 2:
+        for probe, pairs in self.near:
+            _, _, probe_x_m, probe_y_m, _ = probe
+            for geom, half_m, middle_m2, axis_m2 in pairs:
+                dx_m, dy_m = probe_x_m - x_m[geom], probe_y_m - y_m[geom]
+                if dx_m * dx_m + dy_m * dy_m > middle_m2:
                     continue
                 if half_m:
-                    end_x_m, end_y_m = half_m * axes[axis + 2], half_m * axes[axis + 5]
-                    if _gap_m2(x_m, y_m, end_x_m, end_y_m) > apart_m * apart_m:
+                    end_x_m, end_y_m = half_m * axis_x[geom], half_m * axis_y[geom]
+                    if _gap_m2(dx_m, dy_m, end_x_m, end_y_m) > axis_m2:
                         continue
-                if self._distance_m(geom, probe_geom, room_m) <= gap_m:
+                if self._distance_m(geom, probe.geom) <= gap_m:
                     touched.append(probe.marker)
                     break
         return tuple(touched)
 
-    def _distance_m(self, geom: int, probe: int, most_m: float) -> float:
-        model, data = self._model, self._data
+    def _distance_m(self, geom: int, probe: int) -> float:
+        model, data, most_m = self._model, self._data, self._room_m
         distance_m: float = mujoco.mj_geomDistance(model, data, geom, probe, most_m, None)
         return distance_m
 
@@ -206,7 +221,7 @@ def _part(model: Any, geom: int) -> _Part:
     radius_m, half_m, _ = model.geom_size[geom].tolist()
     if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_CAPSULE:
         radius_m, half_m = float(model.geom_rbound[geom]), 0.0
-    return _Part(geom, radius_m, half_m, 3 * geom, 9 * geom)
+    return _Part(geom, radius_m, half_m)
 
 
 def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:
@@ -223,7 +238,7 @@ def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:
     return [
         _Limb(
             tuple(_part(model, geom) for geom in own),
-            3 * body,
+            body,
             max(_reach_m(model, geom, body) for geom in own),
         )
         for body, own in limbs.items()

@@ -16,9 +16,10 @@ from lacoc_arenas.game import Place
 from lacoc_robots.model import add_robot, set_options
 from lacoc_server.match.entry import Entry
 from lacoc_server.match.physics import Fault
+from lacoc_server.world.models import compile_models
 from lacoc_server.world.robot import Robot
 from lacoc_server.world.scene import make_scene
-from lacoc_server.world.touch import PROBE, TouchTest
+from lacoc_server.world.touch import TouchTest
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY
@@ -49,10 +50,9 @@ _WARNINGS = {
 class World:
     """Robots on a field, stepped tick by tick; implements `match.physics.Physics`.
 
-    The model is compiled when the world is made. MuJoCo steps a copy of it without the geoms that
-    are only drawn, because it would move them in each step: the bits are the same, in less time.
-    The same state and angles give the same bits after a tick, on one version of MuJoCo and one kind
-    of machine.
+    The model is compiled when the world is made. What MuJoCo steps is less than what pictures show,
+    with the same bits (`models`). The same state and angles give the same bits after a tick, on one
+    version of MuJoCo and one kind of machine.
 
     Args:
         arena: the field and its game.
@@ -77,21 +77,21 @@ class World:
                 rgba=_rgba(arena.seats[index].colour),
             )
         self._extend(spec)
-        self.drawn = spec.compile()
-        """The whole model, for pictures; its hash is `model_hash`."""
-        self.model = _without_drawings(spec)
-        """The model that MuJoCo steps; its geoms have other ids."""
+        models = compile_models(spec)
+        self.whole = models.whole
+        """The model with all that is drawn; its hash is `model_hash`."""
+        self.model = models.stepped
+        """The model that MuJoCo steps; its geoms have other ids than those of `whole`."""
         self.data = mujoco.MjData(self.model)
-        self.scene = make_scene(self.drawn, arena.game, seats)
+        self.scene = make_scene(self.whole, arena.game, seats)
         self.scene_hash = message_hash(encode(self.scene))
-        buffer = np.empty(mujoco.mj_sizeModel(self.drawn), np.uint8)
-        mujoco.mj_saveModel(self.drawn, None, buffer)
+        buffer = np.empty(mujoco.mj_sizeModel(self.whole), np.uint8)
+        mujoco.mj_saveModel(self.whole, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
         self.digest = bytes(8)
-        self.robots = [Robot.find(self.model, entry, seats[i]) for i, entry in enumerate(entries)]
+        self.robots = _robots(self.model, entries, seats)
         pose_qpos = [index for robot in self.robots for index in robot.pose_qpos]
         self._pose_qpos = np.array(pose_qpos, np.intp)
-        self._touch = TouchTest(self.model, self.data, self.robots, arena.game.markers)
         # Views into MuJoCo's own arrays: they always show the present values.
         self._qpos: npt.NDArray[np.float64] = self.data.qpos
         self._control = self.data.ctrl
@@ -102,6 +102,11 @@ class World:
         for seat, robot in enumerate(self.robots):
             robot.put(self.data, arena.game.starts[seat][0])
         self._keep()
+        self._touch: TouchTest | None = None
+        self._untouched: list[tuple[int, ...]] = [()] * len(self.robots)
+        if models.touching is not None and entries:
+            robots = _robots(models.touching, entries, seats)
+            self._touch = TouchTest(models.touching, self._qpos, robots, arena.game.markers)
 
     # Physics
 
@@ -144,7 +149,7 @@ class World:
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
-        return self._touch(gap_m)
+        return self._untouched if self._touch is None else self._touch(gap_m)
 
     # Snapshots
 
@@ -240,17 +245,9 @@ def chained(digest: bytes, state: bytes | memoryview) -> bytes:
     return following.digest()[:8]
 
 
-def _without_drawings(spec: mujoco.MjSpec) -> Any:
-    """Compile the model without its geoms that nothing can touch; `spec` is changed.
-
-    A pair or a sensor may name such a geom. If there is one, all geoms stay.
-    """
-    if not spec.pairs and not spec.sensors:
-        for geom in list(spec.geoms):
-            is_solid = geom.contype or geom.conaffinity or geom.mass != 0
-            if not is_solid and not geom.name.startswith(PROBE):
-                spec.delete(geom)
-    return spec.compile()
+def _robots(model: Any, entries: Sequence[Entry], seats: Sequence[str]) -> list[Robot]:
+    """Find the robots in one of the world's models."""
+    return [Robot.find(model, entry, seats[seat]) for seat, entry in enumerate(entries)]
 
 
 def _weights(model: Any) -> npt.NDArray[np.float64]:

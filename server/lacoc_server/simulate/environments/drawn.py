@@ -40,7 +40,7 @@ class Drawn:
             return None
         if self._camera is None or self._model != physics.model_hash:
             self.close()
-            self._camera, self._model = Camera(physics.drawn, game), physics.model_hash
+            self._camera, self._model = Camera(physics.whole, game), physics.model_hash
         return self._camera.take(physics.save(), board)
 
     def close(self) -> None:

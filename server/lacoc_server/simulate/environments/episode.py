@@ -181,13 +181,12 @@ class Episode:
             beats: how many beats.
         """
         match = self.match
-        self._frame = match.beat(self._inputs(keys)).frame
-        if beats > 1 and match.phase is Phase.PLAYING:
-            for _ in range(beats - 1):
-                match.skip()
-                if match.phase is not Phase.PLAYING:
-                    break
-            self._frame = match.frame()
+        match.skip(self._inputs(keys))
+        for _ in range(beats - 1):
+            if match.phase is not Phase.PLAYING:
+                break
+            match.skip()
+        self._frame = match.frame()
 
     def outcome(self, seat: int) -> dict[str, Any]:
         """Return how the match ended: "scores", "winner", and whether the seat has "won".
