@@ -12,7 +12,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
-from lacoc_server.world.world import SUBSTEPS, World
+from lacoc_server.world.world import STATE, SUBSTEPS, World
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import SentFile
@@ -22,8 +22,6 @@ from lacoc_shared.seat import Phase
 KEYS = (2, 2, 1, 2, 3, 2)
 """The keys of both robots, a new one every `KEY_TICKS`: the robots walk, turn and meet."""
 KEY_TICKS = 97
-
-_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
 def setup_of(arena: str, match_id: str = "benchmark") -> Setup:
@@ -57,14 +55,13 @@ def keys_at(tick: int) -> list[Input]:
 
 
 class BarePath:
-    """A copy of a match's world that only MuJoCo steps, with the controls of the match."""
+    """The whole model of a match, which only MuJoCo steps, with the controls of the match."""
 
     def __init__(self, world: World) -> None:
-        self._model = world.model
-        self._data = mujoco.MjData(world.model)
-        state = np.empty(mujoco.mj_stateSize(world.model, _STATE))
-        mujoco.mj_getState(world.model, world.data, state, _STATE)
-        mujoco.mj_setState(world.model, self._data, state, _STATE)
+        self._model = world.whole
+        self._data = mujoco.MjData(self._model)
+        state = np.frombuffer(world.save()[8:])
+        mujoco.mj_setState(self._model, self._data, state, STATE)
 
     def run(self, controls: Sequence[npt.NDArray[np.float64]]) -> float:
         """Step one tick for each control; return the time that this took [s]."""

@@ -115,8 +115,10 @@ class FlagStrike:
         inside = (self.corner_at(left.x_m, left.y_m), self.corner_at(right.x_m, right.y_m))
         if (
             inside == state.inside
-            and not (left.touched or right.touched or state.void)
             and left.placed is right.placed is None
+            and not (state.void or struck)
+            # Touching a flag that has fallen has no effect.
+            and not any(state.board[flag] == NEUTRAL for flag in left.touched + right.touched)
         ):
             return state, ()
         captures = tuple(self._captures(state, observation, inside, struck))

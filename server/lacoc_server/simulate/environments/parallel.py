@@ -71,6 +71,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self.action_spaces = {
             agent: self.court.action_space(seat) for seat, agent in enumerate(self.possible_agents)
         }
+        self._example = f'{{"{self.possible_agents[0]}": 0}}'
         self._chance = np.random.default_rng()
         self._leads: list[int] = [0, 0]
 
@@ -135,31 +136,30 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
             UserError: if no episode has begun, if there is no such agent, or the action space does
                 not have an action.
         """
-        self._episode.require_begun()
+        episode, court = self._episode, self.court
         if not self.agents:
+            episode.require_begun()
             return {}, {}, {}, {}, {}
-        actions = table("actions", actions, f'{{"{self.agents[0]}": 0}}')
+        actions = table("actions", actions, self._example)
         if not actions.keys() <= self.action_spaces.keys():
             found, agents = list(map(str, actions)), self.possible_agents
             raise UserError(say("environment.agents", found=found, agents=agents))
-        episode, court = self._episode, self.court
         keys = [
             None if (action := actions.get(agent)) is None else court.act(episode, seat, action)
             for seat, agent in enumerate(self.possible_agents)
         ]
         episode.pass_beats(keys, court.beats)
-        frame = episode.frame
-        left, right = frame.seats
+        left, right = episode.frame.seats
         now = left.score - right.score
         gain = float(now - self._leads[0])
         self._leads = [now, -now]
-        agents = self.agents
-        first, second = agents
-        ended, stopped = episode.ended, episode.stopped
+        first, second = self.agents
         infos: dict[str, dict[str, Any]] = {first: {}, second: {}}
-        if ended or stopped:
+        ended = stopped = False
+        if not episode.is_on:
+            ended, stopped = episode.ended, episode.stopped
+            infos = {agent: episode.outcome(seat) for seat, agent in enumerate(self.agents)}
             self.agents = []
-            infos = {agent: episode.outcome(seat) for seat, agent in enumerate(agents)}
         return (
             self._seen(),
             {first: gain, second: -gain},
