@@ -1,7 +1,7 @@
 """Compiles the models of a world: the whole one, and those that physics and touch need.
 
 The whole model costs physics time, because MuJoCo moves its drawn geoms in each step. Without them
-and without the midphase, a tick of physics takes 0.88 of the time and has the same bits
+and without the midphase, a tick of physics takes about 0.9 of the time and has the same bits
 (docs/facts.md 2).
 """
 
