@@ -120,7 +120,7 @@ class Arena:
         try:
             file = msgspec.convert(settings, _File)
         except msgspec.ValidationError as error:
-            where, wrong = place_and_words(error)
+            where, wrong = place_and_words(error, _File)
             raise _WrongSetting(name, where, wrong, _entries(where, wrong)) from None
         try:
             self.game: AnyGame = self._make(file.game)

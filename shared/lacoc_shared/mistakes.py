@@ -2,15 +2,16 @@
 
 There are two families. `FileRefused` carries every mistake in a file, each with its place: a
 file is refused as a whole (rules 2), so all its mistakes are listed at once.
-`UserError` is one sentence that says what was found and what to do; the command line prints
-it and exits with code 2. Both carry phrases (`lacoc_shared.words`), which are rendered in
-the language of the process; a plain text is shown as it is.
+`UserError` is a sentence that says what was found and what to do, or several of them; the
+command line prints it and exits with code 2. Both carry phrases (`lacoc_shared.words`), which
+are rendered in the language of the process; a plain text is shown as it is.
 """
 
 import codecs
 import json
 import os
 import unicodedata
+from collections.abc import Callable
 
 import msgspec
 
@@ -103,20 +104,57 @@ class UserError(Exception):
     """A mistake that a user can correct; the message says how.
 
     Args:
-        said: what was found and what to do; a plain text if the table has no phrase for it yet.
+        said: what was found and what to do, a sentence for each mistake; a plain text if the table
+            has no phrase for it yet.
     """
 
-    def __init__(self, said: Phrase | str = "") -> None:
-        super().__init__(said)
+    def __init__(self, *said: Phrase | str) -> None:
+        super().__init__(*said)
         self.said = said
 
     @property
     def phrase(self) -> Phrase:
         """The message as a phrase."""
-        return self.said if isinstance(self.said, Phrase) else say("plain.text", text=self.said)
+        if len(self.said) > 1:
+            return say("plain.sentences", sentences=self.said)
+        (only,) = self.said or ("",)
+        return only if isinstance(only, Phrase) else say("plain.text", text=only)
+
+    def each(self, put: Callable[[Phrase | str], Phrase]) -> "UserError":
+        """Return an error with each sentence put into another one, such as one with its place."""
+        return UserError(*map(put, self.said))
 
     def __str__(self) -> str:
-        return render(self.said)
+        return "\n".join(map(render, self.said))
+
+
+class Gathered:
+    """Gathers mistakes, so that a user learns of all of them at once.
+
+    A block `with gathered:` may raise `UserError`. It is noted, and the work goes on after the
+    block. `check` then raises all that was noted.
+    """
+
+    def __init__(self) -> None:
+        self._said: list[Phrase | str] = []
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        if not isinstance(error, UserError):
+            return False
+        self._said += error.said
+        return True
+
+    def check(self) -> None:
+        """Raise what was noted.
+
+        Raises:
+            UserError: if anything was.
+        """
+        if self._said:
+            raise UserError(*self._said)
 
 
 def printable(text: str, longest: int = 40) -> str:

@@ -171,7 +171,7 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
         "disc_radius_m 0.16 is more than half of pitch_m 0.3: the discs overlap; make the radius "
         "smaller or the pitch larger",
     ),
-    ("othello", {"opening": "chess"}, ": opening: Invalid enum value 'chess'"),
+    ("othello", {"opening": "chess"}, ': opening: "chess" is not possible.'),
     ("othello", {"start_cells": []}, ": start_cells: "),
     (
         "othello",

@@ -32,6 +32,7 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
             r"groups.*games: expected a whole number, without quotes, found text",
         ),
         (GROUPS + "teams = -1\n", r"groups.*teams: .*at least 0"),
+        (GROUPS + "teams = 1\n", r"stage.groups.*teams = 1 is not possible"),
         (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, draw, teams'),
         (
             GROUPS + "third_place = true\n",
@@ -74,6 +75,17 @@ def test_each_mistake_has_one_sentence(tmp_path: Path, stages: str, said: str) -
         folder(tmp_path, stages)
     assert "contest.toml" in str(wrong.value)
     assert "\n" not in str(wrong.value)
+
+
+def test_all_wrong_stages_are_named_at_once(tmp_path: Path) -> None:
+    """A stage after a wrong one is not blamed for it."""
+    final = '[stage.final]\nformat = "single-knockout"\nafter = "groups"\nthird_place = true\n'
+    show = '[stage.show]\nformat = "cup"\n'
+    with pytest.raises(UserError) as wrong:
+        folder(tmp_path, GROUPS + "teams = 1\n" + final + show)
+    groups, cup = str(wrong.value).splitlines()
+    assert "[stage.groups]" in groups
+    assert "[stage.show]" in cup
 
 
 def test_stages_with_other_levels_are_other_games(tmp_path: Path) -> None:

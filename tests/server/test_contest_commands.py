@@ -111,6 +111,23 @@ def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, s
         run("check", str(file))
 
 
+def test_check_finds_all_mistakes_at_once(tmp_path: Path) -> None:
+    """Limits, courts and stages are all looked at, whatever is wrong with the others."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    text = file.read_text()
+    for old, new in (("# legs_max = 8", "legs_maxx = 8"), ('arena = "othello"', 'arena = "chess"')):
+        assert old in text
+        text = text.replace(old, new)
+    file.write_text(text + '\n[stage.show]\nformat = "cup"\n')
+    with pytest.raises(UserError) as caught:
+        run("check", str(file))
+    limit, court, stage = str(caught.value).splitlines()
+    assert "legs_maxx" in limit
+    assert court.startswith('[court.main]: There is no arena "chess".')
+    assert "[stage.show]" in stage
+
+
 def test_the_length_of_an_events_games_is_a_commented_line(tmp_path: Path) -> None:
     """The lines of `init --event` that set the length are right if they are uncommented."""
     file = tmp_path / "contest.toml"

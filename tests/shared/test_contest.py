@@ -168,6 +168,37 @@ def test_a_wrong_entry_is_named(file: Path, old: str, new: str, said: str) -> No
     assert str(file) in str(caught.value)
 
 
+def test_all_wrong_entries_are_named_at_once(file: Path) -> None:
+    """Each wrong entry of each table has a line; what follows from another mistake has none."""
+    wrong = GOOD
+    for old, new in (
+        ("[contest]", '[contest]\nleast_rest_s = "60"\nrebot = "a"\nentries_close = "noon"'),
+        ("legs_max = 6", "legs_max = nan"),
+        ('arena = "othello"', 'arena = 3\ninput_delay = "fair"\ninput_delay_max_ms = 5'),
+        ("left-token-of-main", "short"),
+        ("silent_s = 2", "silent = 1"),
+    ):
+        assert old in wrong
+        wrong = wrong.replace(old, new)
+    file.write_text(wrong)
+    with pytest.raises(UserError) as caught:
+        contests.load(file)
+    lines = str(caught.value).splitlines()
+    assert all(line.startswith(f"Contest file {file}, [") for line in lines)
+    assert [line.partition("[")[2].partition("]")[0] for line in lines] == [
+        "contest.entries_close",
+        "contest.least_rest_s",
+        "contest",
+        "court.main.seat.left.token",
+        "court.main.arena",
+        "court.main.input_delay",
+        "court.main.input_delay_max_ms",
+        "limits.legs_max",
+        "health",
+    ]
+    assert lines[5].endswith('"fair" is not possible; choose none or equal.')
+
+
 @pytest.mark.parametrize(
     "time",
     [

@@ -211,7 +211,7 @@ class Page:
             raise
         except UserError as error:
             # The court sends frames to this gateway, so it is there: the token must be wrong.
-            raise wire.TokenRefused(error.said) if feed.connected else error from None
+            raise wire.TokenRefused(*error.said) if feed.connected else error from None
 
     async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
         access, by = referees.acting(self._viewer)

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -20,9 +20,9 @@ from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.contest.key_folder import KeyFolder
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
-from lacoc_shared.contest.wrong_value import place_and_words
+from lacoc_shared.contest.wrong_value import convert
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.mistakes import Gathered, UserError, printable
 from lacoc_shared.network.address import (
     ANY_HOST,
     check_protocols,
@@ -33,8 +33,6 @@ from lacoc_shared.network.address import (
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.seat import Colour, Pattern
 from lacoc_shared.words import Phrase, say
-
-T = TypeVar("T")
 
 _NO_NAME = "Contest"
 MAIN = "main"
@@ -208,7 +206,7 @@ def load(path: Path) -> Contest:
     """Read a contest file; relative paths in it start from its own folder.
 
     Raises:
-        UserError: if it can't be read, or at the first wrong entry; the message names it.
+        UserError: if it can't be read, or if entries are wrong; the message names each of them.
     """
     try:
         return loads(path.read_bytes(), path)
@@ -227,7 +225,7 @@ def loads(data: bytes, path: Path) -> Contest:
         path: path of the file, for messages; relative paths in the file start at its folder.
 
     Raises:
-        UserError: at the first wrong entry.
+        UserError: if entries are wrong; the message names each of them.
     """
     try:
         table = read_toml(data)
@@ -238,8 +236,13 @@ def loads(data: bytes, path: Path) -> Contest:
         raise _cannot_read(path, error.phrase) from None
     try:
         return _contest(table, path.resolve().parent)
-    except _Wrong as wrong:
-        raise UserError(say("contest.wrong", file=str(path), wrong=wrong.said)) from None
+    except UserError as error:
+        raise wrong_entries(path, error) from None
+
+
+def wrong_entries(path: Path, error: UserError) -> UserError:
+    """Return an error whose sentences begin with the name of the contest file."""
+    return error.each(lambda wrong: say("contest.wrong", file=str(path), wrong=wrong))
 
 
 def throwaway(
@@ -270,14 +273,6 @@ def _not_a_time(found: str) -> Phrase:
     return say("contest.not-a-time", where=where, found=printable(found.strip()))
 
 
-class _Wrong(Exception):
-    """An entry of a contest file is wrong; the text says which and why."""
-
-    def __init__(self, said: Phrase) -> None:
-        super().__init__(said)
-        self.said = said
-
-
 _PathText = Annotated[str, msgspec.Meta(pattern="^[^\\x00]*$")]
 
 
@@ -300,30 +295,43 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 def _contest(table: dict[str, Any], folder: Path) -> Contest:
-    file = _convert(table, _File, "")
-    close = file.contest.get("entries_close")
-    try:
-        msgspec.convert(close, datetime | None)
-    except msgspec.ValidationError:
-        found = f'"{close}"' if isinstance(close, str) else str(close)
-        raise _Wrong(_not_a_time(found)) from None
-    general = _convert(file.contest, _General, "contest")
+    file = convert(table, _File, "")
+    found = Gathered()
+    general, entries = _General(), dict(file.contest)
+    with found:
+        _check_time(entries)
+    with found:
+        general = convert(entries, _General, "contest")
     keys = None if general.keys is None else KeyFolder(folder / general.keys)
-    courts = {
-        name: _court(name, entry, folder, keys is not None) for name, entry in file.court.items()
-    }
+    robot = general.robot
+    with found:
+        robot = _beside(folder, general.robot)
+    courts = {}
+    for name, entry in file.court.items():
+        with found:
+            courts[name] = _court(name, entry, folder, keys is not None)
+    limits = {}
+    for name, value in file.limits.items():
+        with found:
+            limits[name] = _limit(name, value)
+    health = HealthLimits()
+    with found:
+        health = convert(file.health, HealthLimits, "health")
+    office = None
+    with found:
+        office = None if file.office is None else convert(file.office, Holder, "office")
+    found.check()
     _check_ports(courts)
-    office = None if file.office is None else _convert(file.office, Holder, "office")
     if office is not None:
         _check_office(office, courts, keys)
     elif far := [name for name, court in courts.items() if court.elsewhere]:
-        raise _Wrong(say("contest.elsewhere-without-office", court=far[0]))
+        raise UserError(say("contest.elsewhere-without-office", court=far[0]))
     return Contest(
         name=general.name,
         recordings=folder / general.recordings,
-        robot=_beside(folder, general.robot),
-        limits={name: _limit(name, value) for name, value in file.limits.items()},
-        health=_convert(file.health, HealthLimits, "health"),
+        robot=robot,
+        limits=limits,
+        health=health,
         keys=keys,
         office=office,
         courts=courts,
@@ -333,17 +341,37 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     )
 
 
+def _check_time(entries: dict[str, Any]) -> None:
+    """Check the time in [contest]; a wrong one is removed from the entries."""
+    close = entries.get("entries_close")
+    try:
+        msgspec.convert(close, datetime | None)
+    except msgspec.ValidationError:
+        del entries["entries_close"]
+        found = f'"{close}"' if isinstance(close, str) else str(close)
+        raise UserError(_not_a_time(found)) from None
+
+
 def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
     where = f"court.{name}"
-    entries = _convert(table, dict[str, Any], where)
-    seats = _convert(entries.get("seat", {}), dict[str, Any], f"{where}.seat")
-    court = _convert({**entries, "seat": {}}, Court, where)
-    holders = {seat: _convert(seats[seat], SeatHolder, f"{where}.seat.{seat}") for seat in seats}
+    entries = convert(table, dict[str, Any], where)
+    found = Gathered()
+    holders = {}
+    with found:
+        seats = convert(entries.get("seat", {}), dict[str, Any], f"{where}.seat")
+        for seat, holder in seats.items():
+            with found:
+                holders[seat] = convert(holder, SeatHolder, f"{where}.seat.{seat}")
+    court = None
+    with found:
+        court = convert({**entries, "seat": {}}, Court, where)
+    found.check()
+    assert court is not None
     tokens = [court.referee.token, *(holder.token for holder in holders.values())]
     if len(set(tokens)) < len(tokens):
-        raise _Wrong(say("contest.same-tokens", where=where))
+        raise UserError(say("contest.same-tokens", where=where))
     if taken := set(holders) & set(OTHERS):
-        raise _Wrong(say("contest.seat-name", where=f"{where}.seat", name=taken.pop()))
+        raise UserError(say("contest.seat-name", where=f"{where}.seat", name=taken.pop()))
     protocol = "tls" if keys else "tcp"
     try:
         Keys(name)
@@ -360,7 +388,7 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
             seat=holders,
         )
     except UserError as error:
-        raise _Wrong(say("contest.in", where=where, wrong=error.phrase)) from None
+        raise error.each(lambda wrong: say("contest.in", where=where, wrong=wrong)) from None
 
 
 def _check_office(office: Holder, courts: dict[str, Court], keys: KeyFolder | None) -> None:
@@ -370,9 +398,9 @@ def _check_office(office: Holder, courts: dict[str, Court], keys: KeyFolder | No
         for holder in (court.referee, *court.seat.values())
     }
     if office.token in tokens:
-        raise _Wrong(say("contest.same-tokens", where="office"))
+        raise UserError(say("contest.same-tokens", where="office"))
     if keys is not None:
-        raise _Wrong(say("contest.office-with-keys"))
+        raise UserError(say("contest.office-with-keys"))
 
 
 def _check_ports(courts: dict[str, Court]) -> None:
@@ -385,28 +413,18 @@ def _check_ports(courts: dict[str, Court]) -> None:
         apart = one.connect and other.connect and one.host != other.host
         for at in () if apart else collisions(other.listen, one.listen):
             free = free_beside(at, taken)
-            raise _Wrong(say("contest.same-port", court=second, other=first, at=at, free=free))
+            raise UserError(say("contest.same-port", court=second, other=first, at=at, free=free))
         if one.elsewhere and one.elsewhere == other.elsewhere:
-            raise _Wrong(say("contest.same-machine", court=second, other=first, at=one.elsewhere))
+            raise UserError(
+                say("contest.same-machine", court=second, other=first, at=one.elsewhere)
+            )
 
 
 def _limit(name: str, value: Any) -> float:
-    number = _convert(value, float, f"limits.{name}")
+    number = convert(value, float, f"limits.{name}")
     if not math.isfinite(number):
-        raise _Wrong(say("contest.not-finite", where=f"limits.{name}", number=str(number)))
+        raise UserError(say("contest.not-finite", where=f"limits.{name}", number=str(number)))
     return number
-
-
-def _convert(value: Any, kind: type[T], where: str) -> T:
-    try:
-        return msgspec.convert(value, kind)
-    except msgspec.ValidationError as error:
-        place, what = place_and_words(error)
-        at = ".".join(filter(None, (where, place)))
-        fields = getattr(kind, "__struct_fields__", ())
-        codes = ("value.no-entry", "value.missing-entry")
-        known = fields if isinstance(what, Phrase) and what.code in codes else None
-        raise _Wrong(say("contest.bad-entry", where=at or None, error=what, known=known)) from None
 
 
 def _beside(folder: Path, name: str) -> str:
@@ -415,4 +433,4 @@ def _beside(folder: Path, name: str) -> str:
     try:
         return str((folder / Path(name).expanduser()).resolve()) if is_path else name
     except (ValueError, RuntimeError, OSError):  # a NUL, an unknown user, a loop of links
-        raise _Wrong(say("contest.no-path", path=name[:80])) from None
+        raise UserError(say("contest.no-path", path=name[:80])) from None

@@ -1,14 +1,19 @@
-"""Puts into words what msgspec says about a wrong value of a file that a person wrote."""
+"""Reads values of a file that a person wrote, and puts into words which of them are wrong."""
 
 import re
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import msgspec
 
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
+
+T = TypeVar("T")
 
 _EXPECTED = re.compile(
     r"Expected `(\w+)(?: \| null)?`(?:, got `(\w+)`| (of length )?([<>]=?) (.+))?"
 )
+_WORD = re.compile(r"Invalid enum value '(.*)'")
 _ENTRY = re.compile(r"Object (contains unknown|missing required) field `(.+)`")
 _KINDS = {
     "float": say("robot.number"),
@@ -23,18 +28,68 @@ _KINDS = {
 }
 
 
-def place_and_words(error: msgspec.ValidationError) -> tuple[str, Phrase | str]:
+def convert(value: Any, kind: type[T], where: str) -> T:
+    """Convert a value of a contest file.
+
+    Args:
+        value: what was read from TOML.
+        kind: the type that it should have.
+        where: its place in the file, such as "court.main"; "": the whole file.
+
+    Raises:
+        UserError: if it is wrong, with a sentence for each of its entries that is.
+    """
+    wrong: list[Phrase] = []
+    left_out: set[str] = set()
+    while True:
+        given = value if not left_out else {k: v for k, v in value.items() if k not in left_out}
+        try:
+            converted = msgspec.convert(given, kind)
+        except msgspec.ValidationError as error:
+            place, what = place_and_words(error, kind)
+        else:
+            if wrong:
+                raise UserError(*wrong)
+            return converted
+        # msgspec names one wrong entry. It is left out, so that the next one is found.
+        code, entry = "", place.partition(".")[0]
+        if isinstance(what, Phrase) and not place and "entry" in what.values:
+            code, entry = what.code, str(what.values["entry"])
+        if code != "value.missing-entry" or entry not in left_out:
+            at = ".".join(filter(None, (where, place)))
+            known = getattr(kind, "__struct_fields__", ()) if code else None
+            wrong.append(say("contest.bad-entry", where=at or None, error=what, known=known))
+        if not isinstance(given, dict) or entry not in given:
+            raise UserError(*wrong)
+        left_out.add(entry)
+
+
+def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[str, Phrase | str]:
     """Return where a value is wrong and what should be there.
 
     Args:
         error: raised by `msgspec.convert` for a table read from TOML.
+        kind: the type that the table should have, for the words that an entry may be; None: it is
+            not known.
 
     Returns:
         The place, such as "match.duration_s", or "" for the whole table; and what was expected, as
         a phrase where one is known, else in msgspec's own words.
     """
     what, _, place = str(error).partition(" - at `$")
-    return place.rstrip("`").lstrip("."), _words(what)
+    place = place.rstrip("`").lstrip(".")
+    if (word := _WORD.fullmatch(what)) is not None:
+        return place, say("value.not-possible", found=word[1], known=_choices(kind, place))
+    return place, _words(what)
+
+
+def _choices(kind: Any, place: str) -> list[str]:
+    """Return the words that the entry at a place may be; none if they are not known."""
+    for name in place.split("."):
+        fields = get_type_hints(kind) if isinstance(kind, type) else {}
+        kind = fields.get(name)
+    kinds = (kind, *get_args(kind))  # the entry may be optional
+    return [word for one in kinds if get_origin(one) is Literal for word in get_args(one)]
 
 
 def _words(what: str) -> Phrase | str:

@@ -384,6 +384,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "value.expected": ["expected {kind}<, found {found}>", "{kind}を書いてください<（入力：{found}）>"],
   "value.no-entry": ["there is no entry {entry:quoted}", "{entry:quoted}という項目はありません"],
   "value.missing-entry": ["the entry {entry:quoted} is missing", "{entry:quoted}の項目がありません"],
+  "value.not-possible": ["{found:quoted} is not possible<; choose {known:or}>", "{found:quoted}は指定できません<。{known:or} から選んでください>"],
   "value.quoted": ["expected {kind}, without quotes, found text in quotes", "{kind}を引用符なしで書いてください（入力：引用符付きのテキスト）"],
   "value.limited": ["expected {kind} {limit}", "{limit}{kind}を書いてください"],
   "value.length": ["expected {kind} with a length {limit}", "長さが {limit}{kind}を書いてください"],

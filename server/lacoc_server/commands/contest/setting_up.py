@@ -18,7 +18,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest, Court
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import Gathered, UserError
 from lacoc_shared.network.address import own_address
 from lacoc_shared.words import render, say
 
@@ -185,10 +185,15 @@ def _event(arena: str, courts: list[str]) -> str:
 def check(file: FileToRead = FILE) -> None:
     """Check a contest file, its stages, its arenas' settings and its limits for robots."""
     contest = contests.load(file)
-    Limits.of(contest.limits)
+    found = Gathered()
+    with found:
+        Limits.of(contest.limits)
     for name, court in contest.courts.items():
-        _check_court(name, court, contest)
-    plans(contest, file)
+        with found:
+            _check_court(name, court, contest)
+    with found:
+        plans(contest, file)
+    found.check()
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
     close = contest.entries_close
@@ -269,7 +274,11 @@ def show(
 
 
 def _check_court(name: str, court: Court, contest: Contest) -> None:
-    arena = arenas.load(court.arena, court.settings, court.looks)
+    try:
+        arena = arenas.load(court.arena, court.settings, court.looks)
+    except UserError as error:
+        where = f"court.{name}"
+        raise error.each(lambda one: say("contest.in", where=where, wrong=one)) from None
     if contest.office is not None:  # it opens the seats
         return
     there = {seat.id for seat in arena.seats}

@@ -13,9 +13,9 @@ from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.file import Contest, wrong_entries
 from lacoc_shared.contest.wrong_value import place_and_words
-from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.mistakes import Gathered, UserError, text_of
 from lacoc_shared.words import say
 
 _USUAL_ARENA = "othello"
@@ -46,24 +46,49 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
         file: its path, for messages.
 
     Raises:
-        UserError: at the first wrong entry; the message names it.
+        UserError: if entries are wrong; the message names the first one of each stage.
     """
-    found: list[Planned] = []
+    wrong = Gathered()
+    found: dict[str, Planned | None] = {}
     for name, table in contest.stages.items():
-        wrong = None
-        try:
-            plan = _plan(name, table, contest.limits)
-            _check(plan, {one.stage: one for one in found})
-            game(plan)
-        except msgspec.ValidationError as error:
-            where, said = place_and_words(error)
-            wrong = say("contest.bad-stage", stage=text_of(name), where=where or None, error=said)
-        except UserError as error:
-            wrong = say("contest.in", where=f"stage.{text_of(name)}", wrong=error.phrase)
-        if wrong is not None:
-            raise UserError(say("contest.wrong", file=str(file), wrong=wrong))
-        found.append(plan)
-    return found
+        plan = None
+        with wrong:
+            plan = _read(name, table, contest, found)
+        found[name] = plan
+    try:
+        wrong.check()
+    except UserError as error:
+        raise wrong_entries(file, error) from None
+    return [plan for plan in found.values() if plan is not None]
+
+
+def _read(
+    name: str, table: Mapping[str, Any], contest: Contest, before: Mapping[str, Planned | None]
+) -> Planned:
+    """Read one stage.
+
+    Args:
+        name: its name.
+        table: its table in the file.
+        contest: the contest file.
+        before: the stages before it, by name; None: that one is wrong.
+
+    Raises:
+        UserError: at the first wrong entry.
+    """
+    try:
+        plan = _plan(name, table, contest.limits)
+        _check(plan, before)
+        game(plan)
+    except msgspec.ValidationError as error:
+        where, said = place_and_words(error)
+        raise UserError(
+            say("contest.bad-stage", stage=text_of(name), where=where or None, error=said)
+        ) from None
+    except UserError as error:
+        where = f"stage.{text_of(name)}"
+        raise error.each(lambda one: say("contest.in", where=where, wrong=one)) from None
+    return plan
 
 
 def game(plan: Planned) -> Arena:
@@ -129,18 +154,20 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     return msgspec.convert(msgspec.to_builtins(plan), Planned)  # checks the lengths and patterns
 
 
-def _check(plan: Planned, before: Mapping[str, Planned]) -> None:
+def _check(plan: Planned, before: Mapping[str, Planned | None]) -> None:
     """Check what a plan names, and that its settings fit each other.
 
     Args:
         plan: the plan of a stage.
-        before: the plans of the stages before it, by name.
+        before: the plans of the stages before it, by name; None: that one is wrong.
 
     Raises:
         UserError: at the first name that is not known, or the first setting that does not fit.
     """
     if plan.after and plan.after not in before:
         raise UserError(say("contest.stage-after", after=plan.after, before=[*before] or None))
+    if plan.teams == 1:
+        raise UserError(say("contest.one-team"))
     most = _most_teams(plan, before)
     if plan.settings.third_place and 0 < most < _TEAMS_FOR_THIRD:
         raise UserError(say("contest.no-third-place", teams=most, least=_TEAMS_FOR_THIRD))
@@ -149,8 +176,10 @@ def _check(plan: Planned, before: Mapping[str, Planned]) -> None:
             raise UserError(say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS]))
 
 
-def _most_teams(plan: Planned, before: Mapping[str, Planned]) -> int:
-    """Return how many teams a stage has at most; 0: that is not known before they enter."""
+def _most_teams(plan: Planned | None, before: Mapping[str, Planned | None]) -> int:
+    """Return how many teams a stage has at most; 0: that is not known."""
+    if plan is None:
+        return 0
     earlier = _most_teams(before[plan.after], before) if plan.after else 0
     return min(filter(None, (plan.teams, earlier)), default=0)
 
