@@ -219,6 +219,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
         for found in (page.locator(".log li").first, cause)
     )
     assert large_px > 1.3 * text_px
+    expect(disc(page, "c0r0").locator("text").last).to_have_text("c0r0")  # as the log names it
     disc(page, "c0r0").click()
     page.locator(".pick .states .act").nth(2).click()
     confirm(page, "rule")

@@ -20,6 +20,10 @@ const LOOK_MS = 80;
 const ROBOT_M = 0.1;
 /** Smallest radius that is drawn: the letter of a flag must be readable. */
 const LEAST_MARKER_M = 0.05;
+/** Height of a marker's name, by which log and referee call it. */
+const NAME_M = 0.055;
+/** In a smaller marker the name stands below it. */
+const NAME_FITS_M = 0.1;
 const SHADE = "rgb(0 0 0 / 30%)";
 const NEUTRAL = "#5d6674";
 const DOWN = "#3b424d";
@@ -83,6 +87,7 @@ export function Board({ match, onPick, picked }: Props) {
               sheet={sheet}
               cloth={clothOf(match.scene.value, index)}
               picked={picked?.marker === index}
+              named={onPick !== undefined}
             />
           </g>
         ))}
@@ -168,10 +173,13 @@ interface MarkerProps {
   state: number;
   sheet: Sheet;
   picked: boolean;
+  /** Whether its name is shown. */
+  named: boolean;
 }
 
-function Marker({ marker, state, sheet, cloth, picked }: MarkerProps) {
+function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
   const radius = Math.max(LEAST_MARKER_M, marker.radius_m);
+  const fits = radius >= NAME_FITS_M;
   const seat = state > 0 && state <= sheet.seats.length ? state - 1 : null;
   const fill =
     seat === null
@@ -198,9 +206,25 @@ function Marker({ marker, state, sheet, cloth, picked }: MarkerProps) {
         stroke={picked ? "#fff" : "rgb(255 255 255 / 25%)"}
         stroke-width={picked ? 0.025 : 0.008}
       />
-      <text y={radius * 0.36} text-anchor="middle" font-size={radius} font-weight="700" fill={ink}>
+      <text
+        y={radius * (named && fits ? 0.2 : 0.36)}
+        text-anchor="middle"
+        font-size={radius}
+        font-weight="700"
+        fill={ink}
+      >
         {text}
       </text>
+      {named && (
+        <text
+          y={fits ? radius * 0.72 : radius + NAME_M}
+          text-anchor="middle"
+          font-size={NAME_M}
+          fill={fits ? ink : "var(--muted)"}
+        >
+          {marker.name}
+        </text>
+      )}
     </>
   );
 }
