@@ -634,7 +634,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     looks: dict[str, set[str | None]] = {}
     for flag in page.locator(".board g[aria-label^='flag']").all():
         colour = flag.locator("circle").get_attribute("fill")
-        points = flag.locator("text").text_content() or ""
+        points = flag.locator("text").first.text_content() or ""
         looks.setdefault(points, set()).add(colour)
     assert sorted(looks) == ["1", "2", "3", "5"]  # also 1 point is shown (rules 6)
     assert len(set.union(*looks.values())) == 4  # and each number has its colour

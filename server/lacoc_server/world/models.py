@@ -33,8 +33,8 @@ def compile_models(spec: mujoco.MjSpec) -> Models:
     """
     whole = spec.compile()
     touching = None
-    # A pair or a sensor may name any geom, so then all of them stay.
-    can_delete = not spec.pairs and not spec.sensors
+    # These may name any geom, so with one of them all geoms stay.
+    can_delete = not (spec.pairs or spec.sensors or spec.tendons)
     if can_delete:
         _delete(spec, lambda geom: not _is_solid(geom) and not geom.name.startswith(PROBE))
     if any(geom.name.startswith(PROBE) for geom in spec.geoms):

@@ -62,9 +62,9 @@ class _Pair(NamedTuple):
     half_m: float
     """`half_m` of the part."""
     middle_m2: float
-    """In the top view, the square of their distance if their centres are farthest apart."""
+    """They can't touch if their centres are farther apart than this, squared, in the top view."""
     axis_m2: float
-    """The same for the axis of the part instead of its centre."""
+    """The same for the probe's centre and the axis of the part."""
 
 
 class TouchTest:
@@ -94,7 +94,7 @@ class TouchTest:
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
-        room_m = _TOUCH_M + abs(gap_m)
+        room_m = _room_m(gap_m)
         gone = [robot for robot in self._robots if robot.has_gone(room_m)]
         if not gone and not any(robot.near for robot in self._robots):
             return self._none
@@ -179,6 +179,7 @@ class _Outline:
             gap_m: the largest distance that counts as a touch.
         """
         x_m, y_m, axis_x, axis_y = self._x_m, self._y_m, self._axis_x, self._axis_y
+        most_m = _room_m(gap_m)
         touched = []
         for probe, pairs in self.near:
             _, _, probe_x_m, probe_y_m, _ = probe
@@ -190,15 +191,20 @@ class _Outline:
                     end_x_m, end_y_m = half_m * axis_x[geom], half_m * axis_y[geom]
                     if _gap_m2(dx_m, dy_m, end_x_m, end_y_m) > axis_m2:
                         continue
-                if self._distance_m(geom, probe.geom) <= gap_m:
+                if self._distance_m(geom, probe.geom, most_m) <= gap_m:
                     touched.append(probe.marker)
                     break
         return tuple(touched)
 
-    def _distance_m(self, geom: int, probe: int) -> float:
-        model, data, most_m = self._model, self._data, self._room_m
+    def _distance_m(self, geom: int, probe: int, most_m: float) -> float:
+        model, data = self._model, self._data
         distance_m: float = mujoco.mj_geomDistance(model, data, geom, probe, most_m, None)
         return distance_m
+
+
+def _room_m(gap_m: float) -> float:
+    """Return how far apart in the top view a part and a probe may be and count as touching."""
+    return _TOUCH_M + abs(gap_m)
 
 
 def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
