@@ -1,5 +1,6 @@
 """Finds ports for servers that are started again at the same address."""
 
+import os
 import random
 import socket
 
@@ -9,12 +10,29 @@ _CHOICE = range(20_000, 32_000)
 
 
 def free_port() -> int:
-    """Return a TCP port of 127.0.0.1 at which nobody listens."""
+    """Return a TCP port of 127.0.0.1 at which nobody listens.
+
+    Nobody gets the same one soon after, and tests that run in parallel choose from different ports:
+    the server may begin to listen only seconds later.
+    """
     while True:
-        port = random.choice(_CHOICE)
+        if not _left:
+            _left.extend(_own())
+        port = _left.pop()
         with socket.socket() as probe:
             try:
                 probe.bind(("127.0.0.1", port))
             except OSError:
                 continue
             return port
+
+
+def _own() -> list[int]:
+    """Return this process's share of the ports, in random order."""
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    share = _CHOICE[worker::workers]
+    return random.sample(share, len(share))
+
+
+_left = _own()
