@@ -133,7 +133,7 @@ def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
     assert it.whole.ngeom > it.model.ngeom
     wall_m = ground.game.size_m[0] / 2 - 0.1
     rng = np.random.default_rng(1)
-    contacts = set()
+    contacts, met = set(), set()
     for x_m in (0.0, wall_m):
         for seat in range(len(ground.seats)):
             it.place(seat, Place(x_m, -0.12 + 0.24 * seat, math.pi / 2 - math.pi * seat))
@@ -152,8 +152,10 @@ def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
             state = np.empty(mujoco.mj_stateSize(it.whole, STATE))
             mujoco.mj_getState(it.whole, whole, state, STATE)
             assert state.tobytes() == it.save()[8:], tick
+            met |= {it.whole.geom(geom).name for geom in whole.contact.geom.ravel().tolist()}
             bodies = it.whole.geom_bodyid[whole.contact.geom]
             contacts |= {tuple(pair) for pair in (it.whole.body_rootid[bodies] > 0).tolist()}
+    assert "wall:east" in met
     if len(ground.seats) > 1:
         assert (True, True) in contacts, "no robot met the other one"
 

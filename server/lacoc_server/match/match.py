@@ -171,12 +171,8 @@ class Match(MatchState):
 
     def _move_on(self) -> None:
         """Change the phase where nobody has to decide."""
-        for seat in self.seats:
-            if not seat.silent:
-                self.silent_beats = 0
-                break
-        else:
-            self.silent_beats += 1
+        is_silent = all(seat.silent for seat in self.seats)
+        self.silent_beats = self.silent_beats + 1 if is_silent else 0
         if self.phase is not _PLAYING:
             self._move_to_play()
         if self.phase is _PLAYING and self.time_is_up:  # after a referee moved the clock

@@ -85,8 +85,6 @@ class TouchTest:
         self._look()
         probes = list(_probes(model, self._data, markers))
         self._robots = [_Outline(model, self._data, qpos, robot, probes) for robot in robots]
-        self._none: list[tuple[int, ...]] = [()] * len(robots)
-        """The answer when no robot touches anything."""
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """Return for each seat the indices of the markers that its robot touches, ascending.
@@ -96,12 +94,11 @@ class TouchTest:
         """
         room_m = _room_m(gap_m)
         gone = [robot for robot in self._robots if robot.has_gone(room_m)]
-        if not gone and not any(robot.near for robot in self._robots):
-            return self._none
-        self._look()
+        if gone or any(robot.near for robot in self._robots):
+            self._look()
         for robot in gone:
             robot.look_around(room_m)
-        return [robot.touched(gap_m) if robot.near else () for robot in self._robots]
+        return [robot.touched(gap_m) for robot in self._robots]
 
     def _look(self) -> None:
         """Put all geoms where they are now."""

@@ -245,6 +245,11 @@ def wrong_entries(path: Path, error: UserError) -> UserError:
     return error.each(lambda wrong: say("contest.wrong", file=str(path), wrong=wrong))
 
 
+def wrong_in(table: str, error: UserError) -> UserError:
+    """Return an error whose sentences begin with the name of a table in the contest file."""
+    return error.each(lambda wrong: say("contest.in", where=table, wrong=wrong))
+
+
 def throwaway(
     arena: str,
     seats: Iterable[str] = ("left", "right"),
@@ -388,7 +393,7 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
             seat=holders,
         )
     except UserError as error:
-        raise error.each(lambda wrong: say("contest.in", where=where, wrong=wrong)) from None
+        raise wrong_in(where, error) from None
 
 
 def _check_office(office: Holder, courts: dict[str, Court], keys: KeyFolder | None) -> None:

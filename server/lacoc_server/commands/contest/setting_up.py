@@ -277,8 +277,7 @@ def _check_court(name: str, court: Court, contest: Contest) -> None:
     try:
         arena = arenas.load(court.arena, court.settings, court.looks)
     except UserError as error:
-        where = f"court.{name}"
-        raise error.each(lambda one: say("contest.in", where=where, wrong=one)) from None
+        raise contests.wrong_in(f"court.{name}", error) from None
     if contest.office is not None:  # it opens the seats
         return
     there = {seat.id for seat in arena.seats}

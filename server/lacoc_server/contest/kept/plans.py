@@ -13,7 +13,7 @@ from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
-from lacoc_shared.contest.file import Contest, wrong_entries
+from lacoc_shared.contest.file import Contest, wrong_entries, wrong_in
 from lacoc_shared.contest.wrong_value import place_and_words
 from lacoc_shared.mistakes import Gathered, UserError, text_of
 from lacoc_shared.words import say
@@ -86,8 +86,7 @@ def _read(
             say("contest.bad-stage", stage=text_of(name), where=where or None, error=said)
         ) from None
     except UserError as error:
-        where = f"stage.{text_of(name)}"
-        raise error.each(lambda one: say("contest.in", where=where, wrong=one)) from None
+        raise wrong_in(f"stage.{text_of(name)}", error) from None
     return plan
 
 

@@ -71,7 +71,6 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self.action_spaces = {
             agent: self.court.action_space(seat) for seat, agent in enumerate(self.possible_agents)
         }
-        self._example = f'{{"{self.possible_agents[0]}": 0}}'
         self._chance = np.random.default_rng()
         self._leads: list[int] = [0, 0]
 
@@ -140,7 +139,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         if not self.agents:
             episode.require_begun()
             return {}, {}, {}, {}, {}
-        actions = table("actions", actions, self._example)
+        actions = table("actions", actions, f'{{"{self.agents[0]}": 0}}')
         if not actions.keys() <= self.action_spaces.keys():
             found, agents = list(map(str, actions)), self.possible_agents
             raise UserError(say("environment.agents", found=found, agents=agents))
