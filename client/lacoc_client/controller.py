@@ -196,7 +196,7 @@ class Controller:
         self._other_holder = False
         self._joined = joined
         self._requests = 0
-        self._seq = max(self._seq, joined.last_seq)
+        self._seq = joined.last_seq
         self._pressed.clear()
         self.hold, self.reason = Hold.HELD, None
         self._standing = (0, 0, 0)

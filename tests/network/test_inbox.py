@@ -10,7 +10,13 @@ from court_stub import HASHES, KEYS, SEATS, TOKENS
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.doors.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, LOOKED_AT_PER_BEAT, Inbox
+from lacoc_server.doors.inbox import (
+    COMMANDS_HZ,
+    COMMANDS_PER_BEAT,
+    LOOKED_AT_PER_BEAT,
+    SEQ_JUMP_MAX,
+    Inbox,
+)
 from lacoc_server.doors.links import FRESH_BEATS
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
@@ -698,6 +704,45 @@ def test_sessions_of_other_teams_end_with_the_next_assignment() -> None:
     assert refusal == Refusal(say("refused.other-match", seat="right"))
     assert [seat.joined for seat in inbox.health(0.0)] == [True, False]
     assert why_refused(inbox, "Bees", RIGHT) == ("refused.other-match", True)
+
+
+NUMBERS = st.integers(-1, 2**64 - 1) | st.integers(SEQ_JUMP_MAX - 2, SEQ_JUMP_MAX + 2)
+
+
+@given(st.lists(st.tuples(NUMBERS, NUMBERS, NUMBERS), max_size=8))
+def test_no_team_can_silence_a_seat_for_the_next(sent: list[tuple[int, int, int]]) -> None:
+    """Whatever a team sends, the next team of its seat plays with numbers from 1 on.
+
+    So does a team that takes the seat over within the match, with the numbers that it is told.
+    """
+    inbox = make()
+    inbox.admit(assigned(team("Ants", LEFT), team("Bees", RIGHT)), [])
+    inbox.join(LEFT, join_bytes(token="Ants"))
+    ants = inbox.seated(LEFT)
+    inbox.links.begin(0.1, 1, 3)
+    for seq, match, seen in sent:
+        inbox.beat(0.1, [[command(ants, seq, match=match, seen=seen)], []])
+    inbox.join(LEFT, join_bytes(token="Ants"))
+    again = inbox.seated(LEFT)
+    assert again.last_seq <= len(sent) * SEQ_JUMP_MAX
+    key = KeySeat(LEFT, again.last_seq + 1, 1, 2)
+    assert key in inbox.beat(0.2, [[command(again, key.seq)], []])
+    inbox.admit(assigned(team("Cats", LEFT), team("Bees", RIGHT)), [])
+    inbox.join(LEFT, join_bytes(token="Cats"))
+    cats = inbox.seated(LEFT)
+    assert cats.last_seq == 0
+    assert KeySeat(LEFT, 1, 1, 2) in inbox.beat(0.3, [[command(cats, 1)], []])
+    assert inbox.health(0.3)[LEFT].late == 0
+
+
+def test_a_number_far_above_the_newest_is_refused() -> None:
+    """A command may skip numbers, as those of keys that were lost, but only so many."""
+    inbox = make()
+    joined = take_seat(inbox)
+    last = SEQ_JUMP_MAX
+    assert inbox.beat(0.1, [[command(joined, last)], []]) == [KeySeat(LEFT, last, 1, 2)]
+    assert inbox.beat(0.2, [[command(joined, 2 * last + 1)], []]) == []
+    assert refusals(inbox) == {"out-of-range": 1}
 
 
 def test_nobody_joins_while_the_court_waits() -> None:

@@ -50,6 +50,10 @@ COMMANDS_HZ = 200.0
 """Most commands of a seat per second, on average. A controller sends 10 repeats and the pressed
 keys, a bot 60 in all.
 """
+SEQ_JUMP_MAX = 2**16
+"""Most numbers that a command may skip. With a bound, no command can use up the numbers of a seat;
+this one covers 20 minutes of keys that never arrived.
+"""
 NAME_MAX = 24
 FILE_NAME_MAX = 100
 """Longest file name [characters]: each mistake in a file repeats its name."""
@@ -195,6 +199,7 @@ class Inbox:
         for seat in self._seats:
             if seat.index not in staying:
                 self._empty(seat, Why.OTHER_MATCH)
+                seat.last_seq = 0  # the numbers of a seat last for a match
 
     def commands(
         self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
@@ -311,6 +316,7 @@ class Inbox:
         number, secret = self._sessions.begin(index)
         if seat.team not in ("", seat.asking):
             seat.former = Counter(seat.refused)
+            self.links.drop(index)
         seat.team = seat.asking
         seat.joined = True
         seat.heard_s = self._now_s
@@ -419,7 +425,9 @@ class Inbox:
     def _nonsense(self, seat: _Seat, command: Command) -> Why | None:
         if command.level not in (Level.POSTURE, Level.LOCOMOTION):
             return Why.OUT_OF_RANGE
-        if not (0 <= command.key <= RESTART_KEY and 0 <= command.seq < 2**53):
+        if not 0 <= command.key <= RESTART_KEY:
+            return Why.OUT_OF_RANGE
+        if not 0 <= command.seq <= seat.last_seq + SEQ_JUMP_MAX:
             return Why.OUT_OF_RANGE
         if min(command.match, command.seen) < 0:
             return Why.OUT_OF_RANGE

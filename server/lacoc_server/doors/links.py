@@ -176,8 +176,8 @@ class Links:
         return released
 
     def drop(self, seat: int) -> None:
-        """Drop the held commands of a seat, because its contestant left."""
-        self._links[seat].held.clear()
+        """Forget the link of a seat and its held commands, because its contestant left."""
+        self._links[seat] = _Link()
 
     def _frame(self, sent_s: float) -> _Frame:
         return _Frame(sent_s, self._delay_beats * BEAT_S)
