@@ -32,7 +32,7 @@ from lacoc_shared.gait.tables import (
     to_postures,
 )
 from lacoc_shared.gait.text import write_gait
-from lacoc_shared.gait.workbook import read_gait_file, write_workbook
+from lacoc_shared.gait.workbook.file import read_gait_file, write_workbook
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.words import Phrase, render, say
 

@@ -9,7 +9,7 @@ from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.joining import join_postures, sample_sequences
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait, write_gait
-from lacoc_shared.gait.workbook import is_workbook, read_gait_file, read_workbook
+from lacoc_shared.gait.workbook.file import is_workbook, read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
 from lacoc_shared.words import Phrase, say

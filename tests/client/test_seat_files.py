@@ -11,7 +11,7 @@ from lacoc_robots.seat_files import SeatFiles, as_text, gaits_in, gather, remark
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.text import read_gait, write_gait
-from lacoc_shared.gait.workbook import write_workbook
+from lacoc_shared.gait.workbook.file import write_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import render

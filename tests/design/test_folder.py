@@ -13,9 +13,9 @@ from lacoc_client.design.folder import ABSENT, Conflict, Folder, Saved
 from lacoc_client.design.saving.text_edit import edit_text
 from lacoc_client.design.table import FileRow, FileTable, gait_of, page_table
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_shared.gait.sheets import INPUT_SHEET
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.workbook import INPUT_SHEET
 from lacoc_shared.mistakes import FileRefused, UserError
 
 GAITS = Path(__file__).parents[1] / "gait" / "files"

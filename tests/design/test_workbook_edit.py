@@ -22,10 +22,10 @@ from openpyxl.worksheet.datavalidation import DataValidation
 from lacoc_client.design.saving.workbook_edit import edit_workbook, formulas_in
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait.cells import leg_labels, posture_cells
-from lacoc_shared.gait.sheets import INPUT_SHEET, MIRROR_SHEET
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.text import read_gait
-from lacoc_shared.gait.workbook import read_workbook, write_workbook
+from lacoc_shared.gait.workbook import INPUT_SHEET, MIRROR_SHEET
+from lacoc_shared.gait.workbook.file import read_workbook, write_workbook
 from lacoc_shared.mistakes import UserError
 
 CALC = Path(__file__).parents[1] / "gait" / "files" / "calc.xlsx"

@@ -29,7 +29,7 @@ from lacoc_shared import decisions as d  # noqa: E402
 from lacoc_shared.codec import encode  # noqa: E402
 from lacoc_shared.gait.cells import LEG_LABELS  # noqa: E402
 from lacoc_shared.gait.text import read_gait  # noqa: E402
-from lacoc_shared.gait.workbook import write_workbook  # noqa: E402
+from lacoc_shared.gait.workbook.file import write_workbook  # noqa: E402
 from lacoc_shared.inputs import ReadySeat  # noqa: E402
 from lacoc_shared.messages import (  # noqa: E402
     DecisionReply,

@@ -21,7 +21,7 @@ from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.gait.key_script import KeyScript
 from lacoc_shared.gait.tables import Gait, Posture, PostureTable
 from lacoc_shared.gait.text import read_gait
-from lacoc_shared.gait.workbook import read_workbook
+from lacoc_shared.gait.workbook.file import read_workbook
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.commands import _lines, _made, _summary
 from lacoc_shared.record.export import tables as export

@@ -15,7 +15,8 @@ import pytest
 from waiting import LIMIT_S
 
 from lacoc_shared.gait.text import read_gait
-from lacoc_shared.gait.workbook import INPUT_SHEET, read_gait_file, write_workbook
+from lacoc_shared.gait.workbook import INPUT_SHEET
+from lacoc_shared.gait.workbook.file import read_gait_file, write_workbook
 
 FILES = Path(__file__).parent / "files"
 TEXTS = {

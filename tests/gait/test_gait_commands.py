@@ -11,7 +11,7 @@ from lacoc_shared.command.cli import main
 from lacoc_shared.gait.cells import LEG_LABELS, leg_labels
 from lacoc_shared.gait.tables import SAMPLE_KEYS, PostureTable, to_locomotion
 from lacoc_shared.gait.text import read_gait, write_gait
-from lacoc_shared.gait.workbook import read_gait_file, write_workbook
+from lacoc_shared.gait.workbook.file import read_gait_file, write_workbook
 from lacoc_shared.mistakes import Mistake
 
 

@@ -17,7 +17,7 @@ from lacoc_shared.gait.tables import (
     to_postures,
 )
 from lacoc_shared.gait.text import MAX_BYTES, read_gait, write_gait
-from lacoc_shared.gait.workbook import read_workbook, write_workbook
+from lacoc_shared.gait.workbook.file import read_workbook, write_workbook
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 legs = st.sampled_from([4, 6, 8])

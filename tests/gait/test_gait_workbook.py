@@ -2,22 +2,19 @@
 
 import io
 import math
+import re
 import zipfile
 
 import openpyxl
 import pytest
 
-from lacoc_shared.gait.tables import SAMPLE_KEYS, to_locomotion
-from lacoc_shared.gait.text import write_gait
-from lacoc_shared.gait.workbook import (
-    INPUT_SHEET,
-    MAX_BYTES,
-    MIRROR_SHEET,
-    read_gait_file,
-    read_workbook,
-    write_workbook,
-)
+from lacoc_shared.gait.tables import SAMPLE_KEYS, PostureTable, to_locomotion
+from lacoc_shared.gait.text import read_gait, write_gait
+from lacoc_shared.gait.workbook import INPUT_SHEET, MIRROR_SHEET
+from lacoc_shared.gait.workbook.content import MAX_BYTES
+from lacoc_shared.gait.workbook.file import read_gait_file, read_workbook, write_workbook
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import Phrase, render
 
 
 @pytest.fixture(scope="module")
@@ -147,7 +144,11 @@ def test_empty_cells_and_formulas_without_a_value(sample):
     found = [mistake[4:6] for mistake in refused(edited(sample, B2=None, C2="=D2*2"))]
     assert found == [
         ("EX (input)!B2", "nothing"),
-        ("EX (input)!C2", '"uncalculated =D2*2"'),
+        (
+            "EX (input)!C2",
+            'the formula "=D2*2" without a result: open the file in Excel or LibreOffice and '
+            "save it",
+        ),
     ]
 
 
@@ -250,6 +251,160 @@ WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
 def test_what_is_no_workbook(data, found, expected):
     """A file that is not a workbook is refused with words that say what it seems to be."""
     assert refused(data) == [(None, None, None, None, None, found, expected)]
+
+
+def parts_of(data: bytes) -> dict[str, bytes]:
+    """Return the files in a workbook."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def with_cells(data: bytes, cells: str) -> dict[str, bytes]:
+    """Return the files of a workbook with a row of cells at the end of its first sheet."""
+    parts = parts_of(data)
+    sheet = parts["xl/worksheets/sheet1.xml"]
+    row = f'<row r="20">{cells}</row></sheetData>'.encode()
+    parts["xl/worksheets/sheet1.xml"] = sheet.replace(b"</sheetData>", row)
+    return parts
+
+
+def with_formulas(data: bytes, length: int, cells: int) -> bytes:
+    """Return a workbook in which many cells share one long formula."""
+    long = f'<c r="A20"><f t="shared" ref="A20:CV500" si="7">{"+A1" * (length // 3)}</f></c>'
+    return zipped(with_cells(data, long + '<c><f t="shared" si="7"/></c>' * cells))
+
+
+def with_text(data: bytes, length: int, cells: int) -> bytes:
+    """Return a workbook in which many cells show one long text."""
+    parts = with_cells(data, '<c t="s"><v>0</v></c>' * cells)
+    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+    text = f"<si><t>{'4' * length}</t></si>" * 40
+    parts["xl/sharedStrings.xml"] = f'<sst xmlns="{main}">{text}</sst>'.encode()
+    return zipped(parts)
+
+
+def with_formats(data: bytes, formats: int, cells: int) -> bytes:
+    """Return a workbook with many long number formats, and many styles with them."""
+    parts = parts_of(data)
+    numbers = "".join(
+        f'<numFmt numFmtId="{200 + n}" formatCode="{n}{"0" * 8000}"/>' for n in range(formats)
+    )
+    styles = "".join(f'<xf numFmtId="{200 + n % formats}"/>' for n in range(cells))
+    parts["xl/styles.xml"] = (
+        '<styleSheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">'
+        f"<numFmts>{numbers}</numFmts><cellXfs>{styles}</cellXfs></styleSheet>"
+    ).encode()
+    return zipped(parts)
+
+
+def with_sheets(data: bytes, sheets: int) -> bytes:
+    """Return a workbook that names its first sheet many times; each is opened."""
+    parts = parts_of(data)
+    more = "".join(f'<sheet name="n{n}" sheetId="{n + 9}" r:id="rId1"/>' for n in range(sheets))
+    book = parts["xl/workbook.xml"].replace(b"</sheets>", f"{more}</sheets>".encode())
+    return zipped(parts | {"xl/workbook.xml": book})
+
+
+@pytest.mark.parametrize(
+    ("bomb", "found"),
+    [
+        (lambda data: with_formulas(data, 6_000_000, 20), "formulas have more than"),
+        (lambda data: with_formulas(data, 3000, 25_000), "formulas have more than"),
+        (lambda data: with_formats(data, 500, 20_000), "more than 50000 elements"),
+        (lambda data: with_sheets(data, 100), "more than 50000 elements"),
+        (
+            lambda data: zipped(with_cells(data, f'<c r="{"A" * 9000}"><v>1</v></c>')),
+            "too much memory or time",
+        ),
+    ],
+    ids=["formula", "formulas", "formats", "sheets", "attribute"],
+)
+def test_what_a_small_file_repeats_is_counted_before_it_is_read(sample, bomb, found):
+    """Formulas, formats and sheets that a small file uses very often are refused."""
+    data = bomb(sample)
+    assert len(data) < MAX_BYTES / 10
+    assert found in refused(data)[0][5]
+
+
+def test_a_long_text_in_many_cells_costs_what_one_costs(sample):
+    """A text of 200,000 characters that 20,000 cells show is refused for its cells alone."""
+    data = with_text(sample, 200_000, 20_000)
+    assert len(data) < MAX_BYTES / 10
+    (first, *_) = refused(data)
+    assert len(first[5]) < 300
+
+
+def strict(data: bytes) -> bytes:
+    """Return a workbook as Excel saves it as "Strict Open XML Spreadsheet"."""
+    parts = {
+        name: re.sub(
+            rb"http://schemas.openxmlformats.org/(officeDocument|spreadsheetml|drawingml)/2006/",
+            rb"http://purl.oclc.org/ooxml/\1/",
+            part,
+        )
+        for name, part in parts_of(data).items()
+    }
+    assert b"purl.oclc.org/ooxml/spreadsheetml/main" in parts["xl/workbook.xml"]
+    return zipped(parts)
+
+
+def test_strict_open_xml_is_read(sample, workshop, legs):
+    """The other kind of .xlsx that Excel saves is read, and its mistakes name their cells."""
+    assert read_workbook(strict(sample), "x") == workshop
+    assert refused(strict(edited(sample, E3=151)), legs=legs)[0][4:6] == ("EX (input)!E3", "151")
+
+
+@pytest.mark.parametrize("title", ["EX（input）", "ex (INPUT)", "EX(input)", "　EX (input) "])
+def test_a_sheet_is_found_by_what_its_name_looks_like(sample, workshop, title):
+    """Widths, cases and spaces of a sheet's name do not matter."""
+    book = openpyxl.load_workbook(io.BytesIO(sample))
+    book[INPUT_SHEET].title = "another"  # else openpyxl takes the same name for a second one
+    book["another"].title = title
+    assert read_workbook(saved(book), "x") == workshop
+
+
+def test_a_date_is_named(sample):
+    """A number that a spreadsheet shows as a date is refused as one, with what to do."""
+    book = openpyxl.load_workbook(io.BytesIO(sample))
+    book[INPUT_SHEET]["C2"].number_format = "yyyy-mm-dd"
+    book[INPUT_SHEET]["C2"] = 12
+    ((*_, field, found, _),) = refused(saved(book))
+    assert field == "EX (input)!C2"
+    assert found.startswith('the date "1900-01-12 00:00:00": give this cell the format Number')
+
+
+def test_a_percentage_is_noted(sample):
+    """A number that a spreadsheet shows as 45 % is read as what it is, with a note."""
+    book = openpyxl.load_workbook(io.BytesIO(sample))
+    book[INPUT_SHEET]["C2"].number_format = "0%"
+    book[INPUT_SHEET]["C2"] = 0.45
+    notes: list[Phrase] = []
+    table = read_workbook(saved(book), "x.xlsx", notes=notes)
+    assert math.degrees(table.postures[0][1]) == pytest.approx(0.45)
+    assert [render(note, "en") for note in notes] == [
+        "x.xlsx: EX (input)!C2 is shown as a percentage; it counts as 0.45 degrees."
+    ]
+
+
+def test_radians_are_noted(workshop, legs):
+    """A table without an angle above half a turn in radians is read, with a note."""
+    small = PostureTable(
+        {
+            digit: tuple(math.radians(angle) for angle in posture)
+            for digit, posture in workshop.postures.items()
+        }
+    )
+    usual: list[Phrase] = []
+    read_gait(write_gait(workshop, legs), "x", notes=usual)
+    assert usual == []
+    for data, read in (
+        (write_workbook(small, legs), read_workbook),
+        (write_gait(small, legs), read_gait),
+    ):
+        notes: list[Phrase] = []
+        assert read(data, "x", notes=notes) == small
+        assert [note.code for note in notes] == ["gait.radians"]
+        notes.clear()
 
 
 def test_an_entity_bomb_is_refused(sample):

@@ -12,7 +12,7 @@ from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import PostureTable, to_locomotion
 from lacoc_shared.gait.text import read_gait, write_gait
-from lacoc_shared.gait.workbook import write_workbook
+from lacoc_shared.gait.workbook.file import write_workbook
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow

@@ -9,7 +9,7 @@ from lacoc_client.design.table import FileTable, gait_of, page_table
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import LocomotionTable
 from lacoc_shared.gait.text import read_gait, write_gait
-from lacoc_shared.gait.workbook import read_workbook, write_workbook
+from lacoc_shared.gait.workbook.file import read_workbook, write_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say

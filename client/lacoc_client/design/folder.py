@@ -16,7 +16,7 @@ import msgspec
 from lacoc_client.design.files import FileContent, file_bytes, read_file
 from lacoc_client.design.saving.atomic import replace_file
 from lacoc_client.design.table import FileTable
-from lacoc_shared.gait.workbook import MAX_BYTES
+from lacoc_shared.gait.workbook.content import MAX_BYTES
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.words import Phrase, say
 

@@ -9,7 +9,7 @@ from lacoc_client.design.table import FileTable
 from lacoc_client.gateway.wire import Ask, Unreadable, too_long
 from lacoc_client.phases.evidence import By
 from lacoc_client.phases.facts import FootWay, Pace, Way
-from lacoc_shared.gait.workbook import MAX_BYTES
+from lacoc_shared.gait.workbook.content import MAX_BYTES
 from lacoc_shared.messages import SentFile
 from lacoc_shared.studio import STUDIO_MAX_BYTES
 from lacoc_shared.words import say

@@ -19,7 +19,7 @@ from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import options, screen
 from lacoc_shared.gait.joining import sample_sequences
 from lacoc_shared.gait.tables import Gait, PostureTable
-from lacoc_shared.gait.workbook import read_gait_file
+from lacoc_shared.gait.workbook.file import read_gait_file
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import Phrase, render, say
 

@@ -1,5 +1,6 @@
 """Read the cells of a gait file, and list every mistake in them (rules 2)."""
 
+import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -39,6 +40,9 @@ MAX_MISTAKES = 1000
 a beat.
 """
 
+_RADIANS = 3.2
+"""A table whose largest angle is at most this [deg] was perhaps meant in radians: half a turn."""
+
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 
 POSTURES_HEADER = say("gait.posture-header")
@@ -71,7 +75,19 @@ def read_cells(
     table = reader.read(rows)
     if notes is not None:
         notes += reader.notes
+        if 0 < (largest := _largest_deg(table)) <= _RADIANS:
+            notes.append(say("gait.radians", file=file, largest=round(largest, 2)))
     return table
+
+
+def _largest_deg(table: PostureTable | LocomotionTable) -> float:
+    """Return the largest angle of a gait [deg], without its sign; 0 if there is none."""
+    postures = (
+        table.postures.values()
+        if isinstance(table, PostureTable)
+        else (posture for sequence in table.sequences for posture in sequence)
+    )
+    return math.degrees(max((abs(one) for posture in postures for one in posture), default=0.0))
 
 
 class _Reader:

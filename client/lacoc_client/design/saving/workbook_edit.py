@@ -18,9 +18,10 @@ from lacoc_client.design.saving.sheet_xml import Cell, Content, NotEditable, Pla
 from lacoc_client.design.saving.workbook_layout import Layout, find_layout
 from lacoc_shared.gait.cells import angle_of, number_of, number_text
 from lacoc_shared.gait.legend import KEY
-from lacoc_shared.gait.sheets import INPUT_SHEET, MIRROR_SHEET
 from lacoc_shared.gait.tables import PostureTable
-from lacoc_shared.gait.workbook import read_workbook, sheet_rows
+from lacoc_shared.gait.workbook import INPUT_SHEET, MIRROR_SHEET
+from lacoc_shared.gait.workbook.apart import sheet_of
+from lacoc_shared.gait.workbook.file import read_workbook, sheet_rows
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -40,10 +41,10 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
         FileRefused: if the file is no workbook with postures.
         UserError: if the postures can't be saved without losing something else in the file.
     """
-    title, rows = sheet_rows(data, name)
-    layout = find_layout(rows, name, table)
+    sheet = sheet_of(data, name)
+    layout = find_layout(sheet_rows(sheet), name, table)
     try:
-        edited = _Edit(BookParts(data), title, layout).result() or data
+        edited = _Edit(BookParts(data), sheet.title, layout).result() or data
         right = edited == data or read_workbook(edited, name) == table
     except Exception:  # NotEditable, or any other exception if the workbook is broken
         right = False
@@ -59,11 +60,11 @@ def formulas_in(data: bytes, name: str) -> int:
         data: an .xlsx file that can be read as postures.
         name: name of the file, for messages.
     """
-    title, rows = sheet_rows(data, name)
-    postures = {row.number for row in rows if KEY.fullmatch(row.cells[0].strip())}
+    sheet = sheet_of(data, name)
+    postures = {row.number for row in sheet_rows(sheet) if KEY.fullmatch(row.cells[0].strip())}
     try:
         book = BookParts(data)
-        cells = SheetXml(book.part(book.sheets[title])).cells()
+        cells = SheetXml(book.part(book.sheets[sheet.title])).cells()
     except Exception:  # the workbook can be read, but not edited in place
         return 0
     return sum(cell.formula is not None and cell.place[0] in postures for cell in cells)

@@ -8,9 +8,7 @@ from xlsxwriter.utility import xl_col_to_name
 from xlsxwriter.worksheet import Worksheet
 
 from lacoc_shared.gait.cells import MAX_KEYS, RANGE_DEG, number_text
-
-INPUT_SHEET = "EX (input)"
-MIRROR_SHEET = "Loco-data"
+from lacoc_shared.gait.workbook import INPUT_SHEET, MIRROR_SHEET
 
 _LEGEND_ROWS = 3
 _MIRRORED_ROWS = 1 + MAX_KEYS + _LEGEND_ROWS + 6  # a full table with some blank rows
