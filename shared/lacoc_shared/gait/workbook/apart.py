@@ -78,7 +78,8 @@ class _Reader:
             if answer is None:
                 self._end()
                 return None
-            return msgspec.msgpack.decode(answer, type=_Answer)
+            found: _Answer = msgspec.msgpack.decode(answer, type=_Answer)
+            return found
 
     def close(self) -> None:
         """End the process."""
