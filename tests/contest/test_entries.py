@@ -220,7 +220,7 @@ def test_two_teams_have_the_same_files(cup: Cup) -> None:
     assert len([*(cup.file.parent / "entries").iterdir()]) == 1
 
 
-@pytest.mark.parametrize("team", ["", "   ", "x" * 25, "a\nb", "a\u202eb", "a\0b"])
+@pytest.mark.parametrize("team", ["", "   ", "x" * 25, "a\x07b", "a\u202eb", "a\0b", "\u3164"])
 def test_a_name_that_cannot_be_shown_is_refused(cup: Cup, team: str) -> None:
     """A team's name that is empty, too long or has invisible characters is refused."""
     with pytest.raises(UserError, match="1 to 24"):

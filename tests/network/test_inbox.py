@@ -77,7 +77,8 @@ def make(**more: Any) -> Court:
 
 
 def join_bytes(seat: int = LEFT, **changes: Any) -> bytes:
-    fields = {"protocol": PROTOCOL, "token": TOKENS[SEATS[seat]], "name": "Blue"} | changes
+    name = ("Blue", "Red")[seat]
+    fields = {"protocol": PROTOCOL, "token": TOKENS[SEATS[seat]], "name": name} | changes
     return encode(Join(**fields))
 
 
@@ -250,6 +251,30 @@ def test_a_seat_without_a_token_is_closed() -> None:
     """A seat that has no token in the contest can't be joined."""
     inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)
     assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
+
+
+@pytest.mark.parametrize("other", ["planner", "Planner", " planner ", "рlаnner"])
+def test_two_teams_of_one_name_are_told_apart(other: str) -> None:
+    """The second team whose name looks like the first one's gets its seat added, at each join."""
+    inbox = make()
+    inbox.join(LEFT, join_bytes(name="planner"))
+    assert inbox.seated(LEFT).notes == ()
+    for _ in range(2):
+        taken = inbox.join(RIGHT, join_bytes(RIGHT, name=other))
+        assert isinstance(taken, JoinSeat)
+        assert taken.team == f"{other.strip()} (right)"
+        assert inbox.seated(RIGHT).notes[0] == say("note.renamed", name=taken.team)
+        again = inbox.join(LEFT, join_bytes(name="planner"))
+        assert isinstance(again, JoinSeat)
+        assert again.team == "planner"
+    long = inbox.join(RIGHT, join_bytes(RIGHT, name="p" * 24))
+    assert isinstance(long, JoinSeat)
+    assert long.team == "p" * 24
+    inbox.left(RIGHT)
+    inbox.left(LEFT)
+    assert inbox.join(RIGHT, join_bytes(RIGHT, name="planner")) == JoinSeat(
+        RIGHT, "planner", CONTEST_ROBOT, None, None, HASHES["right"]
+    )
 
 
 def test_joins_can_not_flood_the_reading_of_files() -> None:

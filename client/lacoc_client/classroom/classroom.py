@@ -9,7 +9,6 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from lacoc_client.classroom.admission import read_name, same_name
 from lacoc_client.classroom.class_student import ClassStudent
 from lacoc_client.classroom.state import NOBODY, ClassState, Handed, fresh_state, read_state
 from lacoc_client.classroom.tournament import Tournament
@@ -38,6 +37,7 @@ from lacoc_shared.contest.codes import new_code, read_code
 from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.names import look_alike, read_name, same_name
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 
@@ -47,6 +47,7 @@ CLASS_FILE = "lacoc-class.sqlite"
 _T = TypeVar("_T", Kept, Document)
 
 _MOST_STUDENTS = 100
+_LONGEST_NAME = 20
 _SOON_S = 0.1
 """How soon pages are told that a studio has come or gone [s]."""
 _ALIVE_S = 1.0
@@ -257,12 +258,17 @@ class Classroom:
         if read_code(hello.code) != self.state.code:
             await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
             raise UserError(say("class.wrong-code"))
-        name = read_name(hello.name)
+        name = read_name(hello.name, _LONGEST_NAME)
+        if name is None:
+            raise UserError(say("class.bad-name", most=_LONGEST_NAME))
         async with self._coming:
             if same_name(name) not in self.students and len(self.students) >= _MOST_STUDENTS:
                 await self._make_room()
             student = self.students.get(same_name(name))
             if student is None:
+                names = (one.name for one in self.students.values())
+                if (there := next((n for n in names if look_alike(n, name)), None)) is not None:
+                    raise UserError(say("class.name-taken", name=there))
                 student = self._new(name)
             elif student.token_hash:
                 raise UserError(say("class.name-taken", name=name))

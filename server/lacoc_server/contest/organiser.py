@@ -1,6 +1,5 @@
 """What an organiser does with a contest: enter teams, take them out, let their games be played."""
 
-import unicodedata
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from datetime import UTC, datetime
@@ -31,6 +30,7 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import waits_for_organiser
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.names import look_alike, read_name
 from lacoc_shared.words import Phrase, say
 
 NAME_MAX = 24
@@ -72,20 +72,12 @@ def team_name(text: str) -> str:
     """Return a team's name as it is kept.
 
     Raises:
-        UserError: if it is empty, too long, or has signs that can't be printed.
+        UserError: if nothing of it can be seen, it is too long, or has signs that can't be printed.
     """
-    team = unicodedata.normalize("NFC", text.strip())
-    if not 0 < len(team) <= NAME_MAX or not team.isprintable():
+    team = read_name(text, NAME_MAX)
+    if team is None:
         raise UserError(say("contest.team-name", most=NAME_MAX))
     return team
-
-
-def name_form(name: str) -> str:
-    """Return a form of a team's name; names that look alike have the same form.
-
-    Capitals become small letters, wide letters narrow ones, and several spaces one.
-    """
-    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
 
 
 def enter_weighed(
@@ -112,9 +104,9 @@ def enter_weighed(
         known = {one.name: one for one in contest.teams}
         if team in known and known[team].files == entry.hash:
             return
-        alike = {name_form(name): name for name in known}
-        if team not in known and name_form(team) in alike:
-            raise UserError(say("contest.name-alike", team=team, there=alike[name_form(team)]))
+        alike = next((name for name in known if look_alike(name, team)), None)
+        if team not in known and alike is not None:
+            raise UserError(say("contest.name-alike", team=team, there=alike))
         if contest.closed and team not in known:
             raise UserError(say("league.closed", team=team))
         if contest.closed and not reason.strip():

@@ -38,6 +38,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.messages.office import Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, printable
+from lacoc_shared.names import look_alike, read_name
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.seat import RESTART_KEY, SILENT_AFTER_S
 from lacoc_shared.words import Phrase, say
@@ -105,7 +106,9 @@ class _Seat:
         self.team = ""
         """The team whose join the match accepted last; "": none since the court was started."""
         self.asking = ""
-        """The team of the newest join."""
+        """The team of the newest join; "": none since the seat was empty."""
+        self.wanted = ""
+        """The name that the newest join came with."""
         self.heard = 0
         """Number of valid commands."""
         self.notes: tuple[Phrase, ...] = ()
@@ -246,19 +249,38 @@ class Inbox:
             return seat.refuse(why, said, again=why is Why.OTHER_MATCH)
         if not seat.joins.take(1, self._now_s):
             return seat.refuse(Why.FLOOD, say("refused.too-many-joins"), again=True)
-        name = join.name.strip()
-        if not (0 < len(name) <= NAME_MAX and name.isprintable()):
+        name = read_name(join.name, NAME_MAX)
+        if name is None:
             said = say("refused.team-name", most=NAME_MAX, name=printable(join.name))
             return seat.refuse(Why.BAD_NAME, said)
         files = [one for one in (join.robot, join.postures, join.locomotion) if one is not None]
         if not all(0 < len(one.name) <= FILE_NAME_MAX and one.name.isprintable() for one in files):
             return seat.refuse(Why.BAD_NAME, say("refused.file-name", most=FILE_NAME_MAX))
-        join = msgspec.structs.replace(join, name=name)
+        join = msgspec.structs.replace(join, name=self._own_name(seat, name))
         if (assigned := self._openings.team(seat.name)) is not None:
             return self._frozen(seat, join, assigned, token_hash)
         return self._weighed(seat, join, token_hash) or partial(
             self._weighed, seat, join, token_hash
         )
+
+    def _own_name(self, seat: _Seat, name: str) -> str:
+        """Add the seat to a team's name if the team in another seat has a name that looks like it.
+
+        Else no sentence about one of them would say which one it is about.
+        """
+        seat.wanted = name
+        held = [join.team if join is not None else "" for join in self._held]
+        others = {
+            named
+            for one in self._seats
+            if one is not seat
+            for named in (one.asking, held[one.index])
+            if named
+        }
+        if not any(look_alike(name, other) for other in others):
+            return name
+        side = f" ({seat.name})"
+        return name.removesuffix(side)[: NAME_MAX - len(side)].rstrip() + side
 
     def _frozen(self, seat: _Seat, join: Join, assigned: AssignedSeat, token_hash: str) -> JoinSeat:
         """Seat a team with the name and files that the office froze, whatever its join brings."""
@@ -294,7 +316,9 @@ class Inbox:
             )
         if checked is None:
             return None
-        whole, seat.notes = checked
+        whole, notes = checked
+        renamed = join.name != seat.wanted
+        seat.notes = (say("note.renamed", name=join.name), *notes) if renamed else notes
         assert whole.robot is not None, "check_files fills the robot file in"
         return JoinSeat(
             seat=seat.index,
@@ -346,6 +370,7 @@ class Inbox:
         self._sessions.end(seat.index, why)
         seat.joined = False
         seat.heard_s = None
+        seat.asking = ""
         self.links.drop(seat.index)
 
     def doors(self) -> tuple[Door, ...]:

@@ -10,9 +10,9 @@ from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.organiser import name_form
 from lacoc_shared.messages.desk import EventInfo
 from lacoc_shared.mistakes import Mistake
+from lacoc_shared.names import look_alike
 
 _REFUSED_KEPT = 50
 """Most teams whose mistakes are kept for the organiser."""
@@ -76,7 +76,7 @@ class Book:
     def is_taken(self, name: str) -> bool:
         """Return whether a team that is in or waits has this name, or one that looks like it."""
         names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
-        return name_form(name) in map(name_form, names)
+        return any(look_alike(name, other) for other in names)
 
     def note_refused(self, team: str, mistakes: tuple[Mistake, ...]) -> None:
         """Note what is wrong with the files that a team handed in last; () if nothing is."""

@@ -1,0 +1,70 @@
+"""Names that people choose, of teams and in classes: what may be one, and which look alike."""
+
+import re
+import unicodedata
+from functools import cache
+
+_UNSEEN = re.compile(
+    "[\u00ad\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2800\u3164\ufe00-\ufe0f\uffa0"
+    "\U0001d159\U000e0100-\U000e01ef]"
+)
+"""Signs that are printable for Python but can't be seen, such as the Hangul filler. A name may
+contain them, because many emoji do; but a name needs other signs too, and is compared without
+them."""
+
+
+def read_name(text: str, most: int) -> str | None:
+    """Return a name without spaces at its ends; within it, several spaces become one.
+
+    Args:
+        text: what somebody wrote.
+        most: largest number of characters.
+
+    Returns:
+        The name; None if nothing of it can be seen, it is too long, or it has unprintable signs.
+    """
+    name = " ".join(unicodedata.normalize("NFC", text).split())
+    can_be_seen = bool(_UNSEEN.sub("", name).strip())
+    return name if can_be_seen and len(name) <= most and name.isprintable() else None
+
+
+def same_name(name: str) -> str:
+    """Return the form of a name that is equal for the same name, however it is written.
+
+    Two names have equal forms if they differ only in capitals, widths or signs that can't be seen.
+    """
+    return " ".join(_plain(name).casefold().split())
+
+
+def look_alike(one: str, other: str) -> bool:
+    """Return whether people can't tell two names apart, on a screen or by ear.
+
+    They are the same name, or they differ only in characters that look alike, such as the Latin B
+    and the Cyrillic В (Unicode Technical Standard 39, 4).
+    """
+    forms = [{same_name(name), _skeleton(_plain(name))} for name in (one, other)]
+    return bool(forms[0] & forms[1])
+
+
+def _plain(name: str) -> str:
+    return unicodedata.normalize("NFKC", _UNSEEN.sub("", name))
+
+
+def _skeleton(name: str) -> str:
+    prototypes = _prototypes()
+    return "".join(prototypes.get(sign, sign) for sign in name)
+
+
+@cache
+def _prototypes() -> dict[str, str]:
+    """Return for each character that looks like others the one that stands for all of them."""
+    from confusable_homoglyphs.confusables import confusables_data  # a megabyte; few need it
+
+    # The table has pairs in both directions. A character with one partner has that one's form; of
+    # two characters that have only each other, both have the form of the first.
+    alike = {sign: [one["c"] for one in others] for sign, others in confusables_data.items()}
+    return {
+        sign: partners[0]
+        for sign, partners in alike.items()
+        if len(partners) == 1 and (len(alike.get(partners[0], ())) > 1 or partners[0] < sign)
+    }
