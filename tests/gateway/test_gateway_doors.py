@@ -72,7 +72,16 @@ def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> No
 
 
 @pytest.mark.parametrize(
-    "host", ["evil.example", "127.0.0.1.evil.example", "", "evil.example:80@127.0.0.1"]
+    "host",
+    [
+        "evil.example",
+        "127.0.0.1.evil.example",
+        "",
+        "evil.example:80@127.0.0.1",
+        "[::1]evil.example",
+        "[::1].evil.example:80",
+        "[evil.example]",
+    ],
 )
 def test_a_foreign_name_is_refused(open_venue: Venue, host: str) -> None:
     """A foreign host name that points to this machine (DNS rebinding) is refused."""

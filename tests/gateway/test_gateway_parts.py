@@ -6,6 +6,7 @@ import gzip
 import os
 import re
 import socket
+import threading
 from pathlib import Path
 from typing import Any, cast, get_args
 
@@ -16,16 +17,18 @@ from aside import run_async
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
+from starlette.types import Receive, Scope, Send
+from waiting import LIMIT_S
 
 from lacoc_client.asking import NoAnswer, NoCourt, NotNow
 from lacoc_client.controller import Hold
 from lacoc_client.event_log import EventLog
-from lacoc_client.gateway import home, page_seat, published, server, wire
+from lacoc_client.gateway import home, page_seat, page_socket, published, server, wire
 from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.browser import open_browser
-from lacoc_client.gateway.files import NOT_BUILT
+from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.site import PATHS, sheet_route
@@ -381,3 +384,44 @@ def test_pages_that_are_not_built_can_not_be_published(
     with pytest.raises(UserError) as refused:
         published.write_pages(tmp_path)
     assert refused.value.phrase == NOT_BUILT
+
+
+@pytest.mark.parametrize(
+    "part", [b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n"]
+)
+def test_half_a_request_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes) -> None:
+    """A connection that never sends a whole request is closed; a whole one is answered."""
+    monkeypatch.setattr(page_socket, "REQUEST_S", 0.05)
+
+    async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            while (await receive()).get("more_body"):
+                pass
+            await PlainTextResponse("whole")(scope, receive, send)
+
+    opened, ended = server.listen("127.0.0.1:0"), threading.Event()
+    thread = threading.Thread(target=server.serve, args=(app, opened, ended.is_set))
+    thread.start()
+    try:
+        with socket.create_connection(opened.getsockname(), LIMIT_S) as half:
+            half.sendall(part)
+            with contextlib.suppress(ConnectionResetError):
+                assert half.recv(1) == b""
+        monkeypatch.setattr(page_socket, "REQUEST_S", LIMIT_S)
+        with socket.create_connection(opened.getsockname(), LIMIT_S) as whole:
+            whole.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+            assert whole.recv(100).startswith(b"HTTP/1.1 200")
+    finally:
+        ended.set()
+        thread.join()
+
+
+def test_a_file_is_kept_once_however_it_is_asked_for(tmp_path: Path) -> None:
+    """The gateway keeps a file under its real path, not under each spelling of a path."""
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "x.js").write_text("let x;")
+    files = PageFiles(tmp_path)
+    spellings = ["assets/x.js", "assets/./x.js", "assets/././x.js", "assets/../assets/x.js"]
+    found = {id(files.find(name)) for name in spellings}
+    assert len(found) == 1
+    assert len(files._files) == 1

@@ -25,3 +25,23 @@ def test_a_refused_write_is_not_told_as_a_full_disk(tmp_path: Path) -> None:
     assert isinstance(told, UserError)
     assert told.phrase.code == "database.failed"
     assert str(path) in str(told)
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (sqlite3.SQLITE_FULL, "database.no-room"),
+        (sqlite3.SQLITE_IOERR_WRITE, "database.no-room"),
+        (sqlite3.SQLITE_IOERR_READ, "database.failed"),
+        (sqlite3.SQLITE_IOERR, "database.failed"),
+        (sqlite3.SQLITE_READONLY, "database.failed"),
+        (sqlite3.SQLITE_BUSY, "database.in-use"),
+    ],
+)
+def test_only_a_full_disk_is_told_to_be_full(code: int, told: str) -> None:
+    """Advice to make room is given where a full disk can be the cause, and nowhere else."""
+    error = sqlite3.OperationalError("no reason")
+    error.sqlite_errorcode = code
+    found = database.problem(Path("x.facts"), error)
+    assert isinstance(found, UserError)
+    assert found.phrase.code == told

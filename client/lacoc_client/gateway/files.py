@@ -32,7 +32,8 @@ class PageFiles:
 
     def __init__(self, folder: Path = PAGES) -> None:
         self._folder = folder.resolve()
-        self._files: dict[str, tuple[int, PageFile]] = {}
+        self._files: dict[Path, tuple[int, PageFile]] = {}
+        """By the real path: the same file can be asked for with many spellings."""
 
     @property
     def built(self) -> bool:
@@ -46,10 +47,10 @@ class PageFiles:
             if not path.is_relative_to(self._folder) or not path.is_file():
                 return None
             version = path.stat().st_mtime_ns
-            known, file = self._files.get(name, (0, None))
+            known, file = self._files.get(path, (0, None))
             if file is None or known != version:
                 file = _read(path)
-                self._files[name] = version, file
+                self._files[path] = version, file
         except (OSError, ValueError):  # a NUL in the name, or a file being rebuilt
             return None
         return file

@@ -6,6 +6,7 @@ a page of another origin gets no WebSocket.
 """
 
 import ipaddress
+import re
 import socket
 from collections.abc import Iterable
 from urllib.parse import urlsplit
@@ -22,6 +23,7 @@ _POLICY = (
     "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors {ancestors}"
 )
+_HOST = re.compile(r"(\[(?P<number>[0-9A-Fa-f:.]+)\]|(?P<name>[^][:]+))(:[0-9]*)?")
 _EMBEDDABLE = ("/overlay",)
 """Pages that other sites may embed: they take no input."""
 
@@ -105,10 +107,9 @@ def _all(scope: Scope, name: bytes) -> list[str]:
 
 
 def _name_of(host: str) -> str:
-    """Return the host without its port."""
-    if host.startswith("["):
-        return host[1:].partition("]")[0].lower()
-    return host.partition(":")[0].lower().rstrip(".")
+    """Return the host without its port; "" if this is no host."""
+    match = _HOST.fullmatch(host)
+    return (match["number"] or match["name"]).lower().rstrip(".") if match else ""
 
 
 def _is_number(name: str) -> bool:

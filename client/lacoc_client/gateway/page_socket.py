@@ -1,15 +1,18 @@
-"""uvicorn's WebSocket, extended for sending to hundreds of pages.
+"""uvicorn's connections, extended for hundreds of pages and for those who only hold connections.
 
 A message to a page is made once, as the bytes of its WebSocket frame, and written to all of them.
 Through ASGI, each of 300 pages would need a task switch 25 times a second. The socket knows whether
 a page keeps up, so that it gets no more than it can take.
 """
 
+import asyncio
 import socket
 from asyncio.transports import BaseTransport, Transport
 from collections.abc import Callable
 from typing import cast
 
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.http11 import Request
 
@@ -22,6 +25,8 @@ _UNANSWERED_S = 1.0
 buffers on the way, however large, never fill with old frames.
 """
 _WATCHED_PING_S = 0.3
+REQUEST_S = 20.0
+"""Longest time in which a request must arrive, from its first byte to its last [s]."""
 
 
 class PageSocket(WebSocketsSansIOProtocol):
@@ -82,3 +87,39 @@ class PageSocket(WebSocketsSansIOProtocol):
             self.ping_interval = _WATCHED_PING_S
             self.stop_keepalive()
             self.schedule_ping()
+
+
+class PageRequests(H11Protocol):
+    """A connection of a browser; it is closed if it holds half a request for too long.
+
+    Else whoever opens connections and sends half a request on each could hold them all for ever.
+    """
+
+    _too_late: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
+        """Take over a connection; see `asyncio.Protocol`."""
+        super().connection_made(transport)
+        self._wait()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Give up a connection; see `asyncio.Protocol`."""
+        self._wait_no_longer()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Take in bytes; see `asyncio.Protocol`."""
+        super().data_received(data)
+        if self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
+            self._wait()
+        else:
+            self._wait_no_longer()
+
+    def _wait(self) -> None:
+        if self._too_late is None:
+            self._too_late = self.loop.call_later(REQUEST_S, self.transport.abort)
+
+    def _wait_no_longer(self) -> None:
+        if self._too_late is not None:
+            self._too_late.cancel()
+            self._too_late = None

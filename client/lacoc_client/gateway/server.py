@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import uvicorn
 from starlette.types import ASGIApp
 
-from lacoc_client.gateway.page_socket import PageSocket
+from lacoc_client.gateway.page_socket import PageRequests, PageSocket
 from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_client.stopping import stop_signals
 from lacoc_shared.mistakes import UserError
@@ -92,7 +92,7 @@ async def _serve(
 ) -> None:
     config = uvicorn.Config(
         app,
-        http="h11",
+        http=PageRequests,
         ws=PageSocket,
         ws_max_size=most_bytes,
         ws_ping_interval=_PING_S,

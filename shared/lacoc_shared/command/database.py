@@ -7,6 +7,14 @@ from pathlib import Path
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
+_NO_ROOM = (
+    sqlite3.SQLITE_FULL,
+    sqlite3.SQLITE_IOERR_WRITE,
+    sqlite3.SQLITE_IOERR_FSYNC,
+    sqlite3.SQLITE_IOERR_SHMSIZE,
+)
+"""Errors that a full disk causes; other errors of input and output have other causes."""
+
 
 class Damaged(Exception):
     """The file is damaged: SQLite can't read it as a database."""
@@ -57,14 +65,15 @@ def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged 
         opening: whether the error came while the file was opened.
     """
     file, why = text_of(path.name), str(error)
-    match getattr(error, "sqlite_errorcode", 0) & 0xFF:
+    code = getattr(error, "sqlite_errorcode", 0)
+    match code & 0xFF:
         case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
             return Damaged(why)
         case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED:
             return UserError(say("database.in-use", file=file))
         case _ if opening:
             return UserError(say("database.cannot-open", file=text_of(path), why=why))
-        case sqlite3.SQLITE_FULL | sqlite3.SQLITE_IOERR:
+        case sqlite3.SQLITE_FULL | sqlite3.SQLITE_IOERR if code in _NO_ROOM:
             return UserError(say("database.no-room", file=file, why=why))
         case _:
             return UserError(say("database.failed", file=text_of(path), why=why))
