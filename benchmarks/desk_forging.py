@@ -29,6 +29,7 @@ from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
@@ -52,6 +53,7 @@ from lacoc_shared.messages.desk import (
     Draw,
     Files,
     Move,
+    NewCode,
     Overview,
     Own,
     Rule,
@@ -103,10 +105,16 @@ class _Trial:
         organiser.prepare(where, self._store, entering=True)
         for team in (*_IN, _MINE):
             organiser.enter(file, team, None, "", "")
-        book = Book(where, own, self._applications, self._tokens)
+        book = Book(
+            where,
+            own,
+            self._applications,
+            self._tokens,
+            EventCode(where.event_code, self._code),
+        )
         known = Known({"north": Seen(0)}, Pace(0, 60_000), {})
         self._key, self._code = organiser_key(where.contest), event_code(where.contest)
-        desk = Desk(book, self._key, self._code, lambda: known)
+        desk = Desk(book, self._key, lambda: known)
         desk.answer(Apply(secret=self._code, team=_WAITS, files=self._files))
         self._mine = self._tokens.of(_MINE)
         self._others = {team: self._tokens.of(team) for team in (*_IN, _WAITS)}
@@ -171,7 +179,8 @@ class _Trial:
         team = self._chance.choice((*_IN, _WAITS, _MINE))
         kinds: tuple[DeskRequest, ...] = (
             Approve(secret=secret, teams=(_WAITS,), reason="x"),
-            Decline(secret=secret, team=_WAITS),
+            Decline(secret=secret, teams=(_WAITS,)),
+            NewCode(secret=secret),
             Draw(secret=secret, stage="cup", entries=(_WAITS,)),
             CloseEntries(secret=secret),
             TakeOut(secret=secret, team=team, reason="x", really=True),

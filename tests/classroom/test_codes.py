@@ -30,4 +30,4 @@ def test_guesses_of_many_machines_need_no_more_room() -> None:
     guesses = Guesses()
     for number in range(3000):
         assert guesses.wait_s(str(number), 1.0) == 0.0
-    assert len(guesses._machines) == 1000
+    assert len(guesses._machines._senders) == 1000

@@ -9,6 +9,7 @@ from lacoc_server.contest import organiser
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
@@ -41,6 +42,7 @@ from lacoc_shared.messages.desk import (
     Files,
     Look,
     Move,
+    NewCode,
     OfficeView,
     Overview,
     Overviewed,
@@ -93,10 +95,12 @@ class Room:
         note_plans(self.store, self.where.plans)
         self.applications = Applications(self.where.applications)
         self.tokens = TeamTokens(self.where.tokens)
-        self.book = Book(self.where, FactStore(self.where.facts), self.applications, self.tokens)
+        code = EventCode(self.where.event_code, CODE)
+        store = FactStore(self.where.facts)
+        self.book = Book(self.where, store, self.applications, self.tokens, code)
         courts = {"north": Seen(NOW_MS), "south": Seen(NOW_MS)}
         known = Known(courts, Pace(NOW_MS, 60_000), {})
-        self.desk = Desk(self.book, KEY, CODE, lambda: known)
+        self.desk = Desk(self.book, KEY, lambda: known)
 
     def ask(self, request: AnyRequest) -> object:
         """Encode a request as the network does, and return the desk's answer."""
@@ -239,12 +243,38 @@ def test_a_declined_name_is_free_and_its_link_opens_nothing(room: Room) -> None:
     """The link of a declined team opens nothing; whoever takes its name gets another token."""
     first = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert isinstance(first, OwnEntry)
-    room.ask(Decline(secret=KEY, team="Bees"))
+    room.ask(Decline(secret=KEY, teams=("Bees",)))
     assert said(room.ask(Own(secret=first.token))) == "desk.no-such-team"
     second = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert isinstance(second, OwnEntry)
     assert second.token != first.token
-    assert said(room.ask(Decline(secret=KEY, team="Crabs"))) == "desk.no-application"
+    assert said(room.ask(Decline(secret=KEY, teams=("Crabs",)))) == "desk.no-application"
+
+
+def test_a_flood_of_applications_is_cleared_at_once(room: Room) -> None:
+    """The organiser declines all that wait with one act, and makes another event code.
+
+    With the old code nobody applies any more; the link of a team that has applied still opens its
+    entry. The new code is the code after a restart too.
+    """
+    flood = tuple(f"Flood {number}" for number in range(5))
+    for team in flood:
+        room.ask(Apply(secret=CODE, team=team, files=sample()))
+    declined = room.ask(Decline(secret=KEY, teams=flood))
+    assert isinstance(declined, Said)
+    assert room.states() == {}
+    bees = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(bees, OwnEntry)
+    assert said(room.ask(Decline(secret=KEY, teams=("Bees", "Nobody")))) == "desk.no-application"
+    assert room.states() == {"Bees": "waits"}
+
+    room.ask(NewCode(secret=KEY))
+    code = room.view.code
+    assert code != CODE
+    assert EventCode(room.where.event_code, CODE).value == code
+    assert said(room.ask(Apply(secret=CODE, team="Ants", files=sample()))) == "desk.wrong-code"
+    assert isinstance(room.ask(Apply(secret=code, team="Ants", files=sample())), OwnEntry)
+    assert isinstance(room.ask(Own(secret=bees.token)), OwnEntry)
 
 
 def test_applications_are_there_after_a_restart(room: Room) -> None:
@@ -494,7 +524,8 @@ def test_roles_hold(room: Room) -> None:
             assert said(room.ask(kind(secret=secret))) == "desk.not-organiser"
         for request in (
             Approve(secret=secret, teams=("Ants",)),
-            Decline(secret=secret, team="Ants"),
+            Decline(secret=secret, teams=("Ants",)),
+            NewCode(secret=secret),
             Draw(secret=secret, stage="cup", entries=("Ants", "Bees")),
             TakeOut(secret=secret, team="Bees", really=True),
             Rule(secret=secret, kind="void", pairing="cup:a1.1", reason="x", really=True),

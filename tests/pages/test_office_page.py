@@ -130,6 +130,7 @@ def test_an_event_from_its_file_to_its_first_game(
     enter_a_workbook(open_page, event, TEAMS[-1])
     enter(open_page, event, "Nobody")
     decline(office, "Nobody")
+    keep_strangers_out(office, event)
     rows = office.locator(".entries li")
     expect(rows).to_have_count(len(TEAMS))
     assert violations(office) == []
@@ -210,6 +211,22 @@ def decline(office: Page, team: str) -> None:
     office.get_by_role("button", name=f"Decline {team}").click()
     dialog.get_by_role("button", name="Decline").click()
     expect(row).to_have_count(0)
+
+
+def keep_strangers_out(office: Page, event: Event) -> None:
+    """Look at what all who wait would lose, keep them, and make another event code."""
+    office.get_by_role("button", name=f"Decline all {len(TEAMS)}").click()
+    everybody = office.get_by_role("dialog", name=f"Decline all {len(TEAMS)}")
+    expect(everybody).to_contain_text(TEAMS[-1])
+    assert violations(office) == []
+    office.keyboard.press("Escape")
+    office.get_by_role("button", name="New code").click()
+    dialog = office.get_by_role("dialog", name="New code")
+    expect(dialog).to_contain_text("nobody can apply any more")
+    assert violations(office) == []
+    dialog.get_by_role("button", name="New code").click()
+    expect(dialog).to_have_count(0)
+    expect(office.locator(".head .code")).not_to_have_text(event.code)
 
 
 def approve_and_draw(office: Page) -> None:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_shared.names import _UNSEEN, look_alike, read_name, same_name
+from lacoc_shared.contest.names import _UNSEEN, look_alike, read_name, same_name
 
 MOST = 20
 

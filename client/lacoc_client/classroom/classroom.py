@@ -34,10 +34,10 @@ from lacoc_client.phases.store import ClassStore
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_shared import seal
 from lacoc_shared.contest.codes import new_code, read_code
+from lacoc_shared.contest.names import look_alike, read_name, same_name
 from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.names import look_alike, read_name, same_name
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 

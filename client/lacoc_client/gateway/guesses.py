@@ -1,4 +1,4 @@
-"""Slows down whoever tries codes, so that nobody can try them all."""
+"""Limits for each of many senders, such as machines that try codes."""
 
 from collections import OrderedDict
 
@@ -8,15 +8,41 @@ _GUESSES_HZ, _GUESSES_BURST = 0.5, 20
 """Wrong codes of a machine that are answered at once."""
 _LATER_S = 1.0
 """How long a page waits for the answer to a further wrong code. Even with 400 pages at a time a
-machine would try codes for a month. The right code never waits: a class may share one address."""
-_MOST_MACHINES = 1000
+machine then tries 400 a second. The right code never waits: a class may share one address."""
+_MOST_SENDERS = 1000
+
+
+class Allowances:
+    """An `Allowance` for each sender; of very many senders, those heard longest ago begin again.
+
+    Args:
+        rate_hz: how many requests of a sender pass in a second, in the long run.
+        burst: how many pass at once.
+    """
+
+    def __init__(self, rate_hz: float, burst: int) -> None:
+        self._rate_hz, self._burst = rate_hz, burst
+        self._senders: OrderedDict[str, Allowance] = OrderedDict()
+
+    def take(self, sender: str, now_s: float) -> bool:
+        """Count a request; return whether it may pass.
+
+        Args:
+            sender: who sent it, such as the address of a machine.
+            now_s: time on a clock that never goes back [s].
+        """
+        allowance = self._senders.setdefault(sender, Allowance(self._rate_hz, self._burst))
+        self._senders.move_to_end(sender)
+        if len(self._senders) > _MOST_SENDERS:
+            self._senders.popitem(last=False)
+        return bool(allowance.take(1, now_s))
 
 
 class Guesses:
     """Slows down each machine that shows wrong codes, so that it can't try them all."""
 
     def __init__(self) -> None:
-        self._machines: OrderedDict[str, Allowance] = OrderedDict()
+        self._machines = Allowances(_GUESSES_HZ, _GUESSES_BURST)
 
     def wait_s(self, machine: str, now_s: float) -> float:
         """Count a wrong code; return how long its answer must wait [s].
@@ -25,8 +51,4 @@ class Guesses:
             machine: address of the machine that sent the code.
             now_s: time on a clock that never goes back [s].
         """
-        allowance = self._machines.setdefault(machine, Allowance(_GUESSES_HZ, _GUESSES_BURST))
-        self._machines.move_to_end(machine)
-        if len(self._machines) > _MOST_MACHINES:
-            self._machines.popitem(last=False)
-        return 0.0 if allowance.take(1, now_s) else _LATER_S
+        return 0.0 if self._machines.take(machine, now_s) else _LATER_S

@@ -13,6 +13,7 @@ from lacoc_client.gateway.page_requests import serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Ask, Ping, Unreadable
 from lacoc_client.office.desk import DeskLine
+from lacoc_client.office.hand_ins import HandIns
 from lacoc_client.office.links import Links, TeamLink, qr_code, referee_link, team_link
 from lacoc_shared import codec
 from lacoc_shared.messages.desk import REPLY_MAX_BYTES, Own, OwnEntry, TokenList, Tokens
@@ -79,16 +80,25 @@ class DeskPage:
         websocket: the page's WebSocket, not accepted yet.
         desk: the connection to the desk.
         guesses: slows down whoever shows wrong secrets.
+        hand_ins: counts how often files are handed in.
         key: the gateway's page key.
         address: address of the pages, as other machines can open it.
     """
 
     def __init__(
-        self, websocket: WebSocket, desk: DeskLine, guesses: Guesses, key: str, address: str
+        self,
+        websocket: WebSocket,
+        desk: DeskLine,
+        guesses: Guesses,
+        hand_ins: HandIns,
+        key: str,
+        address: str,
     ) -> None:
         self._websocket = websocket
         self._desk = desk
         self._guesses = guesses
+        self._hand_ins = hand_ins
+        self._machine = websocket.client.host if websocket.client is not None else ""
         self._key = key
         self._address = address
         self._answers = Answers(Viewer(websocket.state.socket), lambda *_: None)
@@ -117,6 +127,7 @@ class DeskPage:
         return True
 
     async def _passed_on(self, request: bytes) -> Any:
+        self._hand_ins.count(self._machine, request, time.monotonic())
         return msgspec.Raw(await self._asked(request))
 
     async def _link(self, token: str) -> TeamLink:
@@ -148,7 +159,5 @@ class DeskPage:
             return await self._desk.ask(request)
         except UserError as error:
             if error.phrase.code in _WRONG:
-                client = self._websocket.client
-                where = client.host if client is not None else ""
-                await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
+                await asyncio.sleep(self._guesses.wait_s(self._machine, time.monotonic()))
             raise

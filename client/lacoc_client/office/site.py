@@ -8,6 +8,7 @@ from starlette.websockets import WebSocket
 from lacoc_client.gateway.guesses import Guesses
 from lacoc_client.office.desk import DeskLine
 from lacoc_client.office.desk_page import DeskPage
+from lacoc_client.office.hand_ins import HandIns
 from lacoc_shared.messages.desk import DESK_MAX_BYTES
 
 DESK_BYTES = DESK_MAX_BYTES + 1024
@@ -28,6 +29,7 @@ class DeskSite:
     def __init__(self, desk: str, key: str, address: str) -> None:
         self._line = DeskLine(desk)
         self._guesses = Guesses()
+        self._hand_ins = HandIns()
         self._key = key
         self._address = address
 
@@ -36,7 +38,9 @@ class DeskSite:
         """The route of the pages' requests."""
 
         async def page(websocket: WebSocket) -> None:
-            await DeskPage(websocket, self._line, self._guesses, self._key, self._address).serve()
+            await DeskPage(
+                websocket, self._line, self._guesses, self._hand_ins, self._key, self._address
+            ).serve()
 
         return [WebSocketRoute("/office/ws", page)]
 

@@ -29,8 +29,8 @@ from lacoc_server.contest.league.facts import (
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import waits_for_organiser
 from lacoc_server.contest.sheet import ContestSheet
+from lacoc_shared.contest.names import look_alike, read_name
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.names import look_alike, read_name
 from lacoc_shared.words import Phrase, say
 
 NAME_MAX = 24

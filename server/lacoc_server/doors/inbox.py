@@ -16,6 +16,7 @@ from lacoc_server.doors.links import Links
 from lacoc_server.doors.openings import Openings, frozen_join
 from lacoc_server.doors.sessions import Sessions, Why
 from lacoc_shared import codec, seal
+from lacoc_shared.contest.names import look_alike, read_name
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import (
     HeardSeat,
@@ -38,7 +39,6 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.messages.office import Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, printable
-from lacoc_shared.names import look_alike, read_name
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.seat import RESTART_KEY, SILENT_AFTER_S
 from lacoc_shared.words import Phrase, say

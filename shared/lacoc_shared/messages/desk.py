@@ -108,9 +108,13 @@ class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
 
 
 class Decline(DeskRequest, frozen=True, kw_only=True, tag="decline"):
-    """Turn an application down, and forget it."""
+    """Turn applications down, and forget them."""
 
-    team: _Name
+    teams: tuple[_Name, ...]
+
+
+class NewCode(DeskRequest, frozen=True, kw_only=True, tag="new_code"):
+    """Make another event code: nobody can apply with the old one any more."""
 
 
 class CloseEntries(DeskRequest, frozen=True, kw_only=True, tag="close"):
@@ -176,6 +180,7 @@ AnyRequest = (
     | Overview
     | Approve
     | Decline
+    | NewCode
     | CloseEntries
     | Draw
     | TakeOut

@@ -57,7 +57,12 @@ export interface Approve {
 export interface Decline {
   do: "decline";
   secret?: string;
-  team: string;
+  teams: string[];
+}
+
+export interface NewCode {
+  do: "new_code";
+  secret?: string;
 }
 
 export interface CloseEntries {
@@ -216,4 +221,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = Look | Apply | Change | Own | CourtDay | Overview | Approve | Decline | CloseEntries | Draw | TakeOut | Rule | Move | Tokens;
+export type AnyRequest = Look | Apply | Change | Own | CourtDay | Overview | Approve | Decline | NewCode | CloseEntries | Draw | TakeOut | Rule | Move | Tokens;

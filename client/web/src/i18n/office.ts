@@ -45,8 +45,16 @@ export const office = {
   "office.approveOf": ["Approve {team}", "{team} を承認"],
   "office.approveAll": ["Approve all {count}", "{count} チームをまとめて承認"],
   "office.done": ["{count} teams are in.", "{count} チームの参加が決まりました。"],
+  "office.doneDeclined": ["{count} teams are declined.", "{count} チームを断りました。"],
   "office.decline": ["Decline", "断る"],
   "office.declineOf": ["Decline {team}", "{team} を断る"],
+  "office.declineAll": ["Decline all {count}", "{count} チームをまとめて断る"],
+  "office.comma": [", ", "、"],
+  "office.newCode": ["New code", "コードを変える"],
+  "office.newCode.text": [
+    "With the old event code nobody can apply any more. Give the new one to those who may enter. Teams that have applied keep their links.",
+    "古いイベントコードでは申し込めなくなります。新しいコードを、参加してよい人に伝えてください。申し込み済みのチームのリンクはそのまま使えます。",
+  ],
   "office.decline.text": [
     "The office forgets this application, and the team's link opens nothing any more. While entries are open, the team can apply again.",
     "この申し込みは消え、チームのリンクは使えなくなります。締め切り前なら、チームはもう一度申し込めます。",

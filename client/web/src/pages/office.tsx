@@ -7,7 +7,13 @@ import { Banner, waitsForGateway } from "../ui/banner";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
 import { CloseDialog, DrawDialog } from "./office/closing";
-import { ApproveDialog, DeclineDialog, LeaveDialog, TeamDialog } from "./office/dialogs";
+import {
+  ApproveDialog,
+  CodeDialog,
+  DeclineDialog,
+  LeaveDialog,
+  TeamDialog,
+} from "./office/dialogs";
 import { Entries } from "./office/entries";
 import { Head } from "./office/head";
 import { MoveDialog } from "./office/moving";
@@ -58,7 +64,8 @@ export default function Office() {
       {over?.is === "team" && <TeamDialog organiser={organiser} team={over.team} />}
       {over?.is === "leave" && <LeaveDialog organiser={organiser} team={over.team} />}
       {over?.is === "approve" && <ApproveDialog organiser={organiser} team={over.team} />}
-      {over?.is === "decline" && <DeclineDialog organiser={organiser} team={over.team} />}
+      {over?.is === "decline" && <DeclineDialog organiser={organiser} teams={over.teams} />}
+      {over?.is === "code" && <CodeDialog organiser={organiser} />}
       {over?.is === "move" && view && (
         <MoveDialog organiser={organiser} view={view} pairing={over.pairing} />
       )}

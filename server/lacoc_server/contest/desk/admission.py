@@ -23,11 +23,13 @@ class Admission:
 
     Args:
         organiser: the organiser's key.
-        code: the event code.
+        code: returns the event code.
         team_of: returns the team that has a token; None: nobody has it.
     """
 
-    def __init__(self, organiser: str, code: str, team_of: Callable[[str], str | None]) -> None:
+    def __init__(
+        self, organiser: str, code: Callable[[], str], team_of: Callable[[str], str | None]
+    ) -> None:
         self._organiser = organiser
         self._code = code
         self._team_of = team_of
@@ -50,7 +52,7 @@ class Admission:
         Raises:
             UserError: if this is not the event code.
         """
-        if not _same(read_code(secret), self._code):
+        if not _same(read_code(secret), self._code()):
             raise self._wrong(say("desk.wrong-code"), now_s)
 
     def team(self, secret: str, now_s: float) -> str:

@@ -3,6 +3,7 @@
 from datetime import datetime
 
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
@@ -10,9 +11,9 @@ from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_shared.contest.names import look_alike
 from lacoc_shared.messages.desk import EventInfo
 from lacoc_shared.mistakes import Mistake
-from lacoc_shared.names import look_alike
 
 _REFUSED_KEPT = 50
 """Most teams whose mistakes are kept for the organiser."""
@@ -26,6 +27,7 @@ class Book:
         store: its facts.
         applications: the entries that wait for the organiser.
         tokens: the tokens of the teams.
+        code: the event code.
     """
 
     def __init__(
@@ -34,11 +36,13 @@ class Book:
         store: FactStore,
         applications: Applications,
         tokens: TeamTokens,
+        code: EventCode,
     ) -> None:
         self.where = where
         self.store = store
         self.applications = applications
         self.tokens = tokens
+        self.code = code
         self.refused: dict[str, tuple[Mistake, ...]] = {}
         """Mistakes in the newest files of teams whose files were refused; not kept on the disk."""
         self._newest = Newest(FORMATS)

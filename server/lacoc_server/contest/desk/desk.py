@@ -26,6 +26,7 @@ from lacoc_shared.messages.desk import (
     Files,
     Look,
     Move,
+    NewCode,
     Overview,
     Overviewed,
     Own,
@@ -47,14 +48,12 @@ class Desk:
     Args:
         book: the contest.
         organiser: the organiser's key.
-        code: the event code.
         known: returns what the office knows besides the facts.
     """
 
-    def __init__(self, book: Book, organiser: str, code: str, known: Callable[[], Known]) -> None:
-        self.admission = Admission(organiser, code, book.tokens.team_of)
+    def __init__(self, book: Book, organiser: str, known: Callable[[], Known]) -> None:
+        self.admission = Admission(organiser, lambda: book.code.value, book.tokens.team_of)
         self._book = book
-        self._code = code
         self._known = known
         self._games = book.where.games
         self._one = threading.Lock()
@@ -108,17 +107,28 @@ class Desk:
 
     def _organise(
         self,
-        asked: Overview | Approve | Decline | CloseEntries | Draw | TakeOut | Rule | Move | Tokens,
+        asked: Overview
+        | Approve
+        | Decline
+        | NewCode
+        | CloseEntries
+        | Draw
+        | TakeOut
+        | Rule
+        | Move
+        | Tokens,
     ) -> Answer:
         book = self._book
         match asked:
             case Overview():
-                made = overview.view(book, self._code, self._known())
+                made = overview.view(book, self._known())
                 return Overviewed(view=None if made.version == asked.known else made)
             case Approve():
                 return organising.approve(book, asked)
             case Decline():
-                return organising.decline(book, asked.team)
+                return organising.decline(book, asked.teams)
+            case NewCode():
+                return organising.new_code(book)
             case CloseEntries():
                 return organising.close(book)
             case Draw():

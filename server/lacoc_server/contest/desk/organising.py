@@ -1,6 +1,6 @@
 """What the organiser asks the desk: to approve, decline, close, draw, take out, rule and move."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest.desk import deciding
@@ -38,21 +38,33 @@ def approve(book: Book, asked: Approve) -> Said:
     return Said(said=tuple(said))
 
 
-def decline(book: Book, team: str) -> Said:
-    """Turn a team's application down, and forget that its files were refused.
+def decline(book: Book, teams: Sequence[str]) -> Said:
+    """Turn applications down, and forget that files were refused.
 
     A team that is already in the contest keeps its token; any other team loses it.
 
     Raises:
-        UserError: if the team has neither waiting nor refused files.
+        UserError: if a team has neither waiting nor refused files. Then no team is declined.
     """
-    if team not in book.applications.waiting and team not in book.refused:
-        raise UserError(say("desk.no-application", team=team))
-    book.applications.drop(team)
-    book.note_refused(team, ())
-    if book.team(team) is None:
-        book.tokens.forget(team)  # another team may take the name
-    return Said(said=(say("desk.declined", team=team),))
+    for team in teams:
+        if team not in book.applications.waiting and team not in book.refused:
+            raise UserError(say("desk.no-application", team=team))
+    book.applications.drop(*teams)
+    for team in teams:
+        book.note_refused(team, ())
+    inside = {team.name for team in book.contest.teams}
+    book.tokens.forget(*(team for team in teams if team not in inside))  # others may take the names
+    return Said(said=tuple(say("desk.declined", team=team) for team in teams))
+
+
+def new_code(book: Book) -> Said:
+    """Make another event code; teams that have applied keep their links.
+
+    Raises:
+        UserError: if it can't be written.
+    """
+    book.code.change()
+    return Said(said=(say("desk.new-code", code=book.code.value),))
 
 
 def close(book: Book) -> Said:

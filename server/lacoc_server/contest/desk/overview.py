@@ -20,12 +20,11 @@ _STEP_MS = 60_000
 """Expected times are rounded up to this, so that the view does not change each time it is made."""
 
 
-def view(book: Book, code: str, known: Known) -> OfficeView:
+def view(book: Book, known: Known) -> OfficeView:
     """Make the view of the organiser's page.
 
     Args:
         book: the contest.
-        code: the event code.
         known: what the office knows besides the facts.
 
     Raises:
@@ -35,7 +34,7 @@ def view(book: Book, code: str, known: Known) -> OfficeView:
     made = OfficeView(
         version="",
         event=book.event,
-        code=code,
+        code=book.code.value,
         drawn=bool(contest.stages),
         to_draw=_to_draw(contest),
         teams=tuple(_teams(book)),

@@ -74,19 +74,20 @@ class Applications:
         self._write("INSERT OR REPLACE INTO applications VALUES (?, ?, ?)", row)
         self._known[team] = Application(team, at_ms, entry)
 
-    def drop(self, team: str) -> None:
-        """Forget the files of a team; nothing happens if none wait.
+    def drop(self, *teams: str) -> None:
+        """Forget the files of teams; nothing happens to a team whose files do not wait.
 
         Raises:
             UserError: if the database can't be written.
         """
-        self._write("DELETE FROM applications WHERE team = ?", (team,))
-        self._known.pop(team, None)
+        self._write("DELETE FROM applications WHERE team = ?", *((team,) for team in teams))
+        for team in teams:
+            self._known.pop(team, None)
 
-    def _write(self, statement: str, values: tuple[object, ...]) -> None:
+    def _write(self, statement: str, *rows: tuple[object, ...]) -> None:
         try:
             with self._db:
-                self._db.execute(statement, values)
+                self._db.executemany(statement, rows)
         except sqlite3.Error as error:
             raise self._problem(error) from None
 

@@ -39,6 +39,8 @@ class ContestFolder:
         """The entries that wait for the organiser."""
         self.tokens = folder / f"{file.stem}.tokens.json"
         """The tokens of the teams; secret."""
+        self.event_code = folder / f"{file.stem}.code.txt"
+        """The event code, if it was changed."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"
         """Names of the courts that have left their machine, and are run here since; one a line."""
         self._lock = folder / f"{file.stem}.lock"

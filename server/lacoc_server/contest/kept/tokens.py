@@ -65,15 +65,15 @@ class TeamTokens:
             # Digests are compared, so the time that this takes tells nothing of a token.
             return next((team for team, one in self._tokens.items() if _digest(one) == shown), None)
 
-    def forget(self, team: str) -> None:
-        """Forget a team's token: its link opens nothing any more.
+    def forget(self, *teams: str) -> None:
+        """Forget the tokens of teams: their links open nothing any more.
 
         Raises:
             UserError: if the file can't be read or written.
         """
         with self._lock:
             self._refresh()
-            self._write({name: one for name, one in self._tokens.items() if name != team})
+            self._write({name: one for name, one in self._tokens.items() if name not in teams})
 
     def _refresh(self, again: bool = False) -> None:
         """Read the file if it has changed since it was last read; with `again`, in any case."""

@@ -13,6 +13,7 @@ from lacoc_server.contest.desk.book import Book, milliseconds
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
@@ -122,16 +123,17 @@ def play_live(
         office = Office(store, where.entries, tokens.of, links, told, rest_ms, draw_from_ms)
         applications = stack.enter_context(Applications(where.applications))
         own_store = stack.enter_context(FactStore(where.facts))
-        key, code = organiser_key(where.contest), event_code(where.contest)
-        book = Book(where, own_store, applications, tokens)
-        desk = Desk(book, key, code, lambda: office.known)
+        key = organiser_key(where.contest)
+        code = EventCode(where.event_code, event_code(where.contest))
+        book = Book(where, own_store, applications, tokens, code)
+        desk = Desk(book, key, lambda: office.known)
         service = stack.enter_context(DeskService(desk))
         bots = stack.enter_context(venue.Bots(where, tokens))
         writer = SheetWriter(where, progress)
         writer(office.contest)
         ticker = Ticker(office.facts)
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
-        opened(Opened(url, addresses, f"{url}/office#organiser={key}", code))
+        opened(Opened(url, addresses, f"{url}/office#organiser={key}", code.value))
         over_s = math.inf  # when the contest was over, as far as is known
         is_late = speed <= 1 and len(addresses) > 1
         farewell_s = _LATE_S if is_late else _FAREWELL_S

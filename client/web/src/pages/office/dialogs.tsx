@@ -91,22 +91,49 @@ export function ApproveDialog({ organiser, team }: Props) {
   );
 }
 
-/** The organiser turns an application or late files down; the dialog says what becomes of them. */
-export function DeclineDialog({ organiser, team }: Props) {
+/** The organiser turns applications or late files down; the dialog says what becomes of them. */
+export function DeclineDialog({ organiser, teams }: { organiser: Organiser; teams: string[] }) {
+  const [team = ""] = teams;
+  const many = teams.length > 1;
   const row = organiser.view.value?.teams.find((one) => one.team === team);
   if (!row) return null;
+  const count = teams.length;
   return (
-    <Dialog title={t("office.declineOf", { team })} onClose={() => organiser.close()}>
+    <Dialog
+      title={many ? t("office.declineAll", { count }) : t("office.declineOf", { team })}
+      onClose={() => organiser.close()}
+    >
       <div class="asks">
         <p>{t(row.state === "late" ? "office.decline.late" : "office.decline.text")}</p>
+        {many && <p class="muted">{teams.join(t("office.comma"))}</p>}
         <button
           class="button danger"
           type="button"
           onClick={async () => {
-            if (await organiser.do({ do: "decline", team })) organiser.close();
+            if (await organiser.do({ do: "decline", teams })) organiser.close();
           }}
         >
           {t("office.decline")}
+        </button>
+      </div>
+    </Dialog>
+  );
+}
+
+/** The organiser makes another event code, because strangers have the old one. */
+export function CodeDialog({ organiser }: { organiser: Organiser }) {
+  return (
+    <Dialog title={t("office.newCode")} onClose={() => organiser.close()}>
+      <div class="asks">
+        <p>{t("office.newCode.text")}</p>
+        <button
+          class="button danger"
+          type="button"
+          onClick={async () => {
+            if (await organiser.do({ do: "new_code" })) organiser.close();
+          }}
+        >
+          {t("office.newCode")}
         </button>
       </div>
     </Dialog>

@@ -48,6 +48,17 @@ export function Entries({ organiser, view, waiting = false }: Props) {
             {t("office.approveAll", { count: fresh.length })}
           </button>
         )}
+        {fresh.length > 1 && (
+          <button
+            class="button quiet"
+            type="button"
+            onClick={() => {
+              organiser.over.value = { is: "decline", teams: fresh.map(({ team }) => team) };
+            }}
+          >
+            {t("office.declineAll", { count: fresh.length })}
+          </button>
+        )}
       </div>
       {!view.teams.length && <p class="muted">{t("office.noTeams")}</p>}
       <ul>
@@ -105,7 +116,7 @@ function Row({ organiser, row, open }: RowProps) {
             type="button"
             aria-label={t("office.declineOf", { team })}
             onClick={() => {
-              organiser.over.value = { is: "decline", team };
+              organiser.over.value = { is: "decline", teams: [team] };
             }}
           >
             {t("office.decline")}

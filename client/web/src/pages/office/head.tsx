@@ -41,6 +41,17 @@ export function Head({ organiser, view, onSettings }: Props) {
           <div>
             <dt>{t("office.code")}</dt>
             <dd class="code">{code}</dd>
+            <dd>
+              <button
+                class="button small quiet"
+                type="button"
+                onClick={() => {
+                  organiser.over.value = { is: "code" };
+                }}
+              >
+                {t("office.newCode")}
+              </button>
+            </dd>
           </div>
         </dl>
       )}

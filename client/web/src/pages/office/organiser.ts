@@ -28,7 +28,8 @@ export type Over =
   | { is: "team"; team: string }
   | { is: "leave"; team: string }
   | { is: "approve"; team: string }
-  | { is: "decline"; team: string }
+  | { is: "decline"; teams: string[] }
+  | { is: "code" }
   | { is: "move"; pairing: string }
   | { is: "rule"; pairing: string }
   | { is: "close" }
@@ -83,7 +84,8 @@ export class Organiser {
   async do(wish: Wish): Promise<boolean> {
     const answer = await this.act<Said>(wish);
     const lines = answer?.said ?? [];
-    if (lines.length > MANY) toast(t("office.done", { count: lines.length }), "yes");
+    const many = wish.do === "decline" ? "office.doneDeclined" : "office.done";
+    if (lines.length > MANY) toast(t(many, { count: lines.length }), "yes");
     else for (const line of lines) toast(said(line), "yes");
     return answer !== null;
   }

@@ -1,0 +1,44 @@
+"""The code with which teams apply. The organiser can change it."""
+
+from pathlib import Path
+
+from lacoc_server.contest.publish import write
+from lacoc_shared.contest.codes import new_code
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+class EventCode:
+    """The event code; it is on the disk once it was changed.
+
+    Args:
+        path: the file of a changed code.
+        first: the code until it is changed.
+
+    Raises:
+        UserError: if the file can't be read.
+    """
+
+    def __init__(self, path: Path, first: str) -> None:
+        self._path = path
+        try:
+            self.value = path.read_text().strip()
+            """The code."""
+        except FileNotFoundError:
+            self.value = first
+        except (OSError, UnicodeDecodeError) as error:
+            raise UserError(say("command.cannot-read", path=str(path), why=str(error))) from None
+
+    def change(self) -> None:
+        """Make another code.
+
+        Raises:
+            UserError: if it can't be written.
+        """
+        code = new_code()
+        try:
+            write(self._path, code.encode())
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise UserError(say("command.cannot-write", path=str(self._path), why=why)) from None
+        self.value = code
