@@ -1,11 +1,11 @@
-"""Looks for robots that pass the weigh-in and then leave their start place while they stand.
+"""Looks for robots that pass the weigh-in and then leave their start place, or score, standing.
 
     python -m benchmarks.leaps
 
 The search first makes random robots within the contest's limits. Then it changes those that moved
 farthest, step by step, and keeps each change that makes a robot move farther. Every robot is
-weighed in as by a court. A robot that passes stands on both start places of a match, for longer
-than in its stand test.
+weighed in as by a court. A robot that passes stands on both start places of a match of each game,
+for longer than in its stand test; nobody presses a key. Many robots have arms beside their legs.
 """
 
 import argparse
@@ -26,14 +26,21 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_robots.stand_test import stand
 from lacoc_robots.standing import FARTHEST_M, mistakes_of
-from lacoc_server.match.drive import Drive
-from lacoc_server.match.entry import Entry
+from lacoc_server.match.entry import weigh_in
+from lacoc_server.match.match import Match
+from lacoc_server.simulate.headless import to_play
 from lacoc_server.world.world import World
-from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.tables import Level, LocomotionTable, Posture
+from lacoc_shared.gait.text import write_gait
+from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused
-from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import BEATS_PER_S, Phase
 
-STAND_TICKS = 4 * BEATS_PER_S
+PLAY_BEATS = 3 * BEATS_PER_S
+"""Beats of play; before it, robots stand for a second."""
 LINES = 20
 """The number of robots that the search changes step by step."""
 
@@ -45,6 +52,7 @@ _BOUNDS: dict[str, tuple[float, float]] = {
     "root_m": (0.005, 0.05),
     "first_m": (0.02, 0.12),
     "second_m": (0.02, 0.12),
+    "arm_m": (0.02, 0.12),
     "radius_m": (0.005, 0.03),
     "root_kg": (0.005, 0.1),
     "first_kg": (0.005, 0.1),
@@ -67,6 +75,8 @@ class Candidate(NamedTuple):
     """The numbers of a robot, before its file is made and read."""
 
     legs: int
+    arms: bool
+    """Whether the legs in the middle of each side are arms, with links of their own."""
     numbers: dict[str, float]
     start_deg: tuple[float, ...]
     stand_deg: tuple[float, ...]
@@ -83,6 +93,8 @@ class Found(NamedTuple):
     """How far it moved in its stand test; 0.0 if its file has mistakes."""
     leap_m: float | None
     """How far it moved in a match; None if it did not pass the weigh-in."""
+    scored: bool = False
+    """Whether a robot scored in a match."""
 
 
 def at_random(seed: int) -> Candidate:
@@ -103,7 +115,7 @@ def at_random(seed: int) -> Candidate:
         stands = tuple(_within(angle + dice.uniform(-near, near)) for angle in start)
     else:
         stands = _posture(dice, legs, dice.choice((15.0, 45.0, 90.0)))
-    return Candidate(legs, numbers, start, stands)
+    return Candidate(legs, dice.random() < 0.5, numbers, start, stands)
 
 
 def changed(candidate: Candidate, seed: int) -> Candidate:
@@ -129,43 +141,55 @@ def changed(candidate: Candidate, seed: int) -> Candidate:
 
 def judge(candidate: Candidate) -> Found:
     """Weigh a robot in, and if it passes, let it stand in a match."""
-    robot = _robot(candidate)
-    if robot is None:
+    made = _robot(candidate)
+    if made is None:
         return Found(candidate, False, 0.0, None)
+    robot, text = made
     posture = tuple(math.radians(angle) for angle in candidate.stand_deg)
-    gait = Gait(locomotion=LocomotionTable(((posture,),)))
+    gait = write_gait(LocomotionTable(((posture,),)), leg_labels(candidate.legs))
+    files = (SentFile("robot.toml", text.encode()), None, SentFile("LocoTra-data.txt", gait))
     stood = stand(robot, posture)
-    if mistakes_of(stood, "robot.toml", (Level.LOCOMOTION,)):
+    try:
+        if mistakes_of(stood, "robot.toml", (Level.LOCOMOTION,)):
+            raise FileRefused([])
+        weigh_in(*files)
+    except FileRefused:
         return Found(candidate, True, stood.moved_m, None)
-    return Found(candidate, True, stood.moved_m, leap_m(Entry(robot, gait)))
-
-
-def leap_m(entry: Entry) -> float:
-    """Let a robot stand on both start places of Flag-Strike; return how far it moves [m]."""
-    arena = arenas.load("flag-strike")
-    world = World(arena, (entry, entry))
-    robot = entry.robot
-    drive = Drive(
-        entry.gait,
-        robot.start_posture,
-        robot.ang_min_rad_s,
-        robot.advance,
-        robot.hold_us,
-        repeat=True,
+    stands = {game: standing(game, files) for game in ("flag-strike", "othello")}
+    return Found(
+        candidate,
+        True,
+        stood.moved_m,
+        stands["flag-strike"][0],  # in Othello a wall is so near that it pushes large robots away
+        any(scored for _, scored in stands.values()),
     )
-    state = drive.begin(Level.LOCOMOTION)
-    starts = [places[0] for places in arena.game.starts]
-    numbers = 7 + robot.joints
-    farthest_m = 0.0
-    for _ in range(STAND_TICKS):
-        state = drive.tick(state)
-        if world.step([state.angles, state.angles]) is not None:
-            return math.inf
-        poses = memoryview(world.poses()).cast("f")
-        for seat, start in enumerate(starts):
-            at = poses[seat * numbers : seat * numbers + 2].tolist()
-            farthest_m = max(farthest_m, math.dist(start[:2], at))
-    return farthest_m
+
+
+def standing(game: str, files: tuple[SentFile, None, SentFile]) -> tuple[float, bool]:
+    """Let two robots stand in a match; return how far one moves [m], and whether one scores."""
+    arena = arenas.load(game, {"match": {"countdown_s": 0.02}})
+    setup = Setup(
+        match_id="stand", court="", match=1, arena=game, settings=arena.settings, limits={}
+    )
+    match = Match(setup, World)
+    joins = [JoinSeat(seat, f"Team {seat}", *files, token_hash="") for seat in (0, 1)]
+    farthest_m, before = 0.0, None
+    for _ in to_play(match, joins, match.beat):
+        farthest_m = max(farthest_m, _gone_from_start_m(match))
+    for _ in range(PLAY_BEATS):
+        frame = match.beat().frame
+        scores = (frame.markers, *(seat.score for seat in frame.seats))
+        before = before or scores
+        if scores != before:
+            return farthest_m, True
+        farthest_m = max(farthest_m, _gone_from_start_m(match))
+    return (farthest_m if match.phase is Phase.PLAYING else math.inf), False
+
+
+def _gone_from_start_m(match: Match) -> float:
+    if not match.staging.poses:
+        return 0.0
+    return max(match.staging.from_start_m(seat) for seat in (0, 1))
 
 
 def search(robots: int, steps: int, jobs: int, seed: int = 0) -> Iterator[Found]:
@@ -213,10 +237,11 @@ def main() -> None:
         f"{len(found)} robots in {time.monotonic() - began_s:.0f} s, {len(let_in)} let in. "
         f"Farthest while it stood: {_gone_m(farthest):.4f} m in a match, "
         f"{farthest.tried_m:.4f} m in its stand test; of those not let in "
-        f"{max(one.tried_m for one in found):.3f} m."
+        f"{max(one.tried_m for one in found):.3f} m. {sum(one.scored for one in found)} scored."
     )
-    if _gone_m(farthest) > FARTHEST_M:
-        console.print(msgspec.json.encode(farthest).decode(), soft_wrap=True)
+    bad = [one for one in let_in if one.scored or _gone_m(one) > FARTHEST_M]
+    if bad:
+        console.print(msgspec.json.encode(bad[0]).decode(), soft_wrap=True)
         raise SystemExit(1)
 
 
@@ -232,12 +257,13 @@ def _gone_m(found: Found) -> float:
     return -1.0 if found.leap_m is None else found.leap_m
 
 
-def _robot(candidate: Candidate) -> RobotSpec | None:
-    """Return a candidate as a robot, `drop_m` above the floor; None if it breaks a limit."""
+def _robot(candidate: Candidate) -> tuple[RobotSpec, str] | None:
+    """Return a candidate as a robot and its file, `drop_m` high; None if it breaks a limit."""
     try:
         robot = read_robot(_file(candidate, 0.5), "robot.toml", _ANY_HEIGHT)
         lowest_m = robot.bounds(robot.start_posture)[0].z + robot.size_m[2] / 2
-        return read_robot(_file(candidate, candidate.numbers["drop_m"] - lowest_m), "robot.toml")
+        text = _file(candidate, candidate.numbers["drop_m"] - lowest_m)
+        return read_robot(text, "robot.toml"), text
     except FileRefused:
         return None
 
@@ -275,6 +301,8 @@ def _file(candidate: Candidate, height_m: float) -> str:
             f"position_m = [{side * n['width_m'] / 2}, {y_m}, {-n['thickness_m'] / 4}]",
             f"outward_deg = {0 if side > 0 else 180}",
         ]
+        if candidate.arms and 0 < row < half - 1:
+            lines.append(f"lengths_m = [{n['root_m']}, {n['arm_m']}, {n['arm_m']}]")
     return "\n".join(lines)
 
 

@@ -17,11 +17,11 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     legs_max: float = 8
     """The number of legs must also be even."""
     width_m: float = 0.45
-    """Largest extent along x with every angle 0."""
+    """Largest extent along x: with every angle 0, in the start posture, and with key 0."""
     length_m: float = 0.45
-    """Largest extent along y with every angle 0."""
+    """Largest extent along y, as `width_m`."""
     height_m: float = 0.25
-    """Largest extent along z with every angle 0."""
+    """Largest extent along z, as `width_m`."""
     mass_min_kg: float = 0.3
     mass_max_kg: float = 3.0
     part_mass_min_kg: float = 0.005

@@ -5,6 +5,7 @@ check of the whole robot finds a mistake only if all numbers that it needs are k
 """
 
 import math
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, LEVEL_NAMES, Posture, leg_and_level
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import BEAT_S
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 
@@ -246,17 +247,36 @@ def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
         )
 
 
-def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
-    """Check the robot's size with every angle 0, and its height above the floor at the start."""
-    low, high = _bounds(robot, (0.0,) * robot.joints)
+def too_large(
+    bounds: tuple[Point, Point], posture: Phrase, limits: Limits
+) -> Iterator[tuple[Phrase, Phrase]]:
+    """Yield for each size of a robot that is too large what was found and expected (rules 1).
+
+    Args:
+        bounds: lowest and highest x, y and z of the robot in a posture [m]; NaN: unknown.
+        posture: what the posture is called (`posture.*`).
+        limits: the contest's limits.
+    """
+    low, high = bounds
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     for extent_m, most_m, found in (
-        (width_m, limits.width_m, say("robot.wide", metres=width_m)),
-        (length_m, limits.length_m, say("robot.long", metres=length_m)),
-        (height_m, limits.height_m, say("robot.high", metres=height_m)),
+        (width_m, limits.width_m, say("robot.wide", metres=width_m, posture=posture)),
+        (length_m, limits.length_m, say("robot.long", metres=length_m, posture=posture)),
+        (height_m, limits.height_m, say("robot.high", metres=height_m, posture=posture)),
     ):
         if extent_m > most_m + _ROUNDING_M:
-            root.note("", found, say("robot.size", most_m=most_m))
+            yield found, say("robot.size", most_m=most_m)
+
+
+def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
+    """Check the robot's size with every angle 0 and at the start, and its height at the start."""
+    zero = (0.0,) * robot.joints
+    for posture, named in (
+        (zero, say("posture.zero")),
+        (robot.start_posture, say("posture.start")),
+    ):
+        for found, expected in too_large(_bounds(robot, posture), named, limits):
+            root.note("", found, expected)
     lowest = _bounds(robot, robot.start_posture)[0].z + robot.start_z_m
     if lowest < -_ROUNDING_M or lowest > limits.drop_m + _ROUNDING_M:
         least_m = robot.start_height_m - lowest

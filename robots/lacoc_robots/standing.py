@@ -8,6 +8,9 @@ from collections.abc import Collection, Sequence
 
 import msgspec
 
+from lacoc_robots.limits import Limits
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import too_large
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase, say
@@ -62,6 +65,30 @@ def standing_postures(
     for level in sorted(levels):
         postures.setdefault(standing_posture(gait, level, start), []).append(level)
     return postures
+
+
+def too_large_standing(
+    robot: RobotSpec, gait: Gait, levels: Collection[Level], limits: Limits, file: str
+) -> list[Mistake]:
+    """List where a robot that stands with key 0 is larger than a robot may be (rules 1).
+
+    Else it could reach a marker while it stands.
+    """
+    return [
+        Mistake(
+            file=file,
+            field="start.posture_deg",
+            found=found,
+            expected=expected,
+        )
+        for posture, where in standing_postures(gait, levels, robot.start_posture).items()
+        if posture != robot.start_posture  # the robot file is checked for that one
+        for found, expected in too_large(
+            robot.bounds(posture),
+            say("posture.key-0", levels=["AB"[level] for level in where]),
+            limits,
+        )
+    ]
 
 
 def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistake]:

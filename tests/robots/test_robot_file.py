@@ -174,15 +174,30 @@ def test_footprint_of_the_workshop_robot(hexapod: RobotSpec) -> None:
 
 
 @pytest.mark.parametrize(
-    ("axis", "limit", "extent_m"),
-    [("wide", "width_m", 0.300), ("long", "length_m", 0.122), ("high", "height_m", 0.105)],
+    ("axis", "limit", "zero_m", "start_m"),
+    [
+        ("wide", "width_m", 0.300, 0.329),
+        ("long", "length_m", 0.122, 0.263),
+        ("high", "height_m", 0.105, 0.078),
+    ],
 )
-def test_footprint(axis: str, limit: str, extent_m: float) -> None:
-    """A robot as large as a contest's limit is allowed; if it is 1 mm larger, it is refused."""
+def test_footprint(axis: str, limit: str, zero_m: float, start_m: float) -> None:
+    """A robot as large as a contest's limit is allowed; if it is 1 mm larger, it is refused.
+
+    This holds with every angle 0 and in the start posture.
+    """
     text = HEXAPOD.replace("[0.05, 0.045,", "[0.05, 0.047,")
-    read_robot(text, "mine.toml", Limits(**{limit: extent_m}))
-    (mistake,) = mistakes_of(text, Limits(**{limit: extent_m - 0.001}))
-    assert mistake.found == f"a robot {extent_m:.3f} m {axis} with every angle 0"
+    larger_m = max(zero_m, start_m) + 0.001
+    read_robot(text, "mine.toml", Limits(**{limit: larger_m}))
+    found = [
+        one.found for one in mistakes_of(text, Limits(**{limit: min(zero_m, start_m) - 0.001}))
+    ]
+    assert found == [
+        f"a robot {zero_m:.3f} m {axis} with every angle 0",
+        f"a robot {start_m:.3f} m {axis} in its start posture",
+    ]
+    (alone,) = mistakes_of(text, Limits(**{limit: larger_m - 0.002}))
+    assert alone.found in found
 
 
 def test_a_leg_of_its_own(hexapod: RobotSpec) -> None:

@@ -243,7 +243,13 @@ class Stage:
             self.beat()
         if self.scripted:
             self.physics.begin()
+            self.let_move()
         return self
+
+    def let_move(self) -> None:
+        """Let what a script does to robots count, as if keys had moved them (rules 4)."""
+        for seat in self.match.seats:
+            seat.idle = False
 
     def to(self, phase: Phase) -> "Stage":
         """Lead a new match to a phase; PLAYING and all later phases come after 3 ticks of play."""

@@ -226,6 +226,7 @@ def test_the_log_of_a_match() -> None:
         assert {event.beat for event in events} <= {stage.frame.beat}
         if stage.phase is P.COUNTDOWN and not stage.match.ticks:
             stage.physics.begin()
+            stage.let_move()
     assert [event.number for event in stage.events] == list(range(1, len(stage.events) + 1))
     assert {event.match for event in stage.events} == {1}
     flip = next(event for event in stage.events if event.kind == "flip")

@@ -63,6 +63,57 @@ def take_back(stage: Stage, number: int, dry_run: bool = False) -> DecisionReply
     return reply
 
 
+def idle(stage: Stage, *seats: int) -> Stage:
+    """Return a stage at its first tick of play, in which no key has moved some robots yet."""
+    stage.to_playing()
+    for seat in seats:
+        stage.match.seats[seat].idle = True
+    return stage
+
+
+def test_nobody_scores_before_a_key_has_moved_the_robot() -> None:
+    """Rules 4: a robot that only stands or is pushed flips, takes and strikes nothing.
+
+    With its first digit all of this counts, and after [x] it needs a digit again.
+    """
+    walks = {10: {LEFT: CORNERS[0]}, 20: {LEFT: AWAY}, 40: {LEFT: CORNERS[1]}, 60: {LEFT: AWAY}}
+    touches = {5: {LEFT: (4,), RIGHT: (9,)}, 45: {LEFT: (4,)}, 70: {LEFT: (6,)}}
+    stage = idle(Stage("flag-strike", QUICK, script=Script(dict(walks), touches)), LEFT)
+    stage.run(30)
+    assert [(e.seat, e.kind) for e in stage.events if e.kind in ("strike", "capture")] == [
+        (RIGHT, "strike")
+    ]
+    stage.beat(key(LEFT, 2))
+    stage.run(20)
+    assert [e.kind for e in stage.events if e.seat == LEFT and e.data.get("marker")] == [
+        "capture",
+        "strike",
+    ]
+    before = stage.scores
+    stage.beat(key(LEFT, X, seq=2))
+    stage.run(30)
+    assert stage.match.ticks > 70
+    assert stage.scores == before
+
+
+def test_a_take_back_lets_no_robot_score_that_no_key_had_moved() -> None:
+    """Rules 4: judged again, an idle robot's steps count as little as they did before."""
+    walks = {5: {RIGHT: "c3r2"}, 10: {LEFT: "c2r2"}, 15: {LEFT: "c3r2"}, 20: {LEFT: "c4r2"}}
+    poses = {tick: {s: cell(c) for s, c in step.items()} for tick, step in walks.items()}
+    stage = idle(Stage("othello", QUICK, script=Script(poses=poses)), LEFT)
+    stage.run(12)
+    stage.decide(d.Halt())
+    decided = stage.decide(d.Set("c3r3", "left")).event
+    stage.decide(d.Resume())
+    stage.until(P.PLAYING)
+    stage.run(20)
+    assert stage.scores == (19, 17)
+    stage.decide(d.Halt())
+    reply = take_back(stage, decided)
+    assert reply.changes == ()
+    assert stage.scores == (18, 18)
+
+
 # A chain of flips: the flip in tick 30 needs the one in tick 20.
 CHAIN = {10: {LEFT: "c2r2"}, 20: {LEFT: "c3r2"}, 30: {LEFT: "c4r2"}, 40: {RIGHT: "c5r2"}}
 

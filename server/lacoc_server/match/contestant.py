@@ -148,6 +148,7 @@ def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
         seat.locked_until = match.ticks + round(match.rules.restart_freeze_s * BEATS_PER_S)
         match.tell("restart", say("event.restarted", team=seat.team), seat=seat.index)
     elif seat.drive and seat.state:
+        seat.idle = False
         seat.state = seat.drive.press(seat.state, Level(item.level), item.key)
     return Done()
 

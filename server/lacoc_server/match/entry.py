@@ -7,6 +7,7 @@ from functools import lru_cache
 import msgspec
 
 from lacoc_robots.robot_file import Limits, RobotSpec, read_robot
+from lacoc_robots.standing import too_large_standing
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.inputs import JoinSeat
@@ -93,6 +94,8 @@ def _weigh_in(
         expected = say("robot.any-of", options=[_TABLES[level][1] for level in sorted(levels)])
         found = say("gait.none-for-arena")
         mistakes.append(Mistake(file="gait files", found=found, expected=expected))
+    if spec is not None and not mistakes:
+        mistakes += too_large_standing(spec, gait, levels, limits, robot.name)
     if spec is None or mistakes:
         raise FileRefused(mistakes)
     return Entry(spec, gait, tuple(notes))

@@ -238,7 +238,8 @@ class Match(MatchState):
     def _judge(self) -> None:
         self.ticks += 1
         observation, self._touch = self.staging.observe()
-        for event in self.history.observe(observation, self.next_number):
+        idle = tuple([seat.index for seat in self.seats if seat.idle])
+        for event in self.history.observe(observation, self.next_number, idle):
             self.tell_judged(event)
         if self.history.over:
             self.finish(self.history.over)

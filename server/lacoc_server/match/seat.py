@@ -35,6 +35,10 @@ class Seat:
     """True if the contestant left after READY and did not come back: then the seat is free in the
     next match.
     """
+    idle: bool = True
+    """True until a key has moved the robot from the start place where it was put; meanwhile nothing
+    that happens to it scores (rules 4).
+    """
     drive: Drive | None = None
     """The drive; None before READY."""
     state: DriveState | None = None
@@ -61,6 +65,7 @@ class Seat:
         if self.entry is None:
             return
         self.strays = 0
+        self.idle = True
         robot = self.entry.robot
         self.drive = Drive(
             self.entry.gait,
@@ -79,7 +84,7 @@ class Seat:
 
     def restart(self) -> None:
         """Mark the robot to be put back at a start place and to stand there (rules 3)."""
-        self.restarting = True
+        self.restarting = self.idle = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)
 

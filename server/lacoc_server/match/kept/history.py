@@ -8,7 +8,7 @@ A step is a judged tick, or a referee's change of a marker. The numbers of an ob
 packed; a step has a note only if there is more to keep. A match of three minutes takes a megabyte.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from struct import Struct
 from typing import Any
@@ -49,6 +49,8 @@ class Note(msgspec.Struct, frozen=True):
     """Numbers of those events in the log; for a change of a marker, the number of its decision."""
     struck: frozenset[Claim] = frozenset()
     """Claims of events that were taken back; the rules ignore them."""
+    idle: tuple[int, ...] = ()
+    """Seats whose claims count for nothing, because no key has moved their robots yet."""
 
 
 _PLAIN = Note()
@@ -106,16 +108,24 @@ class History:
         self._seen = bytearray()
         self._notes: dict[int, Note] = {}
 
-    def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
-        """Judge one tick and return its events; they get the numbers from `next_number` on."""
-        self.state, events = self._game.step(self.state, observation, BEAT_S)
+    def observe(
+        self, observation: Observation, next_number: int, idle: tuple[int, ...] = ()
+    ) -> list[GameEvent]:
+        """Judge one tick and return its events.
+
+        Args:
+            observation: what the rules see.
+            next_number: number of the first event; the others follow.
+            idle: seats whose claims count for nothing.
+        """
+        self.state, events = self._step(self.state, observation, frozenset(), idle)
         if self.state is not self._judged:
             self._judged, self.over = self.state, self._game.over(self.state)
         if events and self._keeps:
             numbers = tuple(range(next_number, next_number + len(events)))
-            self._keep(_note(observation, events, numbers), numbers)
+            self._keep(_note(observation, events, numbers, idle), numbers)
         elif self._step_of:
-            self._keep(_note(observation), ())
+            self._keep(_note(observation, idle=idle), ())
         else:
             self._forget()
             return list(events)
@@ -177,7 +187,7 @@ class History:
                 continue
             events: tuple[GameEvent, ...] = ()
             if not over:
-                state, events = self._game.step(state, observation, BEAT_S, note.struck)
+                state, events = self._step(state, observation, note.struck, note.idle)
                 over = self._game.over(state)
             if events or note is not _PLAIN:
                 before = dict(zip(old.events, old.numbers, strict=True))
@@ -237,6 +247,20 @@ class History:
         if not self._keeps:
             self.keep_nothing()
 
+    def _step(
+        self,
+        state: Any,
+        observation: Observation,
+        struck: frozenset[Claim],
+        idle: tuple[int, ...],
+    ) -> tuple[Any, tuple[GameEvent, ...]]:
+        """Judge one tick without the claims that are struck out, and those of idle seats."""
+        after, events = self._game.step(state, observation, BEAT_S, struck)
+        while idle and (more := _claims(events, idle) - struck):
+            struck |= more
+            after, events = self._game.step(state, observation, BEAT_S, struck)
+        return after, events
+
     def _keep(self, note: Note, numbers: tuple[int, ...]) -> None:
         """Count a new step and keep its note; the events of `numbers` can be taken back."""
         for number in numbers:
@@ -277,18 +301,26 @@ class History:
         }
 
 
+def _claims(events: Iterable[GameEvent], seats: Collection[int]) -> frozenset[Claim]:
+    return frozenset((event.seat, event.marker) for event in events if event.seat in seats)
+
+
 def _note(
-    observation: Observation, events: tuple[GameEvent, ...] = (), numbers: tuple[int, ...] = ()
+    observation: Observation,
+    events: tuple[GameEvent, ...] = (),
+    numbers: tuple[int, ...] = (),
+    idle: tuple[int, ...] = (),
 ) -> Note:
     """Return the note of an observation; `_PLAIN` if the observation is only where robots are.
 
-    It is more than that if a robot was put at a place or touched a marker, or if events came of it.
+    It is more than that if a robot was put at a place, touched a marker or is idle, or if events
+    came of it.
     """
     placed = touched = False
     for view in observation:
         placed = placed or view.placed is not None
         touched = touched or bool(view.touched)
-    if not (placed or touched or events):
+    if not (placed or touched or events or idle):
         return _PLAIN
     return Note(
         None,
@@ -296,6 +328,7 @@ def _note(
         tuple(view.touched for view in observation) if touched else (),
         events,
         numbers,
+        idle=idle,
     )
 
 

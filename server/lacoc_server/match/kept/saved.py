@@ -17,7 +17,7 @@ from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.seat import No, Phase
 from lacoc_shared.words import Phrase
 
-_FORMAT = 1
+_FORMAT = 2
 """Version of the layout; bytes of another one are refused."""
 
 
@@ -29,6 +29,7 @@ class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
     ready: bool
     silent: bool
     left: bool
+    idle: bool
     state: DriveState | None
     locked_until: int
     frozen_until: int
@@ -114,7 +115,7 @@ def load(match: MatchState, data: bytes) -> None:
             match.staging.build(match.seats)
             match.begin_drives()
             for seat, was in zip(match.seats, saved.seats, strict=True):
-                seat.state, seat.strays = was.state, was.strays
+                seat.state, seat.strays, seat.idle = was.state, was.strays, was.idle
         match.staging.load(saved.places, saved.physics)
     match.history.load(saved.history)
     for name in _PLAIN_FIELDS:
