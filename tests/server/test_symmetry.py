@@ -179,15 +179,15 @@ def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
     half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
     one = Stage(arena, half_minute, script=script)
     other = Stage(arena, half_minute, script=turned_script(one, script))
-    pressed: Keys = {300: (LEFT, X), 800: (RIGHT, X), 1100: (LEFT, X)}
+    pressed: Keys = {300: (LEFT, X), 1100: (RIGHT, X)}
     # Until a digit comes, a robot that was put back scores nothing.
-    pressed |= {560: (LEFT, FORWARD), 1060: (RIGHT, FORWARD), 1360: (LEFT, FORWARD)}
+    pressed |= {560: (LEFT, FORWARD), 1360: (RIGHT, FORWARD)}
     mirrored = swapped(pressed)
     for stage, keys in ((one, pressed), (other, mirrored)):
         stage.to_playing()
         while stage.phase is not Phase.FINISHED:
             stage.beat(*inputs(keys, stage.match.ticks + 1))
-    assert len(claims(one)) > 3
+    assert len(claims(one)) > 1
     assert claims(other) == [(1 - seat, *rest) for seat, *rest in _turned_claims(one)]
     assert other.scores == one.scores[::-1]
     sides = {"left": "right", "right": "left", "draw": "draw"}
