@@ -37,7 +37,7 @@ _SECONDS = 20.0
 """Usual length of an episode [s]."""
 _POSTURES = 4
 """Usual number of postures of a table, as in the sample gaits."""
-_FORWARD_WEIGHT, _CTRL_WEIGHT, _HEALTHY_REWARD = 10.0, 0.5, 1.0
+_FORWARD_WEIGHT, _CTRL_WEIGHT, _HEALTHY_REWARD = 20.0, 0.5, 1.0
 """Usual weights of the reward: the sample gait walks 0.06 m/s."""
 _HEALTHY_UP = 0.5
 """A robot that is less upright than this is falling: its body is tilted by 60 degrees."""
