@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.game import Place
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate.environments import (
@@ -134,7 +136,7 @@ def test_a_copy_goes_on_in_another_process(tmp_path: Path) -> None:
 @pytest.mark.parametrize("chooses", ["random.randrange(1, 4)", "len(SEEN) % 3 + 1"])
 def test_a_bot_that_plays_otherwise_is_named(tmp_path: Path, chooses: str) -> None:
     """A bot whose keys depend on more than its frames is no reason for a copy that goes astray."""
-    bot = tmp_path / "whim.py"
+    bot = tmp_path / "bot.py"
     bot.write_text(
         "import random\nfrom lacoc_arenas.bot import Key\nSEEN = []\n"
         "def bot(sheet, seat):\n"
@@ -150,9 +152,9 @@ def test_a_bot_that_plays_otherwise_is_named(tmp_path: Path, chooses: str) -> No
     saved = env.save()
     if "random" in chooses:  # the other bot is read anew by a copy, with an empty list
         for way in COPY.values():
-            with pytest.raises(UserError, match=r"whim\.py saw the same frames"):
+            with pytest.raises(UserError, match=r"bot\.py saw the same frames"):
                 way(env)
-    with pytest.raises(UserError, match=r"whim\.py saw the same frames"):
+    with pytest.raises(UserError, match=r"bot\.py saw the same frames"):
         env.load(saved)
 
 
@@ -200,6 +202,29 @@ def test_a_world_is_copied(kind: Any) -> None:
         world.step([stand])
         assert (world.save(), world.poses()) == (other.save(), other.poses())
         assert world.touched() == other.touched()
+
+
+def test_a_copied_world_feels_the_same_touches() -> None:
+    """The touch test of a copy reads the copy's own robots: at a flag, and when one has gone."""
+    entry = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    arena = arenas.load("flag-strike")
+    world, stand = World(arena, [entry, entry]), entry.robot.start_posture
+    flag = next(index for index, m in enumerate(arena.game.markers) if m.kind == "flag")
+    at = arena.game.markers[flag]
+    world.place(0, Place(at.x_m, at.y_m, 0.0))
+    world.step([stand, stand])
+    assert flag in world.touched()[0]
+    for way in COPY.values():
+        other = way(world)
+        assert other.touched() == world.touched()
+        other.place(0, arena.game.starts[0][0])
+        assert other.touched()[0] == ()
+        assert flag in world.touched()[0]
+        other.load(world.save())
+        for _ in range(5):
+            world.step([stand, stand])
+            other.step([stand, stand])
+            assert other.touched() == world.touched()
 
 
 def test_a_copy_draws_with_a_camera_of_its_own() -> None:
