@@ -137,6 +137,10 @@ class Arena:
         self.match = file.match
         self.seats = file.seat
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Let another process import the folder's code before it reads what is made of it."""
+        return from_settings, (self.name, self.settings, self.folder)
+
     def _make(self, settings: dict[str, Any]) -> AnyGame:
         """Make the game from its settings; see `checked`."""
         game = self._source.call("make", self._part("rules", "make"), settings, refuses=True)

@@ -109,6 +109,9 @@ class CheckedGame:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._game, name)  # what a game has for its own field and bots
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return CheckedGame, (self._source, self._game)
+
     def start(self) -> Any:
         """Return the first state (`Game.start`), checked: msgpack must be able to store it."""
         state = self._state("start", self._source.call("start", self._game.start))

@@ -1,6 +1,9 @@
 """Environments of one agent: against a bot, many in rows, and a robot that learns to walk."""
 
+import re
 import warnings
+from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +22,7 @@ from lacoc_server.simulate.environments import (
     LacocParallelEnv,
     LacocVectorEnv,
     WalkEnv,
+    WalkVectorEnv,
     register,
 )
 from lacoc_shared.messages import SentFile
@@ -233,7 +237,7 @@ def test_rows_of_the_library() -> None:
 
 
 def test_a_robot_walks_by_angles() -> None:
-    """The rewards of a walk add up to its distance; seeds and saves repeat it bit for bit."""
+    """The speeds of a walk add up to its distance; seeds and saves repeat it bit for bit."""
     env = WalkEnv(seconds=2.0, beats=5)
     walks = []
     for _ in range(2):
@@ -245,10 +249,11 @@ def test_a_robot_walks_by_angles() -> None:
         while not over:
             if len(walks[-1]) == 8:
                 saved = env.save()
-            action = chance.uniform(-0.3, 0.3, 18)
-            seen, reward, fell, over, _ = env.step(action)
+            action = chance.uniform(-0.2, 0.2, 18)
+            seen, reward, fell, over, info = env.step(action)
             assert not fell
-            total += reward
+            assert reward == sum(one for name, one in info.items() if name.startswith("reward_"))
+            total += info["speed_m_s"] * 0.1
             walks[-1].append(seen.tobytes())
         assert total == pytest.approx(seen[0], abs=1e-6)
         assert len(walks[-1]) == 21
@@ -256,8 +261,8 @@ def test_a_robot_walks_by_angles() -> None:
     env.load(saved)
     chance = np.random.default_rng(4)
     for _ in range(7):
-        chance.uniform(-0.3, 0.3, 18)
-    again = [env.step(chance.uniform(-0.3, 0.3, 18))[0].tobytes() for _ in range(13)]
+        chance.uniform(-0.2, 0.2, 18)
+    again = [env.step(chance.uniform(-0.2, 0.2, 18))[0].tobytes() for _ in range(13)]
     assert again == walks[0][8:]
     with pytest.raises(UserError, match="reset"):
         env.step(np.zeros(18))
@@ -268,6 +273,108 @@ def test_a_robot_walks_by_angles() -> None:
     one = env.step(np.full(18, 3.0))[0]
     env.reset(seed=1)
     assert env.step(np.ones(18))[0].tobytes() == one.tobytes(), "numbers beyond 1 count as 1"
+
+
+def walked(act: Callable[[int], Any], **arguments: Any) -> tuple[dict[str, float], int, bool]:
+    """Walk an episode; return its reward, the parts of it, its steps, and whether it fell."""
+    env = WalkEnv(beats=5, **arguments)
+    env.reset(seed=1)
+    total = dict.fromkeys(
+        ("reward", "reward_forward", "reward_ctrl", "reward_survive", "speed_m_s"), 0.0
+    )
+    for step in count():
+        _, reward, fell, cut, info = env.step(act(step))
+        for name, one in (("reward", reward), *info.items()):
+            total[name] += one
+        if fell or cut:
+            return total, step + 1, fell
+    raise AssertionError("an episode without end")
+
+
+@pytest.mark.slow
+def test_to_walk_pays_and_to_fall_does_not() -> None:
+    """The sample gait gets more than a robot that stands, and far more than one that falls.
+
+    The robot that falls throws itself forward, farther than the other one walks in that time.
+    """
+    robot = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    assert robot.gait.locomotion is not None
+    table = np.degrees(np.array(robot.gait.locomotion.sequences[2])) / 150
+    stand = np.degrees(np.array(robot.robot.start_posture)) / 150
+    throw = np.repeat([[0.96, 0.18, -0.36], [-0.62, 0.35, -0.61], [0.16, 0.2, 0.92]], 2, axis=1)
+    throw = throw[:, [0, 2, 4, 5, 3, 1]].ravel()  # the legs of both sides do the same
+    walks, steps, fell = walked(lambda step: table[step // 3 % 4])
+    assert (steps, fell) == (200, False)
+    stands, steps, fell = walked(lambda step: stand)
+    assert (steps, fell) == (200, False)
+    falls, steps, fell = walked(lambda step: throw)
+    assert fell
+    assert falls["reward_forward"] / steps > walks["reward_forward"] / 200
+    assert 2 * falls["reward"] < stands["reward"] < 0.8 * walks["reward"]
+    assert stands["reward_survive"] == walks["reward_survive"] == 200
+    assert falls["reward_survive"] == steps - 1
+    assert stands["reward_ctrl"] == pytest.approx(0, abs=0.1)
+    assert -5 < walks["reward_ctrl"] < 0
+    on, steps, fell = walked(lambda step: throw, terminate_when_unhealthy=False)
+    assert (steps, fell) == (200, False)
+    assert on["reward"] < stands["reward"]
+    free, *_ = walked(
+        lambda step: throw, forward_reward_weight=0, ctrl_cost_weight=0, healthy_reward=0
+    )
+    assert free["reward"] == 0
+
+
+def test_the_docs_name_each_number_of_a_walk() -> None:
+    """The table in the docs lists each number that is seen, in order."""
+    docs = Path(__file__).parents[2] / "docs" / "environments.md"
+    listed: list[str] = []
+    for first, last, name in re.findall(
+        r"^\| (\d+)(?: to (\d+))? \| `([^`]+)` \|", docs.read_text(encoding="utf-8"), re.MULTILINE
+    ):
+        assert int(first) == len(listed)
+        listed += [name.replace("J", str(j)) for j in range(int(last or first) + 1 - int(first))]
+    made = gymnasium.make("lacoc/Walk-v0")
+    assert made.unwrapped.names == tuple(listed)  # type: ignore[attr-defined]
+    assert made.observation_space.shape == (len(listed),)
+    figures = WalkEnv(actions="table").names
+    assert all(f"`{name}`" in docs.read_text(encoding="utf-8") for name in figures)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"seconds": 1.0, "beats": 5},
+        pytest.param({"actions": "table"}, marks=pytest.mark.long),  # each step is a whole trial
+    ],
+)
+def test_each_row_of_walks_is_a_single_walk(arguments: dict[str, Any]) -> None:
+    """Each row of walks equals a single one bit for bit, over several episodes."""
+    many = gymnasium.make_vec(
+        "lacoc/Walk-v0", num_envs=2, vectorization_mode="vector_entry_point", **arguments
+    )
+    assert isinstance(many, WalkVectorEnv)
+    single = [WalkEnv(**arguments) for _ in range(2)]
+    seen, _ = many.reset(seed=3)
+    for index, env in enumerate(single):
+        assert seen[index].tobytes() == env.reset(seed=3 + index)[0].tobytes()
+    many.action_space.seed(3)
+    over = [False, False]
+    for _ in range(15):
+        actions = many.action_space.sample()
+        seen, rewards, ended, stopped, _ = many.step(actions)
+        for index, env in enumerate(single):
+            if over[index]:
+                expected: tuple[Any, ...] = (env.reset()[0], 0.0, False, False)
+            else:
+                expected = env.step(actions[index])
+            over[index] = expected[2] or expected[3]
+            assert seen[index].tobytes() == expected[0].tobytes()
+            assert (rewards[index], ended[index], stopped[index]) == expected[1:4]
+    with pytest.raises(UserError, match="not an action of angles"):
+        many.step(np.zeros((2, 3)))
+    with pytest.raises(UserError, match='no option "place"'):
+        many.reset(options={"place": 1})
+    many.close()
 
 
 def test_a_table_is_tried_as_in_a_trial() -> None:
@@ -300,6 +407,9 @@ def test_a_table_is_tried_as_in_a_trial() -> None:
         ({"postures": 5}, 'postures has no effect with actions "angles"'),
         ({"actions": "table", "beats": 5}, 'beats has no effect with actions "table"'),
         ({"actions": "table", "seconds": 5}, "seconds has no effect"),
+        ({"actions": "table", "healthy_reward": 2}, "healthy_reward has no effect"),
+        ({"healthy_reward": "1"}, "healthy_reward is '1'"),
+        ({"ctrl_cost_weight": -1.0}, "ctrl_cost_weight is -1.0"),
         ({"robot": "no-such-robot"}, "no-such-robot"),
     ],
 )

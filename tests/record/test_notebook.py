@@ -83,6 +83,20 @@ def test_keys_and_events_are_tables(path: Path) -> None:
         assert len({len(column) for column in columns.values()}) == 1
 
 
+def test_each_shows_as_one_short_line(path: Path) -> None:
+    """What a notebook shows of a match and its parts is a short line, not whole arrays."""
+    match = notebook.read(path)
+
+    assert repr(match.robots[0]).startswith("Robot(seat='left', team='Ants', frames=")
+    assert repr(match.keys) == "Keys(8 keys)"
+    assert repr(match.events) == "Events(4 events)"
+    assert repr(match).endswith(", winner='left')")
+    assert "match_id='" in repr(Record.read(path))
+    for one in (match, match.robots[0], Record.read(path)):
+        assert len(repr(one)) < 150, repr(one)
+        assert "\n" not in repr(one)
+
+
 def test_a_field_without_robots_is_nan(
     tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame
 ) -> None:

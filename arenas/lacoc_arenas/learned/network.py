@@ -49,6 +49,9 @@ class Layer(NamedTuple):
     biases: npt.NDArray[np.float64]
     """(outputs,)."""
 
+    def __repr__(self) -> str:
+        return f"Layer(weights={np.shape(self.weights)}, biases={np.shape(self.biases)})"
+
 
 class _Saved(msgspec.Struct, frozen=True, array_like=True):
     keys: tuple[int, ...]

@@ -47,6 +47,7 @@ class Senses:
     """
 
     def __init__(self, sheet: Sheet) -> None:
+        self._sheet = sheet
         self._seats = len(sheet.seats)
         self._duration_ticks = round(sheet.duration_s * BEATS_PER_S)
         self._markers = len(sheet.markers)
@@ -71,6 +72,9 @@ class Senses:
         self._boards: list[bytes] = []
         self._frame: Frame | None = None
         self._parts: tuple[Any, ...] = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Senses, (self._sheet,)  # what packs numbers can't be copied
 
     def see(self, frame: Frame, seat: int) -> Numbers:
         """Return what a seat sees of a frame: an array of `size` numbers.

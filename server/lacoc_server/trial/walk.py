@@ -41,7 +41,7 @@ class Span(NamedTuple):
         return self.ticks / BEATS_PER_S
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class Sensed:
     """The measurements of one tick: means over its steps where so noted, else of its last step."""
 
@@ -64,7 +64,7 @@ class Sensed:
     """(legs,) height of the lowest point of each shank above the floor."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Walk:
     """The measurements of a trial in ticks of 20 ms; index k of an array is after tick k."""
 

@@ -11,7 +11,7 @@ from lacoc_arenas.game import Place
 from lacoc_server.match.entry import Entry
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class Robot:
     """The indices of one robot in MuJoCo's arrays."""
 

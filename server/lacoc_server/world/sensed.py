@@ -11,7 +11,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.match.entry import Entry
 from lacoc_server.trial.course import Course, practice_field
-from lacoc_server.trial.walk import Floats, Sensed
+from lacoc_server.trial.walk import Sensed
 from lacoc_server.world.world import SUBSTEPS, World
 from lacoc_shared.gait.tables import Gait
 
@@ -47,6 +47,7 @@ class SensedWorld(World):
         self._steps = steps
         self._prefix = f"{arena.seats[0].id}/"
         super().__init__(arena, [entry])
+        self._made_of = (arena, entry, steps)
         model, legs = self.model, self._legs
         shanks = [model.body(f"{self._prefix}leg{leg}_2") for leg in range(legs)]
         self._shanks = [body.id for body in shanks]
@@ -56,7 +57,7 @@ class SensedWorld(World):
         self._radii_m, self._halves_m = sizes[:, 0], np.where(capsule, sizes[:, 1], 0.0)
         self._back_emf = entry.robot.back_emf
         self._root = model.body(f"{self._prefix}body").id
-        self._sensors = np.empty((steps, model.nsensordata))
+        self._sensors = np.full((steps, model.nsensordata), np.nan)
         self._torques = np.empty((steps, model.nu))
         self._speeds = np.empty((steps, model.nu))
 
@@ -65,18 +66,8 @@ class SensedWorld(World):
         """Weight of the robot [N]."""
         return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
-    def pose(self) -> Floats:
-        """Return the body's position [m] and quaternion, and joint angles [rad]: (7 + joints,)."""
-        return self._qpos[self._pose_qpos]
-
-    def velocity(self) -> Floats:
-        """Return the velocity of the body's origin in the world frame [m/s]: (3,)."""
-        first = self.robots[0].root_dof
-        velocity: Floats = self.data.qvel[first : first + 3].copy()
-        return velocity
-
     def sensed(self) -> Sensed:
-        """Return what was measured in the last tick."""
+        """Return what was measured in the last tick; a copy has no loads before its first tick."""
         data, legs = self.data, self._legs
         feet = self._sensors[:, : 6 * legs].reshape(self._steps, legs, 6)
         load_n, at_w_m = np.abs(feet[:, :, 2]), feet[:, :, 3:]

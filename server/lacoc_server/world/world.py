@@ -88,6 +88,8 @@ class World:
         buffer = np.empty(mujoco.mj_sizeModel(self.whole), np.uint8)
         mujoco.mj_saveModel(self.whole, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
+        self._made_of: tuple[Any, ...] = (arena, tuple(entries))
+        """The arguments, for a copy."""
         self.digest = bytes(8)
         self.robots = _robots(self.model, entries, seats)
         pose_qpos = [index for robot in self.robots for index in robot.pose_qpos]
@@ -139,6 +141,19 @@ class World:
         """Return the poses of the robots, in the form of `Frame.poses`."""
         return self._qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
+    def pose(self) -> npt.NDArray[np.float64]:
+        """Return for all robots position [m], quaternion and joint angles [rad], one after another.
+
+        These are the numbers of `poses`, but not rounded.
+        """
+        return self._qpos[self._pose_qpos]
+
+    def velocity(self, seat: int) -> npt.NDArray[np.float64]:
+        """Return the velocity of a robot's origin in the world frame [m/s]: (3,)."""
+        first = self.robots[seat].root_dof
+        velocity: npt.NDArray[np.float64] = self.data.qvel[first : first + 3].copy()
+        return velocity
+
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """Return for each seat the indices of the markers that its robot touches, ascending.
 
@@ -169,6 +184,16 @@ class World:
         self.digest = saved[:8]
         self._state[:] = state
         mujoco.mj_setState(self.model, self.data, self._state, STATE)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Let `copy` and `pickle` compile the world again and load its state.
+
+        A copy field by field would keep views of this world's arrays in MuJoCo.
+        """
+        return type(self), self._made_of, self.save()
+
+    def __setstate__(self, saved: bytes) -> None:
+        self.load(saved)
 
     def apart(self, saved: bytes) -> float:
         """Measure how far this state is from a saved one.

@@ -37,7 +37,7 @@ Flags = NDArray[np.bool_]
 Texts = NDArray[np.str_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class Robot:
     """The robot of a seat in each frame; NaN in frames in which no robots are on the field."""
 
@@ -54,8 +54,12 @@ class Robot:
     """Joint angles by joint id; (frames, joints). If the team changed its robot, the columns are
     those of the robot with the most joints."""
 
+    def __repr__(self) -> str:
+        frames, joints = self.joints_rad.shape
+        return f"Robot(seat={self.seat!r}, team={self.team!r}, {frames=}, {joints=})"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Keys:
     """The keys of all seats that the court gave to the match, also those that the match refused."""
 
@@ -73,8 +77,11 @@ class Keys:
     late_ms: Floats
     """Time between the end of the common delay and the effect."""
 
+    def __repr__(self) -> str:
+        return f"Keys({len(self.beat)} keys)"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Events:
     """What happened."""
 
@@ -89,8 +96,11 @@ class Events:
     text: Texts
     """The sentence, in the language of the process."""
 
+    def __repr__(self) -> str:
+        return f"Events({len(self.beat)} events)"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Match:
     """A match as arrays. Arrays without a note have one entry for each frame."""
 
@@ -123,6 +133,11 @@ class Match:
     """Seat id of the official winner, else of the winner by the rules; "draw", "void"; "": none."""
     cut: str
     """Where the record ends too early, and why; "": it is whole."""
+
+    def __repr__(self) -> str:
+        match_id, arena, winner = self.match_id, self.arena, self.winner
+        frames, teams = len(self.beat), [robot.team for robot in self.robots]
+        return f"Match({match_id=}, {arena=}, {frames=}, {teams=}, {winner=})"
 
 
 def read(path: str | Path | Iterable[str | Path]) -> Match:

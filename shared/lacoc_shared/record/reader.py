@@ -30,7 +30,7 @@ class _Gap(Exception):
         self.said = said
 
 
-@dataclass
+@dataclass(repr=False)
 class Record:
     """Everything that is recorded of a match, by beat."""
 
@@ -63,6 +63,11 @@ class Record:
     lost: bool = False
     """Whether a part is lost: a segment is missing, or a file is damaged or incomplete. Nothing is
     lost if a killed court did not write the end."""
+
+    def __repr__(self) -> str:
+        match_id = self.headers[0].match_id if self.headers else ""
+        segments, frames = len(self.headers), len(self.frames)
+        return f"Record({match_id=}, {segments=}, {frames=}, last_beat={self.last_beat})"
 
     @property
     def header(self) -> Header:

@@ -16,10 +16,18 @@ import gymnasium
 
 from lacoc_server.simulate.environments.parallel import LacocParallelEnv
 from lacoc_server.simulate.environments.single import LacocEnv
-from lacoc_server.simulate.environments.vector import LacocVectorEnv
+from lacoc_server.simulate.environments.vector import LacocVectorEnv, WalkVectorEnv
 from lacoc_server.simulate.environments.walk import WalkEnv
 
-__all__ = ["LacocEnv", "LacocParallelEnv", "LacocVectorEnv", "WalkEnv", "parallel_env", "register"]
+__all__ = [
+    "LacocEnv",
+    "LacocParallelEnv",
+    "LacocVectorEnv",
+    "WalkEnv",
+    "WalkVectorEnv",
+    "parallel_env",
+    "register",
+]
 
 parallel_env = LacocParallelEnv
 """The name under which libraries look for a `ParallelEnv`."""
@@ -36,7 +44,11 @@ def register() -> None:
                 kwargs={"arena": arena},
             )
     if "lacoc/Walk-v0" not in gymnasium.registry:
-        gymnasium.register("lacoc/Walk-v0", entry_point=f"{__name__}.walk:WalkEnv")
+        gymnasium.register(
+            "lacoc/Walk-v0",
+            entry_point=f"{__name__}.walk:WalkEnv",
+            vector_entry_point=f"{__name__}.vector:WalkVectorEnv",
+        )
 
 
 register()

@@ -28,6 +28,9 @@ class Drawn:
         self._camera: Camera | None = None
         self._model: str = ""
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_camera": None}  # a copy draws with a camera of its own
+
     def draw(self, physics: Any, game: AnyGame, board: bytes) -> npt.NDArray[np.uint8] | None:
         """Return a picture; None without a render mode.
 

@@ -4,7 +4,6 @@ With keys it is the match that a court would play with the same inputs, so its r
 as any other. A court takes no angles.
 """
 
-import functools
 from collections.abc import Sequence
 from pathlib import Path
 from struct import Struct
@@ -21,7 +20,7 @@ from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.simulate.headless import closing, to_play
 from lacoc_server.world.world import World
 from lacoc_shared.codec import BadMessage, decode, encode, message_hash
-from lacoc_shared.gait.tables import Posture
+from lacoc_shared.gait.tables import Level, Posture
 from lacoc_shared.inputs import Input, JoinSeat, KeySeat
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
@@ -48,6 +47,8 @@ class _Saved(msgspec.Struct, frozen=True, array_like=True):
     pressed: bytes
     seqs: tuple[int, ...]
     extra: bytes
+    targets: tuple[Posture, ...] = ()
+    """If angles are followed, for each seat those that its robot moves to."""
 
 
 class Begun:
@@ -65,8 +66,14 @@ class Begun:
         self.robots = message_hash(encode([_contents(join) for join in joins]))
         """Hash of the files of all seats."""
         self.angles = angles
-        self.arena_at = functools.cache(lambda place: begun_at(arena, place))
+        self._arenas: dict[int, Arena] = {}
         self._saved: dict[int, bytes] = {}
+
+    def arena_at(self, place: int) -> Arena:
+        """Return the arena with a start place as its first one."""
+        if place not in self._arenas:
+            self._arenas[place] = begun_at(self.arena, place)
+        return self._arenas[place]
 
     def setup(self, place: int, match_id: str = "") -> Setup:
         """Return the setup of a match that begins at a start place."""
@@ -122,6 +129,11 @@ class Episode:
         begun.begin(self.match, 0)
 
     @property
+    def has_begun(self) -> bool:
+        """True after a `begin` or a `load`."""
+        return self._frame is not None
+
+    @property
     def frame(self) -> Frame:
         """The newest frame.
 
@@ -138,7 +150,7 @@ class Episode:
         Raises:
             UserError: if not.
         """
-        if self._frame is None:
+        if not self.has_begun:
             raise UserError(say("environment.not-begun"))
 
     def begin(self, opening: Opening) -> Frame:
@@ -152,7 +164,7 @@ class Episode:
         self._open(opening)
         self.begun.begin(self.match, opening.place)
         if self.begun.angles:
-            _steer(self.match)
+            _steer(self.match)  # a match that was played has the drives of its last episode
         self._pressed = bytearray()
         self._seqs = [0] * len(self._seqs)
         self._frame = self.match.frame()
@@ -199,9 +211,15 @@ class Episode:
 
     def steer(self, seat: int, target: Posture) -> None:
         """Set the angles [rad], by joint id, that a robot moves to from the next beat on."""
-        drive = self.match.seats[seat].drive
-        assert isinstance(drive, Steered)
-        drive.target = target
+        self._drive(seat).target = target
+
+    def pressed(self, seat: int) -> dict[int, Key]:
+        """Return the keys that a seat pressed in this episode, by beat."""
+        return {
+            beat: Key(Level(level), digit)
+            for beat, by, level, digit in _PRESSED.iter_unpack(self._pressed)
+            if by == seat
+        }
 
     def save(self, extra: object) -> bytes:
         """Return the whole episode; `load` goes on from it bit for bit.
@@ -213,6 +231,7 @@ class Episode:
             UserError: if no episode has begun.
         """
         self.require_begun()
+        seats = len(self._seqs) if self.begun.angles else 0
         return encode(
             _Saved(
                 self.opening,
@@ -222,6 +241,7 @@ class Episode:
                 bytes(self._pressed),
                 tuple(self._seqs),
                 encode(extra),
+                tuple(self._drive(seat).target for seat in range(seats)),
             )
         )
 
@@ -244,6 +264,8 @@ class Episode:
             extra = decode(saved.extra, kind, _MOST_BYTES)
             if saved.angles != self.begun.angles:
                 raise BadMessage("only one of the two episodes is steered by angles")
+            if saved.angles and len(saved.targets) != len(self._seqs):
+                raise BadMessage("it lacks the angles that the robots move to")
             if saved.robots != self.begun.robots:
                 raise BadMessage("it has other robots or gaits")
             if not 0 <= saved.opening.place < places(self.begun.arena):
@@ -258,7 +280,7 @@ class Episode:
         except ValueError as error:
             raise UserError(say("environment.other-save", error=str(error)[:200])) from None
         if self.begun.angles:
-            _steer(self.match)
+            _steer(self.match, saved.targets)
         self._pressed, self._seqs = bytearray(saved.pressed), list(saved.seqs)
         self._frame = self.match.frame()
         return extra
@@ -319,6 +341,11 @@ class Episode:
             inputs.append(KeySeat(seat, self._seqs[seat], level, digit))
         return inputs
 
+    def _drive(self, seat: int) -> Steered:
+        drive = self.match.seats[seat].drive
+        assert isinstance(drive, Steered)
+        return drive
+
     def _open(self, opening: Opening) -> None:
         self.opening = opening
         self.late_ticks = opening.late_ticks or (0,) * len(self._seqs)
@@ -349,8 +376,10 @@ def _contents(join: JoinSeat) -> list[bytes | None]:
     return [None if file is None else file.data for file in files]
 
 
-def _steer(match: Match) -> None:
-    """Let the robots of a match follow angles."""
+def _steer(match: Match, targets: Sequence[Posture] = ()) -> None:
+    """Let the robots of a match move to the angles of each seat; none: to their start postures."""
     for seat in match.seats:
-        if seat.entry is not None and not isinstance(seat.drive, Steered):
-            seat.drive = Steered(seat.entry)
+        if seat.entry is not None:
+            seat.drive = drive = Steered(seat.entry)
+            if targets:
+                drive.target = targets[seat.index]

@@ -18,9 +18,6 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-OPTIONS = ("place", "late_ticks", "seat")
-"""Options of `reset`."""
-
 
 class LacocEnv(gymnasium.Env[Numbers, Any]):
     """A match against a bot. The seed of an episode chooses the learner's seat too.
@@ -49,6 +46,9 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         "render_fps": 50,
     }
 
+    OPTIONS = ("place", "late_ticks", "seat")
+    """Options of `reset`."""
+
     def __init__(
         self,
         arena: str = "othello",
@@ -69,6 +69,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         self.episode = self.court.episode()
         self._sheet = self.episode.match.sheet()
         self._senses = Senses(self._sheet)
+        self._opponent = opponent
         self._bot = brains.find(self.court.arena, opponent)
         self._drawn = Drawn(render_mode)
         self.observation_space = self.court.observation_space(self._senses, 0)
@@ -77,6 +78,21 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         self._lead = 0
         self._shown: list[bytes] = []
         """Frames that the bot saw in this episode."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the bot out: it may be any function, and its brain may remember what it saw."""
+        return {name: one for name, one in vars(self).items() if name not in ("_bot", "_brain")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Find the bot again, and show all frames to a new brain.
+
+        Raises:
+            UserError: if the bot is gone, or plays otherwise (see `load`).
+        """
+        self.__dict__.update(state)
+        self._bot = brains.find(self.court.arena, self._opponent)
+        if self.episode.has_begun:
+            self._show(self._shown)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -108,7 +124,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         Raises:
             UserError: if an option does not fit.
         """
-        given = known_options(options, OPTIONS)
+        given = known_options(options, self.OPTIONS)
         super().reset(seed=seed)
         opening = self.court.draw(self.np_random, given)
         self._begin(opening)
@@ -169,13 +185,12 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
         Raises:
             UserError: if they are not of a `LacocEnv` with this arena, these settings and robots;
-                the environment is then as it was.
+                the environment is then as it was. Or if the new brain pressed other keys than the
+                saved one: then the bot would play another match.
         """
         shown = self.episode.load(saved, list[bytes])
-        self._start()
-        for frame in shown:
-            self._brain(decode(frame, Frame))
-        self._shown = shown
+        self._lead = lead(self.episode.frame, self.seat)
+        self._show(shown)
 
     def write_record(self, file: str | Path) -> None:
         """Write the record of the episode so far; see `Episode.write_record`."""
@@ -183,8 +198,21 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return a picture, an array (height, width, 3); None without a render mode."""
+        return self.draw(self._drawn)
+
+    def draw(self, drawn: Drawn) -> npt.NDArray[np.uint8] | None:
+        """Return the picture of the present frame, drawn by `drawn`."""
         match = self.episode.match
-        return self._drawn.draw(match.physics, match.game, self.episode.frame.markers)
+        return drawn.draw(match.physics, match.game, self.episode.frame.markers)
+
+    def check(self, action: Any) -> None:
+        """Check that an episode has begun, and that the action space has an action.
+
+        Raises:
+            UserError: if not.
+        """
+        self.episode.require_begun()
+        self.court.digit(0, action)
 
     def close(self) -> None:
         """Free what draws pictures."""
@@ -193,7 +221,8 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
     def _begin(self, opening: Opening) -> None:
         """Begin an episode with an opening."""
         self.episode.begin(opening)
-        self._start()
+        self._lead = lead(self.episode.frame, self.seat)
+        self._show([])
 
     def _pass_beat(self, action: Any) -> None:
         """Let one beat pass.
@@ -211,8 +240,18 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
             keys[other] = self._brain(episode.frame)
         episode.pass_beats(keys)
 
-    def _start(self) -> None:
-        """Make a new brain for the bot, which has seen nothing."""
-        self._brain = self._bot(self._sheet, 1 - self.seat)
-        self._lead = lead(self.episode.frame, self.seat)
-        self._shown = []
+    def _show(self, shown: list[bytes]) -> None:
+        """Make a new brain for the bot, and show it the frames that the bot saw.
+
+        Raises:
+            UserError: if it does not press the keys that the bot pressed in the episode.
+        """
+        other = 1 - self.seat
+        self._brain, self._shown = self._bot(self._sheet, other), shown
+        pressed, again = self.episode.pressed(other), {}
+        for encoded in shown:
+            frame = decode(encoded, Frame)
+            if (key := self._brain(frame)) is not None:
+                again[frame.beat + 1] = key
+        if again != pressed:
+            raise UserError(say("environment.bot-differs", bot=self._opponent))

@@ -1,9 +1,9 @@
-"""Many environments against a bot at once, on all cores."""
+"""Many environments of one agent at once, on all cores."""
 
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
-from typing import Any
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,13 +15,44 @@ from lacoc_arenas.learned.senses import Numbers
 from lacoc_server.simulate.environments.court import Court
 from lacoc_server.simulate.environments.drawn import Drawn
 from lacoc_server.simulate.environments.opening import known_options
-from lacoc_server.simulate.environments.single import OPTIONS, LacocEnv
+from lacoc_server.simulate.environments.single import LacocEnv
+from lacoc_server.simulate.environments.walk import WalkEnv
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 
-class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
-    """Several environments, called rows; each is a `LacocEnv`.
+class Row(Protocol):
+    """An environment of one agent, as `Rows` uses it."""
+
+    OPTIONS: tuple[str, ...]
+    """Names of the options of `reset`."""
+    observation_space: Any
+    action_space: Any
+    metadata: dict[str, Any]
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Numbers, dict[str, Any]]:
+        """Begin an episode."""
+
+    def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
+        """Let the beats of a step pass."""
+
+    def observe(self) -> Numbers:
+        """Return what is seen now."""
+
+    def check(self, action: Any) -> None:
+        """Check that an episode has begun, and that the action space has an action."""
+
+    def draw(self, drawn: Drawn) -> npt.NDArray[np.uint8] | None:
+        """Return a picture."""
+
+
+OneRow = TypeVar("OneRow", bound=Row)
+
+
+class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
+    """Several environments of the same arguments, called rows.
 
     A row whose episode is over begins the next one in the next step (`AutoresetMode.NEXT_STEP`).
 
@@ -29,15 +60,9 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
     threads run while it computes, so only what Python does takes turns.
 
     Args:
-        num_envs: number of rows.
-        arena: as in `LacocEnv`.
-        opponent: as in `LacocEnv`.
+        rows: the environments.
         render_mode: "rgb_array", or None.
         threads: number of threads that step the rows; 0: one for each core.
-        settings: as in `LacocEnv`.
-        robots: as in `LacocEnv`.
-        restart: as in `LacocEnv`.
-        beats: as in `LacocEnv`.
 
     Raises:
         UserError: if one of these is wrong.
@@ -49,25 +74,12 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    def __init__(
-        self,
-        num_envs: int = 2,
-        arena: str = "othello",
-        opponent: str = "straight",
-        render_mode: str | None = None,
-        threads: int = 0,
-        settings: dict[str, Any] | None = None,
-        robots: str = "hexapod",
-        restart: bool = False,
-        beats: int = 1,
-    ) -> None:
-        self.num_envs = num_envs = whole("num_envs", num_envs, 1)
+    def __init__(self, rows: Sequence[OneRow], render_mode: str | None, threads: int) -> None:
+        self.num_envs = num_envs = len(rows)
         self.render_mode = render_mode
-        court = Court(arena, settings, robots, "keys", restart, beats)
-        self.metadata = {**type(self).metadata, "render_fps": 50 / court.beats}
-        self._court = court
-        self.rows = [LacocEnv(opponent=opponent, court=court) for _ in range(num_envs)]
+        self.rows = list(rows)
         """The environments."""
+        self.metadata = {**type(self).metadata, "render_fps": rows[0].metadata["render_fps"]}
         self.single_observation_space = self.rows[0].observation_space
         self.single_action_space = self.rows[0].action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -76,8 +88,18 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         # The thread that calls `step` is one of them.
         used = whole("threads", threads, 0) or os.cpu_count() or 1
         self._others = min(used, num_envs) - 1
-        self._threads = ThreadPoolExecutor(max(1, self._others), "environment-rows")
+        self._threads = self._start_threads()
         self._drawn = Drawn(render_mode)  # its camera fits all rows: they have the same model
+
+    def _start_threads(self) -> ThreadPoolExecutor:
+        return ThreadPoolExecutor(max(1, self._others), "environment-rows")
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: one for name, one in vars(self).items() if name != "_threads"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._threads = self._start_threads()
 
     def reset(
         self,
@@ -89,8 +111,8 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
 
         Args:
             seed: a number: row i gets the seed `seed + i`. A list: a seed for each row.
-            options: as in `LacocEnv`, for all rows. With "reset_mask", an array (num_envs,) of
-                truth values, only the rows with True begin an episode.
+            options: as in a single environment, for all rows. With "reset_mask", an array
+                (num_envs,) of truth values, only the rows with True begin an episode.
 
         Returns:
             What the learners see, as an array (num_envs, size); and the openings.
@@ -98,7 +120,7 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         Raises:
             UserError: if an option does not fit, or there is not a seed for each row.
         """
-        given = dict(known_options(options, (*OPTIONS, "reset_mask")))
+        given = dict(known_options(options, (*self.rows[0].OPTIONS, "reset_mask")))
         chosen = self._mask(given.pop("reset_mask", None))
         seeds = self._seeds(seed)
         infos: dict[str, Any] = {}
@@ -118,19 +140,17 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
 
         Returns:
             What the learners see, rewards, whether each match is over, whether physics stopped, and
-            what `LacocEnv` tells of each row.
+            what a single environment tells of each row.
 
         Raises:
             UserError: if no episode has begun, or there is not an action for each row; then no row
                 has changed.
         """
-        for row in self.rows:
-            row.episode.require_begun()
         if not hasattr(actions, "__len__") or len(actions) != self.num_envs:
             rows = self.num_envs
             raise UserError(say("environment.row-actions", found=short(actions), rows=rows))
-        for action in actions:
-            self._court.digit(0, action)
+        for row, action in zip(self.rows, actions, strict=True):
+            row.check(action)
         size = self.single_observation_space.shape or (0,)
         seen = np.empty((self.num_envs, *size), np.float32)
         rewards = np.zeros(self.num_envs)
@@ -197,8 +217,7 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
             return None
         pictures = []
         for row in self.rows:
-            match = row.episode.match
-            picture = self._drawn.draw(match.physics, match.game, row.episode.frame.markers)
+            picture = row.draw(self._drawn)
             assert picture is not None
             pictures.append(picture)
         return tuple(pictures)
@@ -207,3 +226,63 @@ class LacocVectorEnv(VectorEnv[Numbers, Any, npt.NDArray[Any]]):
         """Free what draws pictures, and the threads."""
         self._drawn.close()
         self._threads.shutdown()
+
+
+class LacocVectorEnv(Rows[LacocEnv]):
+    """Matches against a bot at once; each row is a `LacocEnv`.
+
+    Args:
+        num_envs: number of rows.
+        arena: as in `LacocEnv`.
+        opponent: as in `LacocEnv`.
+        render_mode: "rgb_array", or None.
+        threads: number of threads that step the rows; 0: one for each core.
+        settings: as in `LacocEnv`.
+        robots: as in `LacocEnv`.
+        restart: as in `LacocEnv`.
+        beats: as in `LacocEnv`.
+
+    Raises:
+        UserError: if one of these is wrong.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 2,
+        arena: str = "othello",
+        opponent: str = "straight",
+        render_mode: str | None = None,
+        threads: int = 0,
+        settings: dict[str, Any] | None = None,
+        robots: str = "hexapod",
+        restart: bool = False,
+        beats: int = 1,
+    ) -> None:
+        count = whole("num_envs", num_envs, 1)
+        court = Court(arena, settings, robots, "keys", restart, beats)
+        rows = [LacocEnv(opponent=opponent, court=court) for _ in range(count)]
+        super().__init__(rows, render_mode, threads)
+
+
+class WalkVectorEnv(Rows[WalkEnv]):
+    """Robots that walk at once, each on a floor of its own; each row is a `WalkEnv`.
+
+    Args:
+        num_envs: number of rows.
+        render_mode: "rgb_array", or None.
+        threads: number of threads that step the rows; 0: one for each core.
+        arguments: those of `WalkEnv`.
+
+    Raises:
+        UserError: if one of these is wrong.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 2,
+        render_mode: str | None = None,
+        threads: int = 0,
+        **arguments: Any,
+    ) -> None:
+        rows = [WalkEnv(**arguments) for _ in range(whole("num_envs", num_envs, 1))]
+        super().__init__(rows, render_mode, threads)

@@ -17,10 +17,11 @@ from lacoc_server.simulate.environments.court import shares
 from lacoc_server.simulate.environments.drawn import Drawn
 from lacoc_server.simulate.environments.episode import saved_bytes
 from lacoc_server.simulate.environments.steered import Steered
-from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course, practice_field
+from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, practice_field
 from lacoc_server.trial.figures import measure
 from lacoc_server.trial.walk import Press
-from lacoc_server.world.sensed import SensedWorld
+from lacoc_server.world.sensed import make_course
+from lacoc_server.world.world import World
 from lacoc_shared.codec import decode, encode, pack_states
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 from lacoc_shared.messages import SentFile
@@ -36,14 +37,37 @@ _SECONDS = 20.0
 """Usual length of an episode [s]."""
 _POSTURES = 4
 """Usual number of postures of a table, as in the sample gaits."""
+_FORWARD_WEIGHT, _CTRL_WEIGHT, _HEALTHY_REWARD = 20.0, 0.5, 1.0
+"""Usual weights of the reward: the sample gait walks 0.06 m/s."""
+_HEALTHY_UP = 0.5
+"""A robot that is less upright than this is falling: its body is tilted by 60 degrees."""
 _UNUSED: dict[str, dict[str, Any]] = {
     "angles": {"postures": _POSTURES},
-    "table": {"seconds": _SECONDS, "beats": 1},
+    "table": {
+        "seconds": _SECONDS,
+        "beats": 1,
+        "forward_reward_weight": _FORWARD_WEIGHT,
+        "ctrl_cost_weight": _CTRL_WEIGHT,
+        "healthy_reward": _HEALTHY_REWARD,
+        "terminate_when_unhealthy": True,
+    },
 }
 """For each kind of actions, arguments that have no effect, with their defaults."""
 _NUMBERS = (int, float, np.integer, np.floating)
 _FIGURES = ("speed_m_s", "lateral_m_s", "drift_rad_s", "upright", "slip_m_s", "belly_share")
 """What is seen after a table was tried."""
+_BODY = {
+    "ahead_m": 20.0,
+    "left_m": 20.0,
+    "z_m": 20.0,
+    "forward_ahead": 1.0,
+    "forward_left": 1.0,
+    "up": 1.0,
+    "speed_ahead_m_s": 100.0,
+    "speed_left_m_s": 100.0,
+    "speed_up_m_s": 100.0,
+}
+"""What is seen of the body in a walk by angles, and the bounds of its numbers."""
 
 
 class _Saved(msgspec.Struct, frozen=True, array_like=True):
@@ -63,12 +87,17 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     With actions "angles" a step is 20 ms times `beats`. An action is one number for each joint, by
     joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move
-    there at the robot's own speed (AngMin). The reward is how far the robot came in the step [m] in
-    the direction in which it stood. An episode ends when the robot lies on its back, and is cut
-    after `seconds`. What is seen, in this order: how far the body's middle is ahead and to the left
-    of its start [m], its height [m], the parts of its forward direction ahead and to the left, how
-    upright it is (1 upright, -1 on its back), its velocity ahead, to the left and up [m/s], joint
-    angles [rad], commanded angles [rad].
+    there at the robot's own speed (AngMin). An episode ends when the robot falls, which is when its
+    body is tilted by more than 60 degrees, and is cut after `seconds`.
+
+    The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
+    "reward_forward" is the mean speed of the step [m/s] in the direction in which the robot stood,
+    times a weight; "reward_survive" is paid for each step in which the robot is not falling;
+    "reward_ctrl" is the mean square of how far the action asks the joints to move, in halves of
+    their ranges, times a negative weight. `names` says what is seen: of the body how far its middle
+    is ahead and to the left of its start, its height, the parts of its forward direction ahead and
+    to the left, how upright it is (1 upright, -1 on its back), and its velocity; then joint angles
+    and commanded angles.
 
     With actions "table" an action is the table of key 2: a row for each posture, a number for each
     joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed
@@ -83,6 +112,10 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         beats: with angles, beats of 20 ms in a step.
         postures: number of postures of a table.
         render_mode: "rgb_array", or None.
+        forward_reward_weight: with angles, as explained above; so are the next two.
+        ctrl_cost_weight: weight of how far joints are asked to move.
+        healthy_reward: reward of a step in which the robot is not falling.
+        terminate_when_unhealthy: with angles, whether an episode ends when the robot falls.
 
     Raises:
         UserError: if one of these is wrong.
@@ -93,6 +126,9 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         "render_fps": 50,
     }
 
+    OPTIONS = ()
+    """Options of `reset`: none."""
+
     def __init__(
         self,
         robot: str = "hexapod",
@@ -101,15 +137,33 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         beats: int = 1,
         postures: int = _POSTURES,
         render_mode: str | None = None,
+        forward_reward_weight: float = _FORWARD_WEIGHT,
+        ctrl_cost_weight: float = _CTRL_WEIGHT,
+        healthy_reward: float = _HEALTHY_REWARD,
+        terminate_when_unhealthy: bool = True,
     ) -> None:
         if actions not in ("angles", "table"):
             raise UserError(say("environment.walk-actions", found=str(actions)[:40]))
-        for name, value in (("seconds", seconds), ("beats", beats), ("postures", postures)):
-            if name in _UNUSED[actions] and value != _UNUSED[actions][name]:
+        weights = {
+            "forward_reward_weight": forward_reward_weight,
+            "ctrl_cost_weight": ctrl_cost_weight,
+            "healthy_reward": healthy_reward,
+        }
+        given = {
+            "seconds": seconds,
+            "beats": beats,
+            "postures": postures,
+            **weights,
+            "terminate_when_unhealthy": terminate_when_unhealthy,
+        }
+        for name, usual in _UNUSED[actions].items():
+            if given[name] != usual:
                 raise UserError(say("environment.unused", name=name, actions=actions))
         beats, postures = whole("beats", beats, 1), whole("postures", postures, 1, 100)
         if not isinstance(seconds, _NUMBERS) or not 0 < seconds <= 3600:
             raise UserError(say("environment.seconds", found=short(seconds)))
+        self._weights = {name: _weight(name, value) for name, value in weights.items()}
+        self._ends_unhealthy = terminate_when_unhealthy
         self.render_mode = render_mode
         self.metadata = {**type(self).metadata, "render_fps": 50 / beats}
         entry = weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
@@ -117,9 +171,9 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         self._tables = actions == "table"
         self._beats = beats
         self._most_steps = math.ceil(seconds * BEATS_PER_S / beats)
-        arena = practice_field()
-        self._world = SensedWorld(arena, entry)
-        self._course = Course(self._world, self._spec, arena)
+        self._arena = practice_field()
+        self._world = World(self._arena, [entry])
+        self._course = make_course(self._spec) if self._tables else None
         self._begin = self._world.save()
         limits = np.radians(np.array(self._spec.ranges_deg))
         self._middle = (limits[:, 0] + limits[:, 1]) / 2
@@ -129,10 +183,13 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         shape = (postures, joints) if self._tables else (joints,)
         self._shape = shape
         self.action_space = spaces.Box(-1.0, 1.0, shape, np.float32)
-        high = [10.0] * len(_FIGURES)
+        high = dict.fromkeys(_FIGURES, 10.0)
         if not self._tables:
-            high = [20.0, 20.0, 20.0, 1.0, 1.0, 1.0, 100.0, 100.0, 100.0, *[np.pi] * (2 * joints)]
-        top = np.array(high, np.float32)
+            angles = [f"{what} {j} [rad]" for what in ("angle", "commanded") for j in range(joints)]
+            high = {**_BODY, **dict.fromkeys(angles, np.pi)}
+        self.names = tuple(high)
+        """The meaning of each number that is seen."""
+        top = np.array(list(high.values()), np.float32)
         self.observation_space = spaces.Box(-top, top, dtype=np.float32)
         self._has_begun = False
         self._start()
@@ -176,8 +233,8 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         """Let the beats of a step pass, or try a table; see the class.
 
         Returns:
-            What is seen; the reward; whether the robot lies on its back (with a table always True);
-            whether time is up or physics stopped; and with a table all its figures.
+            What is seen; the reward; whether the robot falls (with a table always True); whether
+            time is up or physics stopped; and the parts of the reward, or all figures of a table.
 
         Raises:
             UserError: if no episode has begun, if it is over, or the action space does not have the
@@ -189,6 +246,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         target = self._middle + self._half * shares(action, self._shape)
         if self._tables:
             return self._try(target)
+        asked = (target - np.array(self._state.angles)) / self._half
         self._drive.target = tuple(target.tolist())
         before = self._ahead_m()
         for _ in range(self._beats):
@@ -196,10 +254,18 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             if stopped:
                 break
         self._steps += 1
-        fell = _up(self._world.pose()) < 0
+        is_healthy = _up(self._world.pose()) > _HEALTHY_UP
+        fell = not is_healthy and self._ends_unhealthy
         cut = stopped or self._steps >= self._most_steps
         self._over = fell or cut
-        return self.observe(), self._ahead_m() - before, fell, cut, {}
+        speed_m_s = (self._ahead_m() - before) * BEATS_PER_S / self._beats
+        weights = self._weights
+        parts = {
+            "reward_forward": weights["forward_reward_weight"] * speed_m_s,
+            "reward_ctrl": -weights["ctrl_cost_weight"] * float(np.mean(asked**2)),
+            "reward_survive": weights["healthy_reward"] * is_healthy,
+        }
+        return self.observe(), sum(parts.values()), fell, cut, {**parts, "speed_m_s": speed_m_s}
 
     def observe(self) -> Numbers:
         """Return what is seen now, such as after `load`.
@@ -214,7 +280,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         _, _, z, qw, qx, qy, qz = pose[:7].tolist()
         forward = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
         ahead, left = self._way(pose[:2] - self._from[:2])
-        speed = self._world.velocity()
+        speed = self._world.velocity(0)
         seen = (ahead, left, z, *self._way(np.array(forward)), _up(pose), *self._way(speed[:2]))
         return np.concatenate([seen, speed[2:], pose[7:], self._state.angles]).astype(np.float32)
 
@@ -260,8 +326,21 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return a picture, an array (height, width, 3); None without a render mode."""
-        game = self._course.arena.game
-        return self._drawn.draw(self._world, game, pack_states((0,) * len(game.markers)))
+        return self.draw(self._drawn)
+
+    def draw(self, drawn: Drawn) -> npt.NDArray[np.uint8] | None:
+        """Return the picture of the present state, drawn by `drawn`."""
+        game = self._arena.game
+        return drawn.draw(self._world, game, pack_states((0,) * len(game.markers)))
+
+    def check(self, action: Any) -> None:
+        """Check that an episode has begun, and that the action space has an action.
+
+        Raises:
+            UserError: if not.
+        """
+        self._require_begun()
+        shares(action, self._shape)
 
     def close(self) -> None:
         """Free what draws pictures."""
@@ -297,6 +376,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         stand = (self._spec.start_posture,)
         gait = Gait(None, LocomotionTable((stand, stand, rows)))
         press = Press(SETTLE_TICKS, Level.LOCOMOTION, _FORWARD)
+        assert self._course is not None
         figures = measure(self._course.walk(gait, [press], cycles=CYCLES))
         self._over = True
         self._seen = np.clip(
@@ -316,6 +396,17 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         )
         reward = figures.speed_mm_s / 1000 if figures.upright > 0 else 0.0
         return self._seen.copy(), reward, True, False, {"figures": msgspec.to_builtins(figures)}
+
+
+def _weight(name: str, given: Any) -> float:
+    """Return a weight of the reward.
+
+    Raises:
+        UserError: if it is not a number, or it is negative.
+    """
+    if not isinstance(given, _NUMBERS) or not 0 <= given < math.inf:
+        raise UserError(say("environment.weight", name=name, found=short(given)))
+    return float(given)
 
 
 def _up(pose: npt.NDArray[np.float64]) -> float:
