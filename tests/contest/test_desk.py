@@ -277,6 +277,20 @@ def test_a_flood_of_applications_is_cleared_at_once(room: Room) -> None:
     assert isinstance(room.ask(Own(secret=bees.token)), OwnEntry)
 
 
+def test_the_organiser_brings_a_withdrawn_team_back(room: Room) -> None:
+    """While entries are open, one press brings a team back with the files that it had."""
+    room.enter("Ants", "Bees")
+    room.ask(TakeOut(secret=KEY, team="Bees", reason="by mistake", really=True))
+    assert room.states()["Bees"] == "withdrawn"
+    room.ask(Approve(secret=KEY, teams=("Bees",)))
+    assert room.states()["Bees"] == "in"
+    room.ask(TakeOut(secret=KEY, team="Bees", reason="ill", really=True))
+    room.enter("Crabs")
+    room.ask(CloseEntries(secret=KEY))
+    answer = room.ask(Approve(secret=KEY, teams=("Bees",), reason="well again"))
+    assert said(answer) == "contest.gone-for-good"
+
+
 def test_applications_are_there_after_a_restart(room: Room) -> None:
     """Applications and their files are on the disk, so a restarted office has them."""
     room.ask(Apply(secret=CODE, team="Bees", files=sample()))

@@ -21,7 +21,16 @@ from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import EntryFolder, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.facts import AnyFact, Closed, Disqualified, FilesChanged, Withdrawn
+from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    Closed,
+    Disqualified,
+    FilesChanged,
+    Withdrawn,
+    new,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import LANGUAGES, render, say
@@ -57,6 +66,37 @@ def cup(tmp_path: Path) -> Cup:
     file = tmp_path / "contest.toml"
     file.write_text(CONTEST + SWISS + FINAL, "utf-8")
     return Cup(file)
+
+
+def test_a_team_that_withdrew_may_come_back_until_entries_close(cup: Cup) -> None:
+    """While entries are open a withdrawn team enters again, with the same files or others.
+
+    After that, and if it was disqualified, it is told that it can't.
+    """
+    for team in ("Ants", "Bees", "Crabs"):
+        cup.enter(team)
+    for bot in ("planner", "straight"):
+        cup.out("Bees")
+        assert cup.enter("Bees", bot) == "contest.entered-back"
+        contest = compute(cup.facts, FORMATS)
+        assert [(team.name, team.gone) for team in contest.teams] == [
+            ("Ants", False),
+            ("Bees", False),
+            ("Crabs", False),
+        ]
+        assert contest.unused == ()
+        assert contest.teams[1].bot == bot
+    assert cup.enter("Bees", "straight") == "contest.entered-same"
+    cup.out("Crabs", disqualified=True)
+    cup.out("Ants")
+    with FactStore(ContestFolder(cup.file).facts) as store:
+        store.append(new(Closed))
+    before = cup.facts
+    for team in ("Ants", "Crabs"):
+        with pytest.raises(UserError) as refused:
+            cup.enter(team, reason="late")
+        assert refused.value.phrase.code == "contest.gone-for-good"
+    assert cup.facts == before
 
 
 @pytest.mark.parametrize(

@@ -102,7 +102,10 @@ def enter_weighed(
         nonlocal said
         contest = compute(facts, FORMATS)
         known = {one.name: one for one in contest.teams}
-        if team in known and known[team].files == entry.hash:
+        there = known.get(team)
+        if there is not None and there.gone and (contest.closed or not there.may_return):
+            raise UserError(say("contest.gone-for-good", team=team))
+        if there is not None and not there.gone and there.files == entry.hash:
             return
         alike = next((name for name in known if look_alike(name, team)), None)
         if team not in known and alike is not None:
@@ -112,7 +115,10 @@ def enter_weighed(
         if contest.closed and not reason.strip():
             raise UserError(say("contest.needs-reason", team=team))
         files = where.entries.save(entry)
-        if team in known:
+        if there is not None and there.gone:
+            said = say("contest.entered-back", team=team, hash=files)
+            yield new(Entered, team=team, files=files, bot=entry.bot)
+        elif there is not None:
             said = say("contest.entered-again", team=team, hash=files)
             yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
         else:

@@ -100,7 +100,7 @@ class Overview(DeskRequest, frozen=True, kw_only=True, tag="overview"):
 
 
 class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
-    """Let teams that have applied take part, or let teams use files that they handed in late."""
+    """Let teams take part that have applied or had withdrawn, or use files that they sent late."""
 
     teams: tuple[_Name, ...]
     reason: _Text = ""

@@ -46,6 +46,8 @@ export const office = {
   "office.approveAll": ["Approve all {count}", "{count} チームをまとめて承認"],
   "office.done": ["{count} teams are in.", "{count} チームの参加が決まりました。"],
   "office.doneDeclined": ["{count} teams are declined.", "{count} チームを断りました。"],
+  "office.bringBack": ["Bring back", "参加に戻す"],
+  "office.bringBackOf": ["Bring {team} back", "{team} を参加に戻す"],
   "office.decline": ["Decline", "断る"],
   "office.declineOf": ["Decline {team}", "{team} を断る"],
   "office.declineAll": ["Decline all {count}", "{count} チームをまとめて断る"],

@@ -736,6 +736,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "contest.taken": ["Files taken from the folder: {files}.", "フォルダーから使うファイル：{files}"],
   "contest.made-level-b": ["There is no LocoTra-data.txt: level B is made from {file}, with the sequences of the sample's keys.", "LocoTra-data.txt がないため、レベル B は見本のキーと同じ姿勢の並びで {file} から作られます。"],
   "contest.entered": ["{team} has entered. Hash of the files: {hash}", "{team} を登録しました。ファイルのハッシュ：{hash}"],
+  "contest.entered-back": ["{team} is in again (files {hash}).", "{team} が再び参加します（ファイル {hash}）。"],
+  "contest.gone-for-good": ["{team} has left the contest and can't come back: it was disqualified, or entries are closed. Before entries close, a team that withdrew can enter again.", "{team} は大会を離れたため、戻れません（失格になったか、参加が締め切られました）。締め切り前なら、棄権したチームはもう一度参加できます。"],
   "contest.entered-again": ["{team} has new files. Hash of the files: {hash}", "{team} のファイルを替えました。ファイルのハッシュ：{hash}"],
   "contest.entered-same": ["{team} has entered these files before; nothing changes.", "{team} は同じファイルで登録済みです。何も変わりません。"],
   "contest.needs-reason": ["Entries are closed. If {team} may use other files nevertheless, give the reason with --reason; everybody can read it.", "参加は締め切られています。それでも {team} のファイルを替えるなら、理由を --reason で書いてください（公開されます）。"],

@@ -21,18 +21,22 @@ from lacoc_shared.words import Phrase, say
 
 
 def approve(book: Book, asked: Approve) -> Said:
-    """Let teams take part, or use their late files.
+    """Let teams take part, come back while entries are open, or use their late files.
 
     Raises:
-        UserError: if a team has not applied, entries are closed, or a reason is missing. Teams
+        UserError: if a team has not applied or can't come back, entries are closed, or a reason is missing. Teams
             earlier in the list than this team have been let in then.
     """
     said: list[Phrase] = []
     for team in asked.teams:
-        waiting = book.applications.waiting.get(team)
-        if waiting is None:
+        waiting, there = book.applications.waiting.get(team), book.team(team)
+        if waiting is not None:
+            entry = waiting.entry
+        elif there is not None and there.gone:  # it comes back with the files that it had
+            entry = book.where.entries.load(there.files)
+        else:
             raise UserError(say("desk.no-application", team=team))
-        done = organiser.enter_weighed(book.where, book.store, team, waiting.entry, asked.reason)
+        done = organiser.enter_weighed(book.where, book.store, team, entry, asked.reason)
         book.applications.drop(team)
         said.append(done)
     return Said(said=tuple(said))

@@ -36,6 +36,11 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
         """Whether the team plays no more."""
         return self.withdrawn or self.disqualified
 
+    @property
+    def may_return(self) -> bool:
+        """Whether the team may enter again while entries are open."""
+        return self.withdrawn and not self.disqualified
+
 
 def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Team]:
     """Return the teams by name, in the order in which they entered.
@@ -52,7 +57,7 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
         elif isinstance(fact, Entered):
             if closed:
                 unused[fact.id] = say("league.closed", team=fact.team)
-            elif fact.team in teams:
+            elif fact.team in teams and not teams[fact.team].may_return:
                 unused[fact.id] = say("league.entered-twice", team=fact.team)
             else:
                 teams[fact.team] = Team(name=fact.team, files=fact.files, bot=fact.bot)

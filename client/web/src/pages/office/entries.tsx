@@ -110,6 +110,16 @@ function Row({ organiser, row, open }: RowProps) {
             {t("office.approve")}
           </button>
         )}
+        {state === "withdrawn" && open && (
+          <button
+            class="button"
+            type="button"
+            aria-label={t("office.bringBackOf", { team })}
+            onClick={() => void organiser.do({ do: "approve", teams: [team] })}
+          >
+            {t("office.bringBack")}
+          </button>
+        )}
         {(state === "waits" || state === "late" || state === "refused") && (
           <button
             class="button quiet"
