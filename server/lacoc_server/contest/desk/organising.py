@@ -24,8 +24,8 @@ def approve(book: Book, asked: Approve) -> Said:
     """Let teams take part, come back while entries are open, or use their late files.
 
     Raises:
-        UserError: if a team has not applied or can't come back, entries are closed, or a reason is missing. Teams
-            earlier in the list than this team have been let in then.
+        UserError: if a team has not applied or can't come back, entries are closed, or a reason is
+            missing. Teams earlier in the list than this team have been let in then.
     """
     said: list[Phrase] = []
     for team in asked.teams:
