@@ -46,7 +46,7 @@ class Referee:
     def decide(self, *words: str) -> dict[str, Any]:
         """Make a decision as soon as it is legal, and return the court's reply."""
         self.decided.add(words[0])
-        common = ("--reason", "a test", "--by", "kim", "--wait", "20", "--json")
+        common = ("--reason", "a test", "--by", "kim", "--wait", "20", "--json", "--yes")
         code, out, err = self.run(*words, *common, "--token", self._token)
         assert (code, err) == (0, "")
         reply: dict[str, Any] = json.loads(out)
@@ -61,7 +61,8 @@ class Referee:
 
     def refused(self, *words: str) -> str:
         """Ask for a decision that the court refuses, and return the court's reason."""
-        code, out, err = self.run(*words, "--token", self._token)
+        yes = () if words[0] == "outlook" else ("--yes",)
+        code, out, err = self.run(*words, *yes, "--token", self._token)
         assert (code, out) == (2, "")
         assert err.count("Error: ") == 1
         return " ".join(err.split())

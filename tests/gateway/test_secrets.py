@@ -150,7 +150,7 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     secrets = keyed.secrets() | {"a session's secret": own._joined.secret}
     watch = keyed.start("watch", "--json", "--hz=5", keyed.invitation("spectators"))
     seen = {"titles": titles(keyed.folder)}
-    for decision in ("halt", "declare left --reason end", "official"):
+    for decision in ("halt", "declare left --yes --reason end", "official --yes"):
         by_hand = keyed.start("referee", *decision.split(), keyed.invitation("referee"))
         seen[decision] = by_hand.communicate(timeout=LIMIT_S)[0]
         assert by_hand.returncode == 0, seen[decision]

@@ -42,7 +42,7 @@ LEGAL: dict[str, tuple[d.Decision, set[Phase]]] = {
     "adjust": (d.Adjust("left", 3), {P.PLAYING, P.HALTED, P.FINISHED}),
     "set": (d.Set("c0r0", "right"), {P.PLAYING, P.HALTED, P.FINISHED}),
     "take-back": (d.TakeBack(1), {P.HALTED, P.FINISHED}),
-    "clock": (d.Clock(5.0), {P.PLAYING, P.HALTED}),
+    "clock": (d.Clock(5.0), {P.PLAYING, P.HALTED, P.FINISHED}),
     "abort": (d.Abort(), {P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.FINISHED}),
     "declare": (d.Declare("left"), {P.HALTED, P.FINISHED}),
     "official": (d.Official(), {P.FINISHED}),
@@ -381,6 +381,29 @@ def test_clock_past_the_end() -> None:
     ticks = stage.match.ticks
     done(stage, d.Clock(-3600.0))
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, ticks)
+
+
+def test_time_taken_by_mistake_is_given_back() -> None:
+    """If `clock` ended play by a slip, giving the time back lets it go on; so does a longer match.
+
+    That is possible until the result is official, but not if the game or the referee ended play.
+    """
+    stage = stage_in(P.PLAYING)
+    ticks = stage.match.ticks
+    done(stage, d.Clock(-3600.0))
+    assert stage.phase is P.FINISHED
+    assert refused(stage, d.Clock(-1.0)).code == "why.no-time-left"
+    done(stage, d.Clock(60.0))
+    assert stage.phase is P.FINISHED  # still no time is left
+    done(stage, d.Clock(3540.0))
+    assert stage.phase is P.HALTED
+    assert stage.match.result().computed == ""
+    done(stage, d.Resume())
+    stage.until(P.FINISHED)
+    assert stage.match.ticks == 9000 > ticks
+    assert stage.frame.clock_ticks == 9000
+    done(stage, d.Declare("left"))
+    assert refused(stage, d.Clock(60.0)).code == "why.not-over-by-time"
 
 
 def test_a_new_winner_is_an_event() -> None:

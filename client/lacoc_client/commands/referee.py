@@ -6,6 +6,7 @@ new subcommand here, with its arguments.
 
 import getpass
 import inspect
+import sys
 import time
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -25,7 +26,7 @@ from lacoc_client.terminal import words
 from lacoc_client.terminal.line_view import event_columns
 from lacoc_client.terminal.plain import event_dict, frame_dict, outlook_dict, reply_dict
 from lacoc_shared.command import options, screen
-from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision, Restart, TakeBack
+from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Clock, Decision, Restart, TakeBack
 from lacoc_shared.messages import (
     OUTLOOK_MOST_S,
     DecisionReply,
@@ -37,7 +38,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
-from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.seat import BEAT_S, Phase, SeatFlag
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
@@ -74,6 +75,8 @@ _TokenUnused = Annotated[
 ]
 
 
+_FINAL = frozenset({"abort", "declare", "official", "next"})
+"""Decisions that nothing undoes; whoever makes them is asked first."""
 _NOBODY = frozenset({"root", "admin", "administrator", "user", "nobody"})
 """Account names that name no person; the record gets "referee" in place of them."""
 
@@ -102,6 +105,10 @@ _COMMON: dict[str, tuple[Any, Any]] = {
             ),
         ],
         "",
+    ),
+    "yes": (
+        Annotated[bool, typer.Option("--yes", help="Do it without asking.")],
+        False,
     ),
     "wait": (
         Annotated[
@@ -297,15 +304,22 @@ def _decide(
     *,
     reason: str,
     by: str,
+    yes: bool,
     wait: float | None,
     json: bool,
     **where: Any,
 ) -> None:
     access = entrance.referee(**where)
     patience = Patience(wait)
+    if name in _FINAL and not yes:
+        _ask(name, say("referee.sure", decision=name))
     with patience.until(
         lambda: open_client(access.addresses, credentials=access.credentials)
     ) as session:
+        if isinstance(decision, Clock) and decision.gives_s < 0 and not yes:
+            view = patience.until(lambda: Spectator(session, access.court))
+            if _ends_play(decision, *_look(view), view.sheet):
+                _ask(name, say("referee.ends-play"))
         referee = RefereeClient(session, access.court, access.token)
 
         def decide() -> DecisionReply:
@@ -324,6 +338,25 @@ def _decide(
         screen.print_json(reply_dict(reply))
     else:
         _show_reply(reply)
+
+
+def _ends_play(decision: Clock, frame: Frame, _: Health, sheet: Sheet) -> bool:
+    left_s = sheet.duration_s - frame.clock_ticks * BEAT_S
+    return bool(sheet.duration_s) and left_s + decision.gives_s <= 0
+
+
+def _ask(name: str, question: Phrase) -> None:
+    """Ask whether a decision shall be made.
+
+    Raises:
+        UserError: if nobody can be asked.
+        typer.Exit: if the answer is no.
+    """
+    if not sys.stdin.isatty():
+        raise UserError(say("referee.needs-yes", decision=name))
+    if not typer.confirm(render(question)):
+        screen.note(say("decide.not-done"))
+        raise typer.Exit(1)
 
 
 def _decide_when_legal(

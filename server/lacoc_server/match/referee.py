@@ -211,6 +211,8 @@ def _clock(match: MatchState, decision: d.Clock) -> Phrase:
     given_s = -decision.seconds if decision.seconds else decision.gives_s
     if not _is_within(given_s, MAX_CLOCK_S):
         raise Illegal(say("why.bad-clock", seconds=given_s, most=MAX_CLOCK_S))
+    if match.phase is Phase.FINISHED and given_s < 0:
+        raise Illegal(say("why.no-time-left"))
     match.clock_offset -= _ticks(given_s)
     if given_s < 0:
         return say("decision.clock-less", seconds=-given_s)
@@ -298,7 +300,7 @@ def _changes(fold: Fold) -> tuple[Phrase, ...]:
 
 
 def _follow(match: MatchState, over: Phrase | None) -> None:
-    """Change the phase after a take-back, if the game requires it.
+    """Change the phase after a take-back or a change of the clock, if the game requires it.
 
     A halted match whose game is now over is finished. A finished match whose game is not over any
     longer is halted, unless its time is up or a winner was declared.
@@ -329,8 +331,12 @@ def _by_office(match: MatchState) -> Phrase | None:
     return None if match.assigned is None else say("why.office-opens-next")
 
 
-def _no_end(match: MatchState) -> Phrase | None:
-    return None if match.duration_ticks else say("why.no-end")
+def _no_clock(match: MatchState) -> Phrase | None:
+    if not match.duration_ticks:
+        return say("why.no-end")
+    if match.phase is Phase.FINISHED and (match.history.over or match.declared):
+        return say("why.not-over-by-time")
+    return None
 
 
 _PLAY = frozenset({Phase.PLAYING, Phase.HALTED})
@@ -369,7 +375,12 @@ _RULES: dict[type[d.Decision], _Rule] = {
         frozenset({Phase.HALTED, Phase.FINISHED}),
         lambda match, decision: say("decision.take-back", event=decision.event),
     ),
-    d.Clock: _Rule(_PLAY, _clock, also=_no_end),
+    d.Clock: _Rule(
+        _SCORED,  # time that was taken away by mistake can be given back after the end
+        _clock,
+        lambda match, decision: _follow(match, match.history.over),
+        also=_no_clock,
+    ),
     d.Abort: _Rule(_OPEN, _abort, _enter(Phase.VOID)),
     d.Declare: _Rule(frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play),
     d.Official: _Rule(frozenset({Phase.FINISHED}), _official, _enter(Phase.OFFICIAL)),

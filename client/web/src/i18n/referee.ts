@@ -137,6 +137,10 @@ export const referee = {
     "A positive number gives more time, a negative one takes time away.",
     "残り時間を増やします（マイナスで減らします）。",
   ],
+  "ask.clockEnds": [
+    "{left} → 0:00: this ends play. Until the result is official you can give time back.",
+    "{left} → 0:00：プレーが終わります。結果を確定するまでは時間を戻せます。",
+  ],
   "ask.setTitle": ["{marker} becomes: {state}", "{marker} を「{state}」に"],
   "ask.set": ["The score follows the board.", "得点は盤面に合わせて変わります。"],
   "ask.takeBackTitle": ["Take back event {event}", "{event} 番のイベントを取り消す"],

@@ -167,6 +167,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "why.needs-reason": ["give a reason. It is written into the record", "理由を入力してください（記録に残ります）"],
   "why.no-seat": ["there is no seat {seat:quoted}. Choose {seats:or}", "{seat:quoted}という席はありません。{seats:or}を指定してください"],
   "why.bad-points": ["{points} points can't be given. Give a number from -{most} to {most}, but not 0", "{points} 点は指定できません。-{most} から {most} までの、0 以外の数を指定してください"],
+  "why.no-time-left": ["the time is up, so none can be taken away; a positive number gives time back", "時間切れのため減らせません。正の数で時間を戻せます"],
+  "why.not-over-by-time": ["the match did not end because its time was up", "試合は時間切れで終わったのではありません"],
   "why.bad-clock": ["the clock can't be moved by {seconds} seconds. Give a number from -{most} to {most}, but not 0", "{seconds} 秒は指定できません。-{most} から {most} までの、0 以外の数を指定してください"],
   "why.less-than-tick": ["{seconds} seconds are too short. Give at least 0.02 seconds", "{seconds} 秒は短すぎます。0.02 秒以上を指定してください"],
   "why.bad-freeze": ["a robot can't be frozen for {seconds} seconds. Give more than 0 and at most {most}", "{seconds} 秒は指定できません。0 秒より長く {most} 秒以下にしてください"],

@@ -174,7 +174,9 @@ export function moveClock(court: Court, given: number): Draft {
         const { frame, sheet } = { frame: court.frame.value, sheet: court.sheet.value };
         if (!frame || !sheet) return "";
         const left = clockTicks(frame, sheet);
-        return `${clock(left)} → ${clock(left + value * BEATS_PER_S)}`;
+        const then = left + value * BEATS_PER_S;
+        if (then <= 0) return t("ask.clockEnds", { left: clock(left) });
+        return `${clock(left)} → ${clock(then)}`;
       },
     },
     build: (value) => ({ type: "clock", gives_s: value }),
