@@ -4,7 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_shared.contest.names import _UNSEEN, look_alike, read_name, same_name
+from lacoc_shared.contest.names import (
+    _UNSEEN,
+    look_alike,
+    read_name,
+    same_name,
+    told_apart,
+)
 
 MOST = 20
 
@@ -74,3 +80,18 @@ def test_names_that_look_alike(one: str, other: str) -> None:
 def test_names_that_people_tell_apart(one: str, other: str) -> None:
     """Other names stay possible, also if they differ in a single letter."""
     assert not look_alike(one, other)
+
+
+@pytest.mark.parametrize(
+    ("name", "others", "told"),
+    [
+        ("planner", [], "planner"),
+        ("planner", ["straight"], "planner"),
+        ("planner", ["Planner"], "planner (right)"),
+        ("planner (right)", ["planner (right)"], "planner (right)"),
+        ("a name of twenty-four ch", ["a name of twenty-four ch"], "a name of twent (right)"),
+    ],
+)
+def test_names_beside_each_other_are_told_apart(name: str, others: list[str], told: str) -> None:
+    """A name that looks like another one gets its side, and is shortened for it if need be."""
+    assert told_apart(name, others, "right", 24) == told

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from msgspec.structs import replace
 from rich.table import Table
 
 from lacoc_arenas import arena as arenas
@@ -18,11 +19,14 @@ from lacoc_server.contest.league.formats.round_robin import circle_round
 from lacoc_server.contest.league.standings import Counted, Standing, standings
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player, seated
+from lacoc_server.simulate.headless import Seated
 from lacoc_shared.command import options, screen
+from lacoc_shared.contest.names import told_apart
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.record.schema import Result
 from lacoc_shared.words import render, say
 
+_LONGEST_NAME = 100
 app = typer.Typer()
 
 _LATE_TICKS = 7
@@ -122,7 +126,7 @@ def simulate_command(
             match_id=_match_id(number),
             arena=arena,
             overrides=overrides,
-            players=tuple(sit(seat, name) for seat, name in enumerate(who)),
+            players=_seated([sit(seat, name) for seat, name in enumerate(who)], seats),
             late_ticks=late_ticks,
             folder=_text(record),
         )
@@ -144,6 +148,16 @@ def simulate_command(
     screen.show(_results_table([results[job.match_id] for job in work], seats))
     if len(work) > 1 and len(seats) > 1:
         screen.show(_standings_table(table))
+
+
+def _seated(players: Sequence[Seated], seats: Sequence[str]) -> tuple[Seated, ...]:
+    """Return the players of a match, with names that tell them apart."""
+    found: list[Seated] = []
+    for one, seat in zip(players, seats, strict=True):
+        others = [other.join.team for other in found]
+        team = told_apart(one.join.team, others, seat, most=_LONGEST_NAME)
+        found.append(replace(one, join=replace(one.join, team=team)))
+    return tuple(found)
 
 
 def _check_number(players: Sequence[str], seats: int, rounds: int | None) -> None:

@@ -16,7 +16,7 @@ from lacoc_server.doors.links import Links
 from lacoc_server.doors.openings import Openings, frozen_join
 from lacoc_server.doors.sessions import Sessions, Why
 from lacoc_shared import codec, seal
-from lacoc_shared.contest.names import look_alike, read_name
+from lacoc_shared.contest.names import read_name, told_apart
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import (
     HeardSeat,
@@ -277,10 +277,7 @@ class Inbox:
             for named in (one.asking, held[one.index])
             if named
         }
-        if not any(look_alike(name, other) for other in others):
-            return name
-        side = f" ({seat.name})"
-        return name.removesuffix(side)[: NAME_MAX - len(side)].rstrip() + side
+        return told_apart(name, others, seat.name, NAME_MAX)
 
     def _frozen(self, seat: _Seat, join: Join, assigned: AssignedSeat, token_hash: str) -> JoinSeat:
         """Seat a team with the name and files that the office froze, whatever its join brings."""

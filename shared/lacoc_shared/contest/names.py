@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections.abc import Iterable
 from functools import cache
 
 _UNSEEN = re.compile(
@@ -44,6 +45,21 @@ def look_alike(one: str, other: str) -> bool:
     """
     forms = [{same_name(name), _skeleton(_plain(name))} for name in (one, other)]
     return bool(forms[0] & forms[1])
+
+
+def told_apart(name: str, others: Iterable[str], side: str, most: int) -> str:
+    """Return a name with a side added if it looks like one of the others.
+
+    Args:
+        name: the name.
+        others: the names beside it.
+        side: what tells it apart, such as "left".
+        most: largest number of characters.
+    """
+    if not any(look_alike(name, other) for other in others):
+        return name
+    added = f" ({side})"
+    return name.removesuffix(added)[: most - len(added)].rstrip() + added
 
 
 def _plain(name: str) -> str:
