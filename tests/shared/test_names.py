@@ -89,7 +89,7 @@ def test_names_that_people_tell_apart(one: str, other: str) -> None:
         ("planner", ["straight"], "planner"),
         ("planner", ["Planner"], "planner (right)"),
         ("planner (right)", ["planner (right)"], "planner (right)"),
-        ("a name of twenty-four ch", ["a name of twenty-four ch"], "a name of twent (right)"),
+        ("a name of twenty-four ch", ["a name of twenty-four ch"], "a name of twenty (right)"),
     ],
 )
 def test_names_beside_each_other_are_told_apart(name: str, others: list[str], told: str) -> None:

@@ -6,7 +6,7 @@ import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedBeats } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
-import { byRules, clock, markerName, team, winnerOf } from "../i18n/words";
+import { byRules, logClock, markerName, team, winnerOf } from "../i18n/words";
 import { ReplayLink } from "./replay_link";
 import { SeatMark } from "./score";
 import "./result.css";
@@ -97,7 +97,8 @@ export function Explained({ match }: { match: Match }) {
   const sheet = match.sheet.value;
   const events = match.events.value;
   const phase = useMemo(() => phaseOf(match), [match]).value;
-  const time = clock(playedBeats(events));
+  // Time that is left rounds up, as on a scoreboard; time that was played does not.
+  const time = logClock(playedBeats(events));
   const end = events.findLast(({ data }) => data.after === "FINISHED" || data.after === "VOID");
   const reason = end?.said.values?.why as Phrase | undefined;
   const abort = events.findLast(({ data }) => data.decision === "abort");
