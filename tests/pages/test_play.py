@@ -585,7 +585,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     page.sees(".result h1", "Bees wins")
     page.sees(".result .kicker", "Decided by the referee, not by the score")
     page.sees(".result .ruling", "Reason: it left the field")
-    page.sees(".result", "time is up · 0:01 played")
+    page.sees(".result", "time is up · 0:01.0 played")
     referee.ask("decide", decision={"type": "official"}, reason="")
     page.is_told("Wait here: you play in the next match too")
     # The replay is listed before the next match opens, with the teams and the result.

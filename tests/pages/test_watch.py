@@ -83,7 +83,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.misses(".opening")
     show.sees(".result .kicker", "By the rules")
     show.sees(".result h1", "A draw")
-    show.sees(".result", "time is up · 0:02 played")
+    show.sees(".result", "time is up · 0:02.0 played")
     show.sees(".panel .log li[data-kind=phase]", "The match is finished: time is up.")
     show.sees(".result .next", "The referee is confirming")
     decide(referee, "the better walk", type="declare", winner="right")
