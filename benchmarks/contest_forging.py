@@ -192,7 +192,7 @@ class _Checker:
             found = file_hash(path) if path.is_file() else ""
             name = (msgspec.json.encode(replace(game, played=_bare(game.played))), found, entries)
             if name not in self._known:
-                self._known[name] = [render(one) for one in check_game(folder, game, proven=True)]
+                self._known[name] = [render(one) for one in check_game(folder, game, proven=True).wrong]
             yield from self._known[name]
 
 

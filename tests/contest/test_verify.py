@@ -19,12 +19,14 @@ from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
+    Called,
     Closed,
     Drawn,
     Entered,
     FilesChanged,
     Planned,
     Played,
+    Recalled,
     Replaced,
     Replay,
     new,
@@ -33,7 +35,13 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.publish import SHEET, tables
 from lacoc_server.contest.verify.check import check
 from lacoc_server.contest.verify.games import check_game, games_of
-from lacoc_server.contest.verify.history import check_earlier, check_history, decisions, files_of
+from lacoc_server.contest.verify.history import (
+    call_of,
+    check_earlier,
+    check_history,
+    decisions,
+    files_of,
+)
 from lacoc_server.contest.verify.published import check_published, read
 from lacoc_server.contest.verify.sampling import CONFIDENCE, least_forged, missed, sample
 from lacoc_server.journal.journal import Journal
@@ -54,7 +62,7 @@ def findings(folder: Path, proven: bool = False) -> list[str]:
     facts = read(folder)
     found = [*check_published(folder, facts)]
     for game in games_of(facts):
-        found += check_game(folder, game, proven)
+        found += check_game(folder, game, proven).wrong
     return [one.code for one in found]
 
 
@@ -151,10 +159,10 @@ def test_a_game_that_was_voided_in_play_passes(copied: Path) -> None:
     assert (shown.official, any(shown.scores)) == ("void", True)
     facts[at] = replace(played, outcome="void", scores=(0, 0), record_hash=file_hash(path))
     game = next(game for game in games_of(facts) if game.played is facts[at])
-    assert [one.code for one in check_game(folder, game, proven=True)] == []
+    assert [one.code for one in check_game(folder, game, proven=True).wrong] == []
     facts[at] = replace(facts[at], scores=(1, 0))
     game = next(game for game in games_of(facts) if game.played is facts[at])
-    assert [one.code for one in check_game(folder, game, proven=False)] == ["verify.other-game"]
+    assert [one.code for one in check_game(folder, game, proven=False).wrong] == ["verify.other-game"]
 
 
 @pytest.mark.slow
@@ -211,7 +219,7 @@ def test_any_name_of_a_record_can_be_checked(tmp_path: Path, name: str) -> None:
     )
     (game,) = games_of(facts)
     assert game.plan is not None
-    assert check_game(tmp_path, game, proven=True)
+    assert check_game(tmp_path, game, proven=True).wrong
 
 
 def test_earlier_facts_must_still_be_there() -> None:
@@ -224,10 +232,11 @@ def test_earlier_facts_must_still_be_there() -> None:
 
 
 def test_files_count_from_when_they_were_entered() -> None:
-    """A team may have played a game with its newest files.
+    """A team played a game with its newest files before the game began.
 
-    If these came after entries closed, the team may also have played with the files before them.
+    At a court it may also have played with files that came after the call, before the result.
     """
+    what = {"pairing": "a", "game": 1, "teams": ("A", "B")}
     game = new(Played, pairing="a", game=1, teams=("A", "B"), scores=(0, 0), outcome="draw")
     facts = numbered(
         new(Entered, team="A", files="1"),
@@ -236,12 +245,26 @@ def test_files_count_from_when_they_were_entered() -> None:
         game,
         new(FilesChanged, team="A", files="3", reason="x"),
         game,
+        new(Called, court="main", **what),
         new(FilesChanged, team="A", files="4", reason="x"),
         game,
     )
     games = [fact for fact in facts if isinstance(fact, Played)]
-    assert [files_of(facts, game, "A") for game in games] == [("2",), ("2", "3"), ("3", "4")]
-    assert [dict(one.values)["fact"] for one in decisions(facts)] == ["f5", "f7"]
+    files = [files_of(facts, call_of(facts, game), game, "A") for game in games]
+    assert files == [("2",), ("3",), ("3", "4")]
+    assert [dict(one.values)["fact"] for one in decisions(facts)] == ["f5", "f8"]
+
+
+def test_a_call_ends_with_its_result_or_when_it_is_taken_back() -> None:
+    """A game belongs to the newest call before it, unless that was taken back or has a result."""
+    what = {"pairing": "a", "game": 1}
+    of_teams = {**what, "teams": ("A", "B")}
+    call = new(Called, court="main", **of_teams)
+    game = new(Played, scores=(0, 0), outcome="void", **of_teams)
+    facts = numbered(game, call, game, game, call, new(Recalled, **what), game, call, call, game)
+    games = [fact for fact in facts if isinstance(fact, Played)]
+    calls = [call_of(facts, one) for one in games]
+    assert [one and one.id for one in calls] == [None, "f2", None, None, "f9"]
 
 
 @pytest.mark.parametrize(

@@ -279,7 +279,7 @@ def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str
     """Note the results and decisions that a match does not use."""
     used = {game.fact for game in match.games} if match else set()
     teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
-    counted, _, _ = counting(teams, about)
+    counted, is_void, _ = counting(teams, about)
     for fact in about:
         if match is None:
             unused[fact.id] = say("league.unknown-pairing", pairing=fact.pairing)
@@ -289,12 +289,15 @@ def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str
         elif fact_teams(fact) and {*fact_teams(fact)} != {*teams}:
             unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
         elif isinstance(fact, Played | Replaced) and fact.id not in used:
-            other = fact.game not in counted or counted[fact.game].fact != fact.id
-            unused[fact.id] = (
-                say("league.result-replaced", pairing=fact.pairing, game=fact.game)
-                if other
-                else say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
-            )
+            if fact.game not in counted or counted[fact.game].fact != fact.id:
+                why = say("league.result-replaced", pairing=fact.pairing, game=fact.game)
+            elif is_void:
+                why = say("league.match-void", pairing=fact.pairing)
+            elif match.decided:
+                why = say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
+            else:
+                why = say("league.result-early", pairing=fact.pairing, game=fact.game)
+            unused[fact.id] = why
 
 
 def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Called, ...]:
