@@ -6,7 +6,7 @@ from math import comb
 from pathlib import Path
 
 import pytest
-from benchmarks import contest_forging, contest_played
+from benchmarks import contest_forging, contest_played, game_forger
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
@@ -95,7 +95,7 @@ def test_a_record_that_was_written_again_is_no_forgery(copied: Path) -> None:
     path = folder / "records" / played.record
     record = Record.read(path)
     path.unlink()
-    contest_forging.written(record, path)
+    game_forger.written(record, path)
     facts[at] = replace(played, record_hash=file_hash(path))
     (folder / "facts.json").write_bytes(league_facts.encode(facts))
     assert findings(folder, proven=True) == []
@@ -162,7 +162,9 @@ def test_a_game_that_was_voided_in_play_passes(copied: Path) -> None:
     assert [one.code for one in check_game(folder, game, proven=True).wrong] == []
     facts[at] = replace(facts[at], scores=(1, 0))
     game = next(game for game in games_of(facts) if game.played is facts[at])
-    assert [one.code for one in check_game(folder, game, proven=False).wrong] == ["verify.other-game"]
+    assert [one.code for one in check_game(folder, game, proven=False).wrong] == [
+        "verify.other-game"
+    ]
 
 
 @pytest.mark.slow
