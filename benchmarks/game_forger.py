@@ -68,7 +68,7 @@ class Change:
     names: list[str] = field(default_factory=list)
     extra: dict[tuple[Phase, int], list[Input]] = field(default_factory=dict)
     """Inputs that are added, by phase and by the number of the beat in it."""
-    start: int = SETTLE_BEATS
+    start: int = SETTLE_BEATS + 1
     mute: dict[int, int] = field(default_factory=dict)
     """By seat, the beat of play from which its bot's keys are left out."""
     key: Callable[[KeySeat, int], KeySeat] = lambda key, beat: key
@@ -83,6 +83,8 @@ class Change:
     """By how much the state is moved in the first snapshot [m]."""
     header: Callable[[Header], Header] = lambda header: header
     health: HealthVerdict | None = None
+    second_at: int | None = None
+    """Beat at which a second segment begins."""
     is_open: bool = False
     """Whether the file is left without an end, as by a killed court."""
     claims: tuple[int, int] | None = None
@@ -101,7 +103,13 @@ class Change:
         return self.chance.randrange(2)
 
 
-def forge(game: Game, entries: Sequence[Entry], folder: Path, chance: random.Random) -> Change:
+def forge(
+    game: Game,
+    entries: Sequence[Entry],
+    folder: Path,
+    chance: random.Random,
+    names: Sequence[str] = (),
+) -> Change:
     """Play a game again with one or two changes, and write its record into a folder.
 
     Args:
@@ -109,6 +117,7 @@ def forge(game: Game, entries: Sequence[Entry], folder: Path, chance: random.Ran
         entries: the entries of its teams, and then those of other teams.
         folder: where the record goes.
         chance: chooses the changes.
+        names: the changes; empty: one or two by chance.
     """
     assert game.plan is not None
     arena = arenas.load(game.plan.arena, game.plan.arena_settings)
@@ -120,7 +129,7 @@ def forge(game: Game, entries: Sequence[Entry], folder: Path, chance: random.Ran
         setup=setup_of(Path(game.played.record).stem, arena, game.plan.limits),
         late_ticks=[game.late_ticks] * 2,
     )
-    for name in chance.sample(sorted(CHANGES), chance.choice((1, 1, 2))):
+    for name in names or chance.sample(sorted(CHANGES), chance.choice((1, 1, 2))):
         before = len(change.names)
         CHANGES[name](change, game)
         detail = ", ".join(change.names[before:])
@@ -161,10 +170,12 @@ def play(change: Change, path: Path) -> None:
                     seqs[seat] += 1
                     made = KeySeat(seat, seqs[seat], int(key.level), key.key)
                     items.append(change.key(made, at))
-        elif phase is Phase.HALTED and at == 5 and change.stop is None:
-            items.append(Decide("Kim", "", d.Resume()))
-        elif (phase is Phase.FINISHED and at > change.wait) or (
-            phase in (Phase.HALTED, Phase.LOBBY) and at > 5
+        elif phase is Phase.HALTED and at <= 5 and change.stop is None:
+            items += [Decide("Kim", "", d.Resume())] * (at == 5)
+        elif phase is Phase.FINISHED and at <= change.wait:
+            pass
+        elif phase in (Phase.FINISHED, Phase.HALTED) or (
+            phase is Phase.LOBBY and Phase.READY in passed
         ):
             items.append(change.last or closing(phase))
             change.last = None
@@ -213,33 +224,48 @@ def _write(record: Record, change: Change, path: Path) -> None:
 
 
 def written(record: Record, path: Path, change: Change | None = None) -> None:
-    """Write a record as a packed file; a change can leave it open, or add segments and health."""
-    writer = RecordWriter(path.parent, record.header)
+    """Write a record as a packed file.
+
+    Args:
+        record: the record.
+        path: the file.
+        change: may leave the file open, and add a health message or a segment.
+    """
+    second = None if change is None else change.second_at
+    headers = [record.header]
+    if second is not None:
+        headers.append(replace(record.header, segment=1, first_beat=second, arithmetic={}))
+    writers = [RecordWriter(path.parent, header) for header in headers]
+
+    def at(beat: int) -> RecordWriter:
+        return writers[-1] if second is not None and beat >= second else writers[0]
+
     for beat, inputs in record.inputs.items():
         for item in inputs:
-            writer.input(beat, item)
+            at(beat).input(beat, item)
     for beat, frame in record.frames:
-        writer.frame(beat, frame)
+        at(beat).frame(beat, frame)
     for event in record.events:
-        writer.event(event)
+        at(event.beat).event(event)
     for beat, touch in record.touches.items():
-        writer.touch(beat, touch)
+        at(beat).touch(beat, touch)
     for beat, data in record.snapshots:
-        writer.snapshot(beat, data)
+        at(beat).snapshot(beat, data)
     for beat, sheet in record.sheets:
-        writer.sheet(beat, sheet)
+        at(beat).sheet(beat, sheet)
     for beat, scene in record.scenes:
-        writer.scene(beat, scene)
+        at(beat).scene(beat, scene)
     if record.result is not None:
-        writer.result(record.result)
+        writers[-1].result(record.result)
     if change is not None and change.health is not None:
-        writer.health(record.last_beat, change.health)
+        writers[-1].health(record.last_beat, change.health)
     if change is not None and change.is_open:
-        writer.leave()
-        writer.path.rename(path)
+        writers[-1].leave()
+        writers[-1].path.rename(path)
         return
-    writer.close()
-    pack([writer.path], path)
+    for writer in writers:
+        writer.close()
+    pack([writer.path for writer in writers], path)
 
 
 # Changes. Each is given the game as it will be played, and the honest game.
@@ -443,7 +469,8 @@ def _settings(change: Change) -> dict[str, Any]:
     return {**settings, "match": match}
 
 
-def _assigned(change: Change) -> Assigned:
+def assigned_of(change: Change) -> Assigned:
+    """Return what an office assigns to a court."""
     token = seal.hash_token("token", b"0" * 16)
     return Assigned(
         call=change.chance.choice(("f3", "f99")),
@@ -542,9 +569,16 @@ def _health(change: Change, game: Game) -> None:
     )
 
 
+def _second(change: Change, game: Game) -> None:
+    """Write a second segment, as a court that was killed does; it names no arithmetic."""
+    if not change.is_open:
+        change.second_at = change.chance.choice((1, 40, 120))
+    change.nudge = change.chance.choice((0.0, 9e-6))
+
+
 def _open(change: Change, game: Game) -> None:
     """Leave the record without an end; most of the time, claim another result in it."""
-    change.is_open = True
+    change.is_open, change.second_at = True, None
     if change.chance.random() < 0.8:
         change.claims = change.chance.choice(((30, 0), (0, 30), (7, 7)))
 
@@ -576,7 +610,7 @@ def _called(change: Change, game: Game) -> None:
     if change.chance.random() < 0.8:
         change.names.append("and recorded so")
         change.setup = replace(
-            change.setup, court="main", assigned=replace(_assigned(change), call=call)
+            change.setup, court="main", assigned=replace(assigned_of(change), call=call)
         )
 
 
@@ -614,7 +648,7 @@ CHANGES: dict[str, Callable[[Change, Game], None]] = {
     "match number": _of_setup(match=lambda change: change.chance.choice((0, 2, 99))),
     "limits": _of_setup(limits=lambda change: {"legs_max": 8.0}),
     "settings": _of_setup(settings=_settings),
-    "assigned": _of_setup(assigned=_assigned),
+    "assigned": _of_setup(assigned=assigned_of),
     "origin": _of_setup(origin=lambda change: Origin(match_id="x", beat=3, record_hash="0" * 32)),
     "name": _name,
     "versions": _version,
@@ -622,11 +656,13 @@ CHANGES: dict[str, Callable[[Change, Game], None]] = {
     "arithmetic": _arithmetic,
     "started": _of_header("started", "", "2001-01-01T00:00:00+00:00"),
     "segment": _of_header("segment", 1, 7),
-    "first beat": _of_header("first_beat", 0, -1),
+    "first beat": _of_header("first_beat", 1, 5),
     "health": _health,
     "no end": _open,
+    "a second segment": _second,
     "the fact": _fact,
     "called": _called,
     "tried before": _tried,
+    "nothing": lambda change, game: None,
 }
 """Every change by name."""
