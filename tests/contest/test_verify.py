@@ -44,7 +44,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.publish import SHEET, tables
-from lacoc_server.contest.verify.alone import Checked, Side, check_inputs
+from lacoc_server.contest.verify.alone import Checked, Side, check_inputs, ends_alike
 from lacoc_server.contest.verify.check import check
 from lacoc_server.contest.verify.games import Found, check_game, games_of
 from lacoc_server.contest.verify.history import (
@@ -74,6 +74,8 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, render
+
+IDLE = contest_played.IDLE.encode()
 
 
 def findings(folder: Path, proven: bool = False) -> list[str]:
@@ -391,6 +393,25 @@ def test_another_version_is_not_proven_if_its_bots_differ(played: Path) -> None:
     record.inputs[60] = [SilentSeat(0)]
     found = check_with("")
     assert (found.wrong, found.unchecked[0].code) == ((), "unchecked.inputs")
+
+
+@pytest.mark.slow
+def test_a_game_of_another_arithmetic_is_played_again(played: Path, tmp_path: Path) -> None:
+    """The record of another arithmetic passes if the game ends here with the same result."""
+    folder = played / "published"
+    game = games_of(read(folder))[-1]
+    assert game.plan is not None
+    arena = load(game.plan.arena, game.plan.arena_settings)
+    kept = EntryFolder(folder / "entries")
+    entries = [kept.load(one[-1]) for one in game.files]
+    sides = [Side(team, one, "") for team, one in zip(game.played.teams, entries, strict=True)]
+    record = Record.read([folder / "records" / game.played.record])
+    assert ends_alike(record, arena, sides, game.late_ticks, programs=True)
+    idle = [side._replace(entry=replace(side.entry, program=IDLE, bot="idle")) for side in sides]
+    assert not ends_alike(record, arena, idle, game.late_ticks, programs=True)
+    other, found = forged(folder, tmp_path / "forged", ["another path"])
+    assert not other
+    assert (found.wrong, found.unchecked) == ((), ())
 
 
 @pytest.mark.slow

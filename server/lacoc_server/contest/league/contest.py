@@ -21,7 +21,14 @@ from lacoc_server.contest.league.facts import (
     ordered,
 )
 from lacoc_server.contest.league.formats.format import Format, Pair, Stage
-from lacoc_server.contest.league.matches import Match, Rules, counting, fact_teams, resolve
+from lacoc_server.contest.league.matches import (
+    Game,
+    Match,
+    Rules,
+    counting,
+    fact_teams,
+    resolve,
+)
 from lacoc_server.contest.league.standings import Table
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -289,15 +296,31 @@ def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str
         elif fact_teams(fact) and {*fact_teams(fact)} != {*teams}:
             unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
         elif isinstance(fact, Played | Replaced) and fact.id not in used:
-            if fact.game not in counted or counted[fact.game].fact != fact.id:
-                why = say("league.result-replaced", pairing=fact.pairing, game=fact.game)
-            elif is_void:
-                why = say("league.match-void", pairing=fact.pairing)
-            elif match.decided:
-                why = say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
-            else:
-                why = say("league.result-early", pairing=fact.pairing, game=fact.game)
-            unused[fact.id] = why
+            unused[fact.id] = _why_unused(match, fact, counted.get(fact.game), is_void)
+
+
+def _why_unused(
+    match: Match, fact: Played | Replaced, counts: Game | None, is_void: bool
+) -> Phrase:
+    """Say why a match does not use a result.
+
+    Args:
+        match: the match.
+        fact: the result.
+        counts: the result of this game that counts; None: there is none.
+        is_void: whether a decision has made the match void.
+    """
+    if is_void:
+        return say("league.match-void", pairing=fact.pairing)
+    if fact.outcome == "void":
+        return say("league.result-void", pairing=fact.pairing, game=fact.game)
+    if counts is None:
+        return say("league.result-again", pairing=fact.pairing, game=fact.game)
+    if counts.fact != fact.id:
+        return say("league.result-replaced", pairing=fact.pairing, game=fact.game)
+    if match.decided:
+        return say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
+    return say("league.result-early", pairing=fact.pairing, game=fact.game)
 
 
 def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Called, ...]:

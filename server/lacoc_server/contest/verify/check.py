@@ -8,7 +8,7 @@ from typing import NamedTuple
 from lacoc_server.contest.league.facts import AnyFact, Played
 from lacoc_server.contest.verify.games import Found, Game, check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, decisions
-from lacoc_server.contest.verify.published import check_published, read
+from lacoc_server.contest.verify.published import check_published, other_sheet, read
 from lacoc_server.contest.verify.sampling import least_forged, sample
 from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
 from lacoc_shared.words import Phrase, say
@@ -23,7 +23,7 @@ class Checked(NamedTuple):
     findings: tuple[Phrase, ...]
     """What does not follow; empty: nothing contradicts anything."""
     unchecked: tuple[Phrase, ...]
-    """Bots whose keys could not be checked, each with its game and the reason."""
+    """What could not be checked, and why: keys of bots, each with its game; the sheet."""
     decisions: tuple[Phrase, ...]
     """What people decided; no record can prove it."""
     in_play: tuple[Phrase, ...]
@@ -77,7 +77,10 @@ def check(
     sound = [game for game in found if not (game.wrong or game.unchecked)]
     return Checked(
         findings=tuple(findings),
-        unchecked=tuple(one for game in found for one in game.unchecked),
+        unchecked=(
+            *filter(None, [other_sheet(folder)]),
+            *(one for game in found for one in game.unchecked),
+        ),
         decisions=(*decisions(facts), *_steered(facts)),
         in_play=tuple(one for game in found for one in game.decided),
         facts=len(facts),

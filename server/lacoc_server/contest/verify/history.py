@@ -24,9 +24,11 @@ OfFiles = Entered | FilesChanged
 _HARMLESS = (
     "league.match-void",
     "league.other-teams",
+    "league.result-again",
     "league.result-early",
     "league.result-replaced",
     "league.result-unneeded",
+    "league.result-void",
 )
 """Why facts of an honest contest may change nothing: a later decision has changed the bracket."""
 

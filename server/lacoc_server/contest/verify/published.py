@@ -70,22 +70,49 @@ def _check_facts(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
         yield say("verify.more-in-facts", file=FACTS)
 
 
-def _check_tables(folder: Path, contest: Contest) -> Iterator[Phrase]:
+def other_sheet(folder: Path) -> Phrase | None:
+    """Return why the sheet can't be compared: another version wrote its layout; None: it can be."""
     try:
-        name = sheets.decode(regular.read(folder, SHEET, most_bytes=_MOST_BYTES)).name
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        yield say("verify.no-file", file=SHEET, why=str(error))
-        return
-    except UserError as error:
-        yield error.phrase
-        return
-    sheet = sheets.sheet(name, contest)
-    for file, content in {SHEET: sheets.encode(sheet), **tables(sheet)}.items():
+        found = msgspec.json.decode(_sheet(folder), type=_Layout).version
+    except (UserError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+        return None  # it is told as one that can't be read
+    if found == sheets.VERSION:
+        return None
+    return say("unchecked.sheet", file=SHEET, there=found, here=sheets.VERSION)
+
+
+class _Layout(msgspec.Struct):
+    """The one entry that sheets of all versions have."""
+
+    version: int
+
+
+def _sheet(folder: Path) -> bytes:
+    return regular.read(folder, SHEET, most_bytes=_MOST_BYTES)
+
+
+def _check_tables(folder: Path, contest: Contest) -> Iterator[Phrase]:
+    if other_sheet(folder) is None:
+        yield from _check_sheet(folder, contest)
+    for file, content in tables(sheets.sheet("", contest)).items():
         try:
             if regular.read(folder, file, most_bytes=_MOST_BYTES) != content:
                 yield say("verify.other-sheet", file=file)
         except UserError as error:
             yield error.phrase
+
+
+def _check_sheet(folder: Path, contest: Contest) -> Iterator[Phrase]:
+    try:
+        stored = _sheet(folder)
+        name = sheets.decode(stored).name
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        yield say("verify.no-file", file=SHEET, why=str(error))
+    except UserError as error:
+        yield error.phrase
+    else:
+        if sheets.encode(sheets.sheet(name, contest)) != stored:
+            yield say("verify.other-sheet", file=SHEET)
 
 
 def _records_used_twice(facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
