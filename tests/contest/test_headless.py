@@ -84,10 +84,11 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     assert contest_played.play(again) == 2
 
 
-class _Damaged:
+class _Damaged(Here):
     """Plays games whose records come back damaged, as from a worker of other software."""
 
     def submit(self, job: Job) -> "Future[Ended | Phrase]":
+        """Play a game at once; return a future with a record that can't be read."""
         found = attempt(job)
         assert isinstance(found, Ended)
         future: Future[Ended | Phrase] = Future()
