@@ -129,7 +129,7 @@ def forge(
         setup=setup_of(Path(game.played.record).stem, arena, game.plan.limits),
         late_ticks=[game.late_ticks] * 2,
     )
-    for name in names or chance.sample(sorted(CHANGES), chance.choice((1, 1, 2))):
+    for name in names or _some(chance):
         before = len(change.names)
         CHANGES[name](change, game)
         detail = ", ".join(change.names[before:])
@@ -333,41 +333,57 @@ def _advice(change: Change, game: Game) -> None:
 def _decided(change: Change, game: Game) -> None:
     """Add any decision of a referee, of the court or of the headless player, in any phase."""
     seat = _SEATS[change.seat()]
-    points = change.chance.choice((-5, 5, 40))
-    marker = change.arena.game.markers[change.chance.randrange(len(change.arena.game.markers))].name
-    decision: d.Decision = change.chance.choice(
-        (
-            d.Ready(seat),
-            d.Halt(),
-            d.Resume(),
-            d.Restart(seat),
-            d.Freeze(seat, 2.0),
-            d.Unfreeze(seat),
-            d.Adjust(seat, points),
-            d.Adjust(seat, points),
-            d.Set(marker, seat),
-            d.Set(marker, seat),
-            d.TakeBack(change.chance.randrange(1, 12)),
-            d.Clock(gives_s=change.chance.choice((-2.0, 2.0, 5.0))),
-            d.Clock(seconds=1.0),
-            d.Abort(),
-            d.Declare(change.chance.choice((*_SEATS, "draw"))),
-            d.Declare(change.chance.choice((*_SEATS, "draw"))),
-            d.Official(),
-            d.Next(),
-        )
+    rare = (
+        d.Ready(seat),
+        d.Start(),
+        d.Resume(),
+        d.Unfreeze(seat),
+        d.TakeBack(change.chance.randrange(1, 12)),
+        d.Clock(seconds=1.0),
+        d.Abort(),
+        d.Official(),
+        d.Next(),
     )
-    phase = change.chance.choice((Phase.READY, Phase.PLAYING, Phase.PLAYING, Phase.FINISHED))
-    if isinstance(decision, d.Declare):
-        phase = Phase.FINISHED
+    phase = change.chance.choice((Phase.READY, Phase.PLAYING, Phase.FINISHED))
+    _decide(change, phase, change.chance.choice(rare))
+
+
+def _decide(change: Change, phase: Phase, decision: d.Decision) -> None:
     if phase is Phase.FINISHED:
         change.wait = max(change.wait, 3)
+    within = {Phase.FINISHED: 2, Phase.READY: 30}.get(phase, 150)
     by = change.chance.choice((AUTHOR, "Kim", ""))
     change.names.append(f"{type(decision).__name__} in {phase.name} by {by or 'the court'}")
-    item = Decide(by, change.chance.choice(("agreed", say("reason.ended-early"))), decision)
-    change.add(
-        phase, item, within=2 if phase is Phase.FINISHED else 30 if phase is Phase.READY else 190
-    )
+    reason = change.chance.choice(("agreed", say("reason.ended-early")))
+    change.add(phase, Decide(by, reason, decision), within=within)
+
+
+def _points(change: Change, game: Game) -> None:
+    phase = change.chance.choice((Phase.PLAYING, Phase.FINISHED))
+    points = change.chance.choice((-5, 1, 5, 40))
+    _decide(change, phase, d.Adjust(_SEATS[change.seat()], points))
+
+
+def _marker(change: Change, game: Game) -> None:
+    marker = change.chance.choice(change.arena.game.markers).name
+    _decide(change, Phase.PLAYING, d.Set(marker, _SEATS[change.seat()]))
+
+
+def _winner(change: Change, game: Game) -> None:
+    winners = [one for one in (*_SEATS, "draw") if one != game.played.outcome]
+    _decide(change, Phase.FINISHED, d.Declare(change.chance.choice(winners)))
+
+
+def _frozen(change: Change, game: Game) -> None:
+    _decide(change, Phase.PLAYING, d.Freeze(_SEATS[change.seat()], 3.0))
+
+
+def _put_back(change: Change, game: Game) -> None:
+    _decide(change, Phase.PLAYING, d.Restart(_SEATS[change.seat()]))
+
+
+def _time(change: Change, game: Game) -> None:
+    _decide(change, Phase.PLAYING, d.Clock(gives_s=change.chance.choice((-2.0, 2.0, 5.0))))
 
 
 def _halt(change: Change, game: Game) -> None:
@@ -621,19 +637,21 @@ def _tried(change: Change, game: Game) -> None:
     change.late_ticks = [ticks + 1 for ticks in change.late_ticks]
 
 
-CHANGES: dict[str, Callable[[Change, Game], None]] = {
+_Changes = dict[str, Callable[[Change, Game], None]]
+
+DEEDS: _Changes = {
     "silent": _silent,
-    "heard": _heard,
     "leave": _leave,
-    "join": _join_again,
-    "ready": _ready,
     "a key added": _key_added,
     "a key changed": _key_changed,
-    "fields of keys": _key_fields,
     "keys left out": _mute,
-    "advice": _advice,
+    "points": _points,
+    "a marker": _marker,
+    "a winner": _winner,
+    "frozen": _frozen,
+    "put back": _put_back,
+    "time": _time,
     "a decision": _decided,
-    "another decision": _decided,
     "a halt": _halt,
     "the start": _start,
     "late bots": _late,
@@ -641,13 +659,24 @@ CHANGES: dict[str, Callable[[Change, Game], None]] = {
     "other files": _files,
     "seats swapped": _teams,
     "the last decision": _closing,
-    "a later end": _wait,
     "physics stops": _stop,
     "another path": _nudge,
+    "settings": _of_setup(settings=_settings),
+    "no end": _open,
+    "the fact": _fact,
+}
+"""Changes that can give another result, by name."""
+COVERS: _Changes = {
+    "nothing": lambda change, game: None,
+    "heard": _heard,
+    "join": _join_again,
+    "ready": _ready,
+    "fields of keys": _key_fields,
+    "advice": _advice,
+    "a later end": _wait,
     "court": _of_setup(court=lambda change: change.chance.choice(("main", "", "Simulation"))),
     "match number": _of_setup(match=lambda change: change.chance.choice((0, 2, 99))),
     "limits": _of_setup(limits=lambda change: {"legs_max": 8.0}),
-    "settings": _of_setup(settings=_settings),
     "assigned": _of_setup(assigned=assigned_of),
     "origin": _of_setup(origin=lambda change: Origin(match_id="x", beat=3, record_hash="0" * 32)),
     "name": _name,
@@ -658,11 +687,21 @@ CHANGES: dict[str, Callable[[Change, Game], None]] = {
     "segment": _of_header("segment", 1, 7),
     "first beat": _of_header("first_beat", 1, 5),
     "health": _health,
-    "no end": _open,
     "a second segment": _second,
-    "the fact": _fact,
     "called": _called,
     "tried before": _tried,
-    "nothing": lambda change, game: None,
 }
-"""Every change by name."""
+"""Changes that might keep a check from looking, by name."""
+CHANGES = DEEDS | COVERS
+
+
+def _some(chance: random.Random) -> list[str]:
+    """Choose a change or two: one that can give another result, and most of the time a cover."""
+    first = [chance.choice(sorted(DEEDS))]
+    return first + chance.choice(
+        ([], [chance.choice(sorted(COVERS))], [chance.choice(sorted(COVERS))], _more(chance, first))
+    )
+
+
+def _more(chance: random.Random, first: list[str]) -> list[str]:
+    return [chance.choice(sorted(CHANGES.keys() - {*first}))]

@@ -290,5 +290,5 @@ def decode(data: bytes) -> tuple[AnyFact, ...]:
                 )
             )
         return ordered(msgspec.json.decode(data, type=_File).facts)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(say("league.wrong-facts", error=str(error))) from None

@@ -26,7 +26,7 @@ from lacoc_shared.command import regular
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import Phrase, say
 
-_MOST_BYTES = 1 << 26
+_MOST_BYTES = 1 << 25
 """Largest file of facts, sheet or table that is read. 10,000 games have 4 MB."""
 
 
