@@ -16,17 +16,21 @@ import shutil
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
 from msgspec.structs import replace
 
-from benchmarks import contest_played
+from benchmarks import contest_played, game_forger
 from benchmarks.forger import Forger
+from lacoc_server.contest import organiser
 from lacoc_server.contest import sheet as sheets
-from lacoc_server.contest.kept.folder import file_hash
+from lacoc_server.contest.headless.play import outcome
+from lacoc_server.contest.kept.entries import EntryFolder
+from lacoc_server.contest.kept.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (
@@ -48,12 +52,12 @@ from lacoc_server.contest.verify.games import check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, decisions
 from lacoc_server.contest.verify.published import check_published, read
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.pack import pack
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.words import render
 
 _NAME = "Cup"
+AGAIN = "a game played again"
+"""The kind of forgery after which everything is computed again."""
 
 
 class Harmless(Exception):
@@ -71,6 +75,12 @@ class Forged(NamedTuple):
     """Histories that fit together."""
     fitting_missed: list[str]
     """Those that were not found with an earlier publication either."""
+    changes: Counter[str]
+    """What was changed in games that were played again."""
+    other_results: int
+    """How many of these claim another result than the honest contest."""
+    harmless: Counter[str]
+    """Those that `verify` accepts, because they claim the results of the honest contest."""
 
 
 class _Copy:
@@ -78,6 +88,7 @@ class _Copy:
 
     def __init__(self, honest: Path, other: Path, folder: Path, chance: random.Random) -> None:
         shutil.copytree(honest, folder)
+        self.honest = honest
         self.folder = folder
         self.other = other
         self.chance = chance
@@ -127,7 +138,7 @@ class _Copy:
             (self.folder / name).write_bytes(content)
 
 
-def forge(honest: Path, other: Path, count: int, seed: int) -> Forged:
+def forge(honest: Path, other: Path, count: int, seed: int, only: Collection[str] = ()) -> Forged:
     """Forge copies of a published contest, and check each.
 
     Args:
@@ -135,6 +146,7 @@ def forge(honest: Path, other: Path, count: int, seed: int) -> Forged:
         other: the published folder of another contest with the same teams.
         count: number of forgeries.
         seed: seed of the random choice.
+        only: the kinds to make; empty: all.
     """
     chance = random.Random(seed)
     checker = _Checker()
@@ -144,7 +156,10 @@ def forge(honest: Path, other: Path, count: int, seed: int) -> Forged:
     kinds: Counter[str] = Counter()
     missed: list[str] = []
     fitting_missed: list[str] = []
-    names = [name for name in _KINDS for _ in range(_KINDS[name][1])]
+    names = [name for name in only or _KINDS for _ in range(_KINDS[name][1])]
+    changes: Counter[str] = Counter()
+    harmless: Counter[str] = Counter()
+    claims, other_results = _claims([*facts]), 0
     made = 0
     while made < count:
         name = chance.choice(names)
@@ -157,7 +172,14 @@ def forge(honest: Path, other: Path, count: int, seed: int) -> Forged:
             made += 1
             kinds[name] += 1
             title = f"{name}: {copy.name}"
+            same = name == AGAIN and _claims(copy.facts) == claims
+            if name == AGAIN:
+                changes.update(one.partition(" (")[0] for one in copy.name.split(" + "))
+                other_results += not same
             if next(checker.findings(copy.folder), None) is not None:
+                continue
+            if same:
+                harmless[copy.name] += 1
                 continue
             if name not in _FITTING:
                 missed.append(title)
@@ -169,7 +191,7 @@ def forge(honest: Path, other: Path, count: int, seed: int) -> Forged:
             if not told and not [*check_earlier(facts, now)]:
                 fitting_missed.append(title)
     fitting = sum(kinds[name] for name in _FITTING)
-    return Forged(kinds, missed, fitting, fitting_missed)
+    return Forged(kinds, missed, fitting, fitting_missed, changes, other_results, harmless)
 
 
 class _Checker:
@@ -192,7 +214,8 @@ class _Checker:
             found = file_hash(path) if path.is_file() else ""
             name = (msgspec.json.encode(replace(game, played=_bare(game.played))), found, entries)
             if name not in self._known:
-                self._known[name] = [render(one) for one in check_game(folder, game, proven=True)]
+                found = check_game(folder, game, proven=True, programs=True)
+                self._known[name] = [render(one) for one in (*found.wrong, *found.unchecked)]
             yield from self._known[name]
 
 
@@ -216,6 +239,20 @@ def _meaning(facts: list[AnyFact]) -> tuple[object, ...]:
         for view in contest.stages
     ]
     return contest.teams, contest.closed, stages
+
+
+def _claims(facts: list[AnyFact]) -> object:
+    """Return the results that facts claim: of each game and match, and each rank."""
+    return [
+        (
+            [
+                (match.teams, match.winner, [(g.teams, g.scores, g.outcome) for g in match.games])
+                for match in view.matches
+            ],
+            view.tables,
+        )
+        for view in compute(facts, FORMATS).stages
+    ]
 
 
 def _finish(copy: _Copy, before: tuple[object, ...] | None = None) -> None:
@@ -391,7 +428,7 @@ def _record(copy: _Copy) -> None:
     other = copy.chance.choice([one for one in sorted(path.parent.iterdir()) if one != path])
     copy.name, record = Forger(Record.read(path), Record.read(other)).forge(copy.chance)
     path.unlink()
-    written(record, path)
+    game_forger.written(record, path)
     if copy.chance.random() < 0.7:
         copy.name += ", with its hash"
         changes: dict[str, Any] = {"record_hash": file_hash(path)}
@@ -404,28 +441,37 @@ def _record(copy: _Copy) -> None:
         copy.write(whole=True, again=True)
 
 
-def written(record: Record, path: Path) -> None:
-    """Write a record as a packed file."""
-    writer = RecordWriter(path.parent, record.header)
-    for beat, inputs in record.inputs.items():
-        for item in inputs:
-            writer.input(beat, item)
-    for beat, frame in record.frames:
-        writer.frame(beat, frame)
-    for event in record.events:
-        writer.event(event)
-    for beat, touch in record.touches.items():
-        writer.touch(beat, touch)
-    for beat, data in record.snapshots:
-        writer.snapshot(beat, data)
-    for beat, sheet in record.sheets:
-        writer.sheet(beat, sheet)
-    for beat, scene in record.scenes:
-        writer.scene(beat, scene)
-    if record.result is not None:
-        writer.result(record.result)
-    writer.close()
-    pack([writer.path], path)
+def _played_again(copy: _Copy) -> None:
+    """Play a game again with one or two changes, and then the rest of the contest, as it follows.
+
+    Everything after the change is computed again by the software itself: record, hash, fact, the
+    games that follow, draws, sheet and tables.
+    """
+    facts = [*read(copy.honest)]
+    games = games_of(facts)
+    game = copy.chance.choice([*games, *games[-1:] * len(games)])  # a later one takes less time
+    kept = EntryFolder(copy.honest / ENTRIES)
+    entries = [kept.load(one[-1]) for one in game.files]
+    work = copy.folder.parent / "work"
+    shutil.copytree(copy.honest.parent, work, ignore=shutil.ignore_patterns("published", "*.db"))
+    where = ContestFolder(work / "contest.toml")
+    (where.records / game.played.record).unlink()
+    change = game_forger.forge(game, entries, where.records, copy.chance)
+    copy.name = " + ".join(change.names)
+    fact = {"record": game.played.record, **change.fact}
+    path = where.records / fact["record"]
+    result = Record.read([path]).result
+    if result is None:
+        raise Harmless
+    shown = {"scores": result.scores, "outcome": outcome(("left", "right"), result.official)}
+    played = replace(game.played, **{**shown, "record_hash": file_hash(path), **fact})
+    with FactStore(where.facts) as store:
+        at = facts.index(game.played)
+        store.append(*facts[:at], *change.before, played)
+    contest_played.play(where.file)
+    shutil.rmtree(copy.folder)
+    organiser.publish_to(where.file, copy.folder)
+    copy.facts = [*read(copy.folder)]
 
 
 def _records_swapped(copy: _Copy) -> None:
@@ -556,6 +602,7 @@ _KINDS: dict[str, tuple[Callable[[_Copy], None], int]] = {
     "two records swapped": (_records_swapped, 2),
     "a record of another contest": (_other_contest, 2),
     "a record used twice": (_record_twice, 1),
+    AGAIN: (_played_again, 5),
     "a table": (_table, 1),
     "the last facts missing": (_cut, 1),
     "a decision added": (_decision, 1),
@@ -584,10 +631,11 @@ def main() -> None:
     )
     parser.add_argument("--forgeries", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--again", action="store_true", help="only games that are played again")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         honest, other = contests(Path(folder))
-        found = forge(honest, other, options.forgeries, options.seed)
+        found = forge(honest, other, options.forgeries, options.seed, [AGAIN] * options.again)
     contradicted = sum(found.kinds.values()) - found.fitting
     told = {
         "forgeries": dict(found.kinds),
@@ -597,6 +645,9 @@ def main() -> None:
             f"{found.fitting - len(found.fitting_missed)} of {found.fitting}"
         ),
         "of these missed": found.fitting_missed,
+        "changed in games played again": dict(found.changes),
+        "games played again with another result": found.other_results,
+        "accepted, with the honest result": dict(found.harmless),
     }
     print(json.dumps(told, indent=1, ensure_ascii=False))
     sys.exit(bool(found.missed or found.fitting_missed))

@@ -3,6 +3,7 @@
 import os
 import shutil
 import signal
+from concurrent.futures import Future
 from pathlib import Path
 
 import msgspec
@@ -15,7 +16,7 @@ from waiting import LIMIT_S, until
 
 from lacoc_server.contest import organiser
 from lacoc_server.contest.headless.play import play
-from lacoc_server.contest.headless.pool import Pool
+from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest
@@ -25,6 +26,7 @@ from lacoc_server.contest.verify.published import check_published, read
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.summary import Summary, summary
+from lacoc_shared.words import Phrase
 
 pytestmark = pytest.mark.slow
 
@@ -80,6 +82,25 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     again.with_suffix(".db").unlink()
     contest_played.enter(again.parent)
     assert contest_played.play(again) == 2
+
+
+class _Damaged(Here):
+    """Plays games whose records come back damaged, as from a worker of other software."""
+
+    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+        """Play a game at once; return a future with a record that can't be read."""
+        found = attempt(job)
+        assert isinstance(found, Ended)
+        future: Future[Ended | Phrase] = Future()
+        future.set_result(found._replace(record=b"damaged"))
+        return future
+
+
+def test_a_record_without_a_result_is_told(tmp_path: Path) -> None:
+    """If no result can be read from the record of a game that was just played, an error says so."""
+    file = contest_played.enter(tmp_path, CONTEST + SWISS, dict([*BOTS.items()][:2]))
+    with pytest.raises(UserError, match="no result can be read from its record"):
+        organiser.play_headless(file, "planner", _Damaged(), lambda done, there: None)
 
 
 def test_a_game_without_an_end_is_refused(tmp_path: Path) -> None:

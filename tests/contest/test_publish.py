@@ -12,6 +12,7 @@ from benchmarks import contest_played
 from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, TOKENS
 
 from lacoc_client.film import contest as film_contest
+from lacoc_server.commands.contest.checking import NOT_PROVEN
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
@@ -155,9 +156,16 @@ def test_the_commands_from_an_empty_folder_to_standings(
 def test_exit_codes_and_languages(
     copied: Path, lacoc: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Verify exits with 0, 1 or 2, in English or Japanese; other commands that fail exit with 2."""
+    """Verify exits with 0-3, in English or Japanese; other commands that fail exit with 2."""
     folder = copied.parent / "published"
-    verify = ("contest", "verify", folder, "--jobs", "1", "--sample", "1", "--seed", "1")
+    some = ("contest", "verify", folder, "--jobs", "1", "--sample", "1", "--seed", "1")
+    code, said, note = lacoc(*some)
+    assert (code, "The standings follow from the facts" in said) == (NOT_PROVEN, True)
+    assert "a program of its own" in note
+    told = json.loads(lacoc(*some, "--json")[1])
+    checked = told["games"] - told["by_bots"] - told["by_people"]
+    assert (told["follows"], checked) == (True, len(told["unchecked"]))
+    verify = (*some, "--programs")
     code, said, note = lacoc(*verify)
     assert (code, "The standings follow from the facts" in said) == (0, True)
     assert "The records of 1 of" in note

@@ -31,6 +31,7 @@ from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page_seat import PageSeat
+from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.site import PATHS, sheet_route
 from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_shared.contest import entrances
@@ -50,6 +51,29 @@ def rows(title: str) -> list[list[str]]:
     assert match
     lines = [line for line in match[1].splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes by name")
+def test_only_regular_files_are_recordings(tmp_path: Path) -> None:
+    """A link or a pipe in the folder of recordings is neither listed nor served, nor its odds."""
+    (tmp_path / "secret").write_bytes(b"{}")
+    folder = tmp_path / "recordings"
+    folder.mkdir()
+    (folder / "true.mcap").write_bytes(b"")
+    (folder / "link.mcap").symlink_to(tmp_path / "secret")
+    os.mkfifo(folder / "pipe.mcap")
+    (folder / "true.odds.json").symlink_to(tmp_path / "secret")
+    recordings = Recordings(folder, list)
+    try:
+        assert [one.name for one in recordings.listed()] == ["true.mcap"]
+        assert recordings.find("true.mcap") == folder / "true.mcap"
+        assert recordings.find("link.mcap") is recordings.find("pipe.mcap") is None
+        assert recordings.odds("true.mcap") is None
+        (folder / "true.odds.json").unlink()
+        (folder / "true.odds.json").write_bytes(b"{}")
+        assert recordings.odds("true.mcap") == b"{}"
+    finally:
+        recordings.close()
 
 
 def test_the_document_has_every_kind() -> None:

@@ -38,6 +38,7 @@ from lacoc_server.contest.league.schedule import assign
 from lacoc_shared.mistakes import UserError
 
 FIRST = "s:w1.1"
+SCORE = {"scores": (0, 1), "outcome": "right"}
 
 
 class Facts(list[AnyFact]):
@@ -160,7 +161,33 @@ def test_the_first_of_two_results_counts() -> None:
     assert facts.match().next_game == 1
     facts.play(FIRST, 1, "a", "b", 2, 0).play(FIRST, 1, "a", "b", 0, 2)
     assert facts.match().winner == "a"
-    assert [one.why.code for one in facts.contest.unused] == ["league.result-replaced"] * 2
+    why = [one.why.code for one in facts.contest.unused]
+    assert why == ["league.result-void", "league.result-replaced"]
+
+
+@pytest.mark.parametrize(
+    ("more", "codes"),
+    [
+        ([(Voided, {})], ["league.match-void"]),
+        ([(Replay, {"game": 1})], ["league.result-again"]),
+        ([(Replaced, {"game": 1, **SCORE})], ["league.result-replaced"]),
+        ([(Replaced, {"game": 2, **SCORE})], ["league.result-unneeded"]),
+        ([(Replaced, {"game": 1, **SCORE}), (Replay, {"game": 1})], ["league.result-again"] * 2),
+        (
+            [(Replay, {"game": 1}), (Replaced, {"game": 2, **SCORE})],
+            ["league.result-again", "league.result-early"],
+        ),
+    ],
+)
+def test_why_a_result_of_a_group_is_not_used(
+    more: list[tuple[type[AnyFact], dict[str, object]]], codes: list[str]
+) -> None:
+    """Each result or decision that changes nothing is told with its own reason."""
+    match = "s:a1.1"
+    facts = Facts("round-robin", "ab").play(match, 1, "a", "b", 2, 0)
+    for kind, values in more:
+        facts.add(kind, pairing=match, teams=("a", "b"), reason="x", **values)
+    assert [one.why.code for one in facts.contest.unused] == codes
 
 
 def test_a_corrected_semi_final_reopens_the_final() -> None:

@@ -213,7 +213,7 @@ def test_a_contest_with_a_fork_is_found_out(source: Source, tmp_path: Path) -> N
     )  # fmt: skip
     plan = new(Planned, stage="s", format="round-robin", arena="othello", arena_settings=QUICK)
     game = Game(played=played, plan=plan, files=((), ()))
-    found = [render(one) for one in check_game(tmp_path, game, proven=False)]
+    found = [render(one) for one in check_game(tmp_path, game, proven=False).wrong]
     assert any(f"it is a fork of match {MATCH}" in one for one in found), found
 
 

@@ -14,6 +14,8 @@ from threading import Lock
 
 import msgspec
 
+from lacoc_shared.command import regular
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.pack import copy_in_background
 from lacoc_shared.record.summary import Summary, summary
@@ -38,6 +40,8 @@ class Listed(msgspec.Struct, frozen=True):
 
 class Recordings:
     """The recordings of one folder; its methods may be called from any thread.
+
+    A link is no recording: it could lead to any file of the machine.
 
     Args:
         folder: the folder; None: there are no recordings.
@@ -82,9 +86,8 @@ class Recordings:
         if self._folder is None or self.find(name) is None:
             return None
         path = files.odds_path(self._folder / name, name.removesuffix(_RECORDING))
-        with contextlib.suppress(OSError):
-            data = path.read_bytes()
-            return data if len(data) <= _ODDS_BYTES else None
+        with contextlib.suppress(UserError):
+            return regular.read(self._folder, path.name, most_bytes=_ODDS_BYTES)
         return None
 
     def close(self) -> None:
@@ -102,7 +105,7 @@ class Recordings:
         return {
             path.name: path
             for path in (*copies, *packed)
-            if path.is_file() and not path.name.endswith(_SEGMENT)
+            if regular.is_regular(path) and not path.name.endswith(_SEGMENT)
         }
 
     def _copy(self) -> None:

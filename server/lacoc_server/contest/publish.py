@@ -15,7 +15,7 @@ from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet
-from lacoc_shared.command import plugins
+from lacoc_shared.command import plugins, regular
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.files import segment_paths
@@ -50,10 +50,10 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
     try:
         for name in (ENTRIES, RECORDS):
             (out / name).mkdir(parents=True, exist_ok=True)
-        for name, wanted in sorted(_records(facts).items()):
+        for name, wanted in sorted(records_of(facts).items()):
             _save_record(folder.records / name, out / RECORDS / name, wanted)
         entries = EntryFolder(out / ENTRIES)
-        for entry in sorted(_entries(facts)) if contest.closed else ():
+        for entry in sorted(entries_of(facts)) if contest.closed else ():
             entries.save(folder.entries.load(entry))
         write(out / FACTS, league_facts.encode(facts))
         for name, content in tables(sheet).items():
@@ -94,13 +94,14 @@ def _replace(path: Path, write_part: Callable[[Path], object]) -> None:
         part.unlink(missing_ok=True)
 
 
-def _records(facts: Iterable[AnyFact]) -> dict[str, str]:
+def records_of(facts: Iterable[AnyFact]) -> dict[str, str]:
     """Return the hashes of all records by file name; "": it is not known."""
     played = (fact for fact in facts if isinstance(fact, Played) and fact.record)
     return {Path(fact.record).name: fact.record_hash for fact in played}
 
 
-def _entries(facts: Iterable[AnyFact]) -> set[str]:
+def entries_of(facts: Iterable[AnyFact]) -> set[str]:
+    """Return the hashes of all entries."""
     return {fact.files for fact in facts if isinstance(fact, Entered | FilesChanged) and fact.files}
 
 
@@ -112,11 +113,11 @@ def _save_record(source: Path, to: Path, wanted: str) -> None:
     """
     segments = segment_paths(source.parent, source.stem)
     try:
-        if segments and not source.is_file():
+        if segments and not regular.is_regular(source):
             _replace(to, lambda part: pack.write(pack.read(segments), part))
             return
     except UserError:
-        if not source.is_file():  # else the court has packed it meanwhile
+        if not regular.is_regular(source):  # else the court has packed it meanwhile
             raise
     _copy(source, to, wanted)
 
@@ -127,12 +128,12 @@ def _copy(source: Path, to: Path, wanted: str) -> None:
     Raises:
         UserError: if it is missing, or has not the hash that the facts want.
     """
-    if not source.is_file():
+    if not regular.is_regular(source):
         raise UserError(say("contest.no-record", file=str(source)))
     found = file_hash(source)
     if wanted not in ("", found):
         raise UserError(say("contest.record-changed", file=str(source)))
-    if to.exists() and file_hash(to) == found:
+    if regular.is_regular(to) and file_hash(to) == found:
         return
     _replace(to, lambda part: shutil.copyfile(source, part))
 

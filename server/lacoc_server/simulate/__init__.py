@@ -4,15 +4,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lacoc_server.simulate.headless import (
-        SETTLE_BEATS,
-        Player,
-        Seated,
-        player,
-        seated,
-        simulate,
-    )
+    from lacoc_server.simulate.headless import Seated, player, seated, simulate
+    from lacoc_server.simulate.inputs import SETTLE_BEATS, Player
 
+_FROM = {
+    "SETTLE_BEATS": "inputs",
+    "Player": "inputs",
+    "Seated": "headless",
+    "player": "headless",
+    "seated": "headless",
+    "simulate": "headless",
+}
 __all__ = ["SETTLE_BEATS", "Player", "Seated", "player", "seated", "simulate"]
 
 
@@ -22,6 +24,6 @@ def __getattr__(name: str) -> Any:
     So the package `environments` in this one can be imported without MuJoCo, and then says what to
     install.
     """
-    if name in __all__:
-        return getattr(import_module(f"{__name__}.headless"), name)
+    if name in _FROM:
+        return getattr(import_module(f"{__name__}.{_FROM[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

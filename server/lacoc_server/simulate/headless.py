@@ -1,14 +1,12 @@
 """A match as fast as the machine can run it: the same beats, with bots in the seats."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Iterator, Sequence
 from pathlib import Path
 
 import msgspec
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
-from lacoc_arenas.bot import BotFactory, Brain
 from lacoc_robots.library import (
     GAIT_NAMES,
     find_robot,
@@ -18,25 +16,19 @@ from lacoc_robots.library import (
 )
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Beat, Match
+from lacoc_server.simulate.inputs import Inputs, Player, opening, whole_match
 from lacoc_server.world.world import World
-from lacoc_shared.decisions import Abort, Official, Start
-from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.inputs import Input, JoinSeat
 from lacoc_shared.messages import Frame, Refusal, SentFile
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.record.pack import pack
 from lacoc_shared.record.schema import Result, Setup
-from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import say
 
 _BROUGHT = "@"
 """Separates a bot from the folder of the files that it steers."""
 _Files = tuple[SentFile, SentFile | None, SentFile | None]
 """Robot, postures (level A), locomotion (level B)."""
-
-AUTHOR = "simulate"
-"""Author of the decisions in a match without a referee."""
-SETTLE_BEATS = BEATS_PER_S
-"""Robots stand in READY until this beat of the match; then the match is started."""
 
 
 class Seated(msgspec.Struct, frozen=True):
@@ -48,19 +40,6 @@ class Seated(msgspec.Struct, frozen=True):
     """Name of the bot as in `brains.find`; with a program, a name for messages."""
     program: bytes | None = None
     """Python source of the bot; None: the name says where the bot is."""
-
-
-@dataclass(frozen=True)
-class Player:
-    """A player of a seat: files and a bot."""
-
-    join: JoinSeat
-    """The join; its `seat` is the player's seat."""
-    bot: BotFactory
-    late_ticks: int = 0
-    """Ticks of PLAYING that pass before the brain sees its first frame. Players who meet again get
-    another number, so that they play another match.
-    """
 
 
 def player(
@@ -197,35 +176,15 @@ def simulate(
 
 
 def _play(match: Match, journal: Journal, players: Sequence[Player]) -> Iterator[Beat]:
-    def pass_beat(inputs: Sequence[Input]) -> Beat:
-        return journal.beat(inputs)[0]
-
-    minds: list[Brain] = []
-    for beat in to_play(match, [player.join for player in players], pass_beat):
-        yield beat
-        if match.phase is Phase.READY and not minds:
-            sheet = match.sheet()
-            minds = [player.bot(sheet, player.join.seat) for player in players]
-    seqs = [0] * len(players)
-    while match.phase is Phase.PLAYING:
-        keys: list[Input] = []
-        for index, (player, mind) in enumerate(zip(players, minds, strict=True)):
-            key = mind(beat.frame) if match.ticks > player.late_ticks else None
-            if key is not None:
-                seqs[index] += 1
-                keys.append(KeySeat(player.join.seat, seqs[index], int(key.level), key.key))
-        beat = pass_beat(keys)
-        yield beat
-    yield pass_beat([closing(match)])
+    yield from _follow(whole_match(players, match.sheet), lambda inputs: journal.beat(inputs)[0])
 
 
 def to_play(
-    match: Match, joins: Sequence[JoinSeat], pass_beat: Callable[[Sequence[Input]], Beat]
+    joins: Sequence[JoinSeat], pass_beat: Callable[[Sequence[Input]], Beat]
 ) -> Iterator[Beat]:
     """Lead a new match to its first beat of PLAYING: teams sit down, robots settle, it is started.
 
     Args:
-        match: the match.
         joins: a join for each seat.
         pass_beat: lets a beat of the match pass.
 
@@ -235,24 +194,21 @@ def to_play(
     Raises:
         FileRefused: if a file has mistakes.
     """
-    beat = pass_beat(joins)
-    for outcome in beat.outcomes:
-        if isinstance(outcome, Refusal):
-            raise FileRefused(list(outcome.mistakes))
-    yield beat
-    yield pass_beat([ReadySeat(join.seat, True) for join in joins])
-    while match.phase is Phase.READY and match.beats < SETTLE_BEATS:
-        yield pass_beat(())
-    if match.phase is Phase.READY:
-        yield pass_beat([Decide(AUTHOR, "", Start())])
-    while match.phase is Phase.COUNTDOWN:
-        yield pass_beat(())
+    yield from _follow(opening(joins), pass_beat)
 
 
-def closing(match: Match) -> Decide:
-    """Return the decision that ends a match: official after its end, void before it."""
-    if match.phase is Phase.FINISHED:
-        return Decide(AUTHOR, "", Official())
-    halted = match.phase is Phase.HALTED
-    reason = say("reason.physics-stopped") if halted else say("reason.ended-early")
-    return Decide(AUTHOR, reason, Abort())
+def _follow(
+    script: Generator[Inputs, Frame, object], pass_beat: Callable[[Sequence[Input]], Beat]
+) -> Iterator[Beat]:
+    """Let the beats of a script pass, and yield each; raise `FileRefused` as `to_play`."""
+    inputs = next(script)
+    while True:
+        beat = pass_beat(inputs)
+        for item, outcome in zip(inputs, beat.outcomes, strict=True):
+            if isinstance(item, JoinSeat) and isinstance(outcome, Refusal):
+                raise FileRefused(list(outcome.mistakes))
+        yield beat
+        try:
+            inputs = script.send(beat.frame)
+        except StopIteration:
+            return

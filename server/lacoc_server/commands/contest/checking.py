@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 NOT_FOLLOWING = 1
 """Exit code: the standings do not follow from what is published."""
+NOT_PROVEN = 3
+"""Exit code: nothing contradicts the standings, but keys of bots could not be checked."""
 
 _Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The published folder.")]
 
@@ -52,15 +54,24 @@ def verify(
         int | None,
         typer.Option(help="Number that chooses the games of --sample; by default a new one."),
     ] = None,
+    programs: Annotated[
+        bool,
+        typer.Option(
+            "--programs",
+            help="Also run the programs of bots that came with entries. They run with your rights: "
+            "only for teams that you trust.",
+        ),
+    ] = False,
     jobs: options.Jobs = None,
     json: options.Json = False,
 ) -> None:
     """Check a published contest: whether its standings follow from entries, facts and records.
 
     All draws and tables are computed again from the facts. Each result is compared with its record,
-    and each record is proven by playing its inputs again. What people decided is listed, because
-    nothing can prove it. The exit code is 0 if everything follows, 1 if something does not, and 2
-    if the folder can't be read.
+    and each record is proven by playing its inputs again. In games without a network each bot must
+    press the recorded keys again. What people decided is listed, because nothing can prove it. The
+    exit code is 0 if everything follows, 1 if something does not, 2 if the folder can't be read,
+    and 3 if nothing contradicts the standings but keys of bots could not be checked.
     """
     from lacoc_server.contest.verify.check import check
 
@@ -71,23 +82,37 @@ def verify(
         def changed(done: int, there: int) -> None:
             progress.update(task, completed=done, total=there)
 
-        found = check(folder, changed, earlier=earlier, sampled=sample, seed=seed, jobs=jobs)
+        found = check(
+            folder,
+            changed,
+            earlier=earlier,
+            sampled=sample,
+            seed=seed,
+            jobs=jobs,
+            programs=programs,
+        )
     if json:
         screen.print_json(_told(found, seed))
     else:
         _show(found)
     if found.findings:
         raise typer.Exit(NOT_FOLLOWING)
+    if found.unchecked:
+        raise typer.Exit(NOT_PROVEN)
 
 
 def _told(found: "Checked", seed: int) -> dict[str, Any]:
     return {
         "follows": not found.findings,
         "findings": [{"code": one.code, "text": render(one)} for one in found.findings],
+        "unchecked": [render(one) for one in found.unchecked],
         "decisions": [render(one) for one in found.decisions],
+        "in_play": [render(one) for one in found.in_play],
         "facts": found.facts,
         "games": found.games,
         "proven": found.proven,
+        "by_bots": found.by_bots,
+        "by_people": found.by_people,
         "least_forged": found.least_forged,
         "seed": seed,
     }
@@ -98,14 +123,22 @@ def _show(found: "Checked") -> None:
 
     for finding in found.findings:
         screen.show(finding)
-    if found.decisions:
-        screen.note(say("verify.decisions", count=len(found.decisions)))
-    for decision in found.decisions:
-        screen.note(decision)
+    for title, told in (
+        (say("verify.decisions", count=len(found.decisions)), found.decisions),
+        (say("verify.referees", count=len(found.in_play)), found.in_play),
+        (say("verify.not-all", count=len(found.unchecked)), found.unchecked),
+    ):
+        if told:
+            screen.note(title)
+        for one in told:
+            screen.note(one)
     if found.findings:
         screen.show(say("verify.wrong", count=len(found.findings)))
-    else:
-        screen.show(say("verify.follows", games=found.games, facts=found.facts))
+        return
+    screen.show(say("verify.follows", games=found.games, facts=found.facts))
+    unchecked = found.games - found.by_bots - found.by_people
+    keys = say("verify.keys", bots=found.by_bots, people=found.by_people, unchecked=unchecked)
+    screen.show(keys)
     if found.proven < found.games:
         said = say(
             "verify.sampled",

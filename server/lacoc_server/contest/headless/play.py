@@ -53,6 +53,8 @@ class _Game(NamedTuple):
 
     match: Match
     job: Job
+    steer: str
+    """The bot that steers the teams that have entered none; "": both have entered one."""
 
     @property
     def name(self) -> tuple[str, int]:
@@ -108,11 +110,13 @@ def play(
         for game in _games(contest, facts, entry, steer, busy):
             if (fact := _result(game, folder, facts)) is not None:
                 known.append(fact)
+            elif game.job.match_id in played:  # what was kept is no record, or was removed since
+                path = packed_path(folder.records, game.job.match_id)
+                failed[game.name] = (game.job, say("contest.no-result", file=str(path)))
             else:
-                assert game.job.match_id not in played, "a game that was played has a record"
                 playing[engine.submit(game.job)] = game
         if known:
-            store.decide(partial(_still_due, newest, known))
+            store.decide(partial(_still_due, newest, facts, known))
             continue
         if not playing:
             break
@@ -138,16 +142,33 @@ def play(
 
 
 def _still_due(
-    newest: Newest, known: Sequence[Played | Replaced], facts: tuple[AnyFact, ...]
+    newest: Newest,
+    before: tuple[AnyFact, ...],
+    known: Sequence[Played | Replaced],
+    facts: tuple[AnyFact, ...],
 ) -> Iterator[AnyFact]:
     """Yield the results in `known` of games that, by the facts, are still to be played.
 
-    Another program may just have appended another result of such a game, or a fact after which the
-    game is not played.
+    Another program may just have appended another result of such a game, a fact after which the
+    game is not played, or other files of a team.
+
+    Args:
+        newest: computes the contest.
+        before: the facts by which the games were due.
+        known: the results.
+        facts: the facts now.
     """
+    was, now = _files(newest.of(before)), _files(newest.of(facts))
     ready = playable(newest.of(facts))
     due_now = {(match.pairing.id, match.next_game, match.next_seats) for match in ready}
-    yield from (fact for fact in known if (fact.pairing, fact.game, fact.teams) in due_now)
+    for fact in known:
+        same_files = all(was[team] == now[team] for team in fact.teams)
+        if same_files and (fact.pairing, fact.game, fact.teams) in due_now:
+            yield fact
+
+
+def _files(contest: Contest) -> dict[str, str]:
+    return {team.name: team.files for team in contest.teams}
 
 
 def _due(newest: Newest, facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
@@ -163,18 +184,20 @@ def _games(
     busy: Container[tuple[str, int]],
 ) -> Iterator[_Game]:
     """Yield the games that can be played now, except those that are `busy`."""
-    files = {team.name: team.files for team in contest.teams}
+    files = _files(contest)
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     for match in playable(contest):
         name = (match.pairing.id, match.next_game)
         if match.next_seats is None or name in busy:
             continue
         late = late_ticks(contest, facts, match)
+        entries = [entry(files[team]) for team in match.next_seats]
         seated = tuple(
-            _seated(seat, team, entry(files[team]), steer)
-            for seat, team in enumerate(match.next_seats)
+            _seated(seat, team, one, steer)
+            for seat, (team, one) in enumerate(zip(match.next_seats, entries, strict=True))
         )
-        yield _Game(match, _job(views[match.pairing.id], seated, late))
+        job = _job(views[match.pairing.id], seated, late)
+        yield _Game(match, job, "" if all(one.bot for one in entries) else steer)
 
 
 def _seated(seat: int, team: str, entry: Entry, steer: str) -> Seated:
@@ -285,6 +308,7 @@ def _result(
         outcome=outcome(found.seats, found.winner),
         record=path.name,
         record_hash=file_hash(path),
+        steer=game.steer,
     )
 
 

@@ -3,7 +3,7 @@
 import os
 import signal
 import tempfile
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from pathlib import Path
@@ -193,19 +193,29 @@ def _remove_half_record(job: Job) -> None:
 
 def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Result:
     arena = arenas.load(job.arena, job.overrides)
-    setup = Setup(
-        match_id=job.match_id,
+    setup = setup_of(job.match_id, arena, job.limits)
+    players = [Player(one.join, bot_of(arena, one), job.late_ticks) for one in job.players]
+    return simulate(setup, players, Path(job.folder) if job.folder else None, watch, arena.folder)
+
+
+def setup_of(match_id: str, arena: arenas.Arena, limits: Mapping[str, float]) -> Setup:
+    """Return the setup of a match without a network."""
+    return Setup(
+        match_id=match_id,
         court=COURT,
         match=1,
         arena=arena.name,
         settings=arena.settings,
-        limits=job.limits,
+        limits=dict(limits),
     )
-    players = [Player(one.join, _bot(arena, one), job.late_ticks) for one in job.players]
-    return simulate(setup, players, Path(job.folder) if job.folder else None, watch, arena.folder)
 
 
-def _bot(arena: arenas.Arena, seated: Seated) -> BotFactory:
+def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
+    """Find the bot of a player; a program that it brings is run.
+
+    Raises:
+        UserError: if there is no such bot, or its program has a mistake.
+    """
     if seated.program is None:
         return brains.find(arena, seated.bot)
     with tempfile.TemporaryDirectory() as folder:

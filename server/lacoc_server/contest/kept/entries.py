@@ -20,6 +20,7 @@ from lacoc_robots.seat_files import SeatFiles, files_in, gaits_in, remarks, to_s
 from lacoc_robots.stand_test import try_standing
 from lacoc_server.match.entry import Entry as WeighedIn
 from lacoc_server.match.entry import weigh_in
+from lacoc_shared.command import regular
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
@@ -29,6 +30,8 @@ from lacoc_shared.words import Phrase, say
 _ROBOT, _PROGRAM, _BOT = "robot.toml", "bot.py", "entry.json"
 """Names of the files of an entry besides the gait files."""
 _HASH = re.compile("[0-9a-f]{32}")
+_MOST_BYTES = 1 << 22
+"""Largest file of an entry that is read."""
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True):
@@ -253,16 +256,37 @@ class EntryFolder:
             why = say("contest.no-hash")
             raise UserError(say("contest.no-entry", folder=str(place), why=why)) from None
         try:
-            bot_file = (place / _BOT).read_bytes()
+            bot_file = self._read(entry_hash, _BOT)
             bot = msgspec.json.decode(bot_file, type=dict[str, str])["bot"]
-            robot = (place / _ROBOT).read_bytes()
-            rest = [_read_if_there(place / name) for name in (*GAIT_NAMES, _PROGRAM)]
-        except (OSError, KeyError, msgspec.MsgspecError) as error:
-            raise UserError(say("contest.no-entry", folder=str(place), why=str(error))) from None
+            robot = self._read(entry_hash, _ROBOT)
+            rest = [self._read_if_there(entry_hash, name) for name in (*GAIT_NAMES, _PROGRAM)]
+        except (UserError, KeyError, msgspec.MsgspecError, UnicodeDecodeError) as error:
+            told = error.phrase if isinstance(error, UserError) else str(error)
+            raise UserError(say("contest.no-entry", folder=str(place), why=told)) from None
         entry = Entry(robot=robot, postures=rest[0], locomotion=rest[1], bot=bot, program=rest[2])
         if entry.hash != entry_hash or bot_file != _files(entry)[_BOT]:
             raise UserError(say("contest.entry-changed", folder=str(place)))
         return entry
+
+    def others(self, entry_hash: str) -> list[str]:
+        """Return the names in an entry's folder that are no files of it.
+
+        Raises:
+            UserError: if the folder can't be read, or the entry is not whole.
+        """
+        known = _files(self.load(entry_hash))
+        return [name for name in regular.names(self.path, entry_hash) if name not in known]
+
+    def _read(self, entry_hash: str, name: str) -> bytes:
+        """Read a file of an entry; anybody may have made the folder."""
+        folder = self.path.parent  # so that a link in place of the folder of entries is found
+        return regular.read(folder, self.path.name, entry_hash, name, most_bytes=_MOST_BYTES)
+
+    def _read_if_there(self, entry_hash: str, name: str) -> bytes | None:
+        try:
+            return self._read(entry_hash, name)
+        except regular.Missing:
+            return None
 
 
 def _files(entry: Entry) -> dict[str, bytes]:
@@ -282,7 +306,3 @@ def _read(path: Path) -> bytes:
     except OSError as error:
         why = error.strerror or str(error)
         raise UserError(say("command.cannot-read", path=str(path), why=why)) from None
-
-
-def _read_if_there(path: Path) -> bytes | None:
-    return path.read_bytes() if path.exists() else None

@@ -44,7 +44,9 @@ class ContestFolder:
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"
         """Names of the courts that have left their machine, and are run here since; one a line."""
         self._lock = folder / f"{file.stem}.lock"
-        self.entries = EntryFolder(folder / "entries")
+        self.entries = EntryFolder(
+            (folder / "entries").resolve()
+        )  # the organiser may have linked it
         self.records = self.contest.recordings
 
     @contextmanager
@@ -83,3 +85,8 @@ def file_hash(path: Path) -> str:
     """
     with path.open("rb") as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()
+
+
+def hash_of(data: bytes) -> str:
+    """Return the hash of a file's bytes, as `file_hash`."""
+    return hashlib.blake2b(data, digest_size=16).hexdigest()

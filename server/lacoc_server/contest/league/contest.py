@@ -21,7 +21,14 @@ from lacoc_server.contest.league.facts import (
     ordered,
 )
 from lacoc_server.contest.league.formats.format import Format, Pair, Stage
-from lacoc_server.contest.league.matches import Match, Rules, counting, fact_teams, resolve
+from lacoc_server.contest.league.matches import (
+    Game,
+    Match,
+    Rules,
+    counting,
+    fact_teams,
+    resolve,
+)
 from lacoc_server.contest.league.standings import Table
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -279,7 +286,7 @@ def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str
     """Note the results and decisions that a match does not use."""
     used = {game.fact for game in match.games} if match else set()
     teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
-    counted, _, _ = counting(teams, about)
+    counted, is_void, _ = counting(teams, about)
     for fact in about:
         if match is None:
             unused[fact.id] = say("league.unknown-pairing", pairing=fact.pairing)
@@ -289,12 +296,31 @@ def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str
         elif fact_teams(fact) and {*fact_teams(fact)} != {*teams}:
             unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
         elif isinstance(fact, Played | Replaced) and fact.id not in used:
-            other = fact.game not in counted or counted[fact.game].fact != fact.id
-            unused[fact.id] = (
-                say("league.result-replaced", pairing=fact.pairing, game=fact.game)
-                if other
-                else say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
-            )
+            unused[fact.id] = _why_unused(match, fact, counted.get(fact.game), is_void)
+
+
+def _why_unused(
+    match: Match, fact: Played | Replaced, counts: Game | None, is_void: bool
+) -> Phrase:
+    """Say why a match does not use a result.
+
+    Args:
+        match: the match.
+        fact: the result.
+        counts: the result of this game that counts; None: there is none.
+        is_void: whether a decision has made the match void.
+    """
+    if is_void:
+        return say("league.match-void", pairing=fact.pairing)
+    if fact.outcome == "void":
+        return say("league.result-void", pairing=fact.pairing, game=fact.game)
+    if counts is None:
+        return say("league.result-again", pairing=fact.pairing, game=fact.game)
+    if counts.fact != fact.id:
+        return say("league.result-replaced", pairing=fact.pairing, game=fact.game)
+    if match.decided:
+        return say("league.result-unneeded", pairing=fact.pairing, game=fact.game)
+    return say("league.result-early", pairing=fact.pairing, game=fact.game)
 
 
 def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Called, ...]:

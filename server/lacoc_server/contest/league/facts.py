@@ -165,6 +165,10 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     """File name of the court's record."""
     record_hash: str = ""
     """Hash of that file (`lacoc_server.contest.kept.folder.file_hash`)."""
+    steer: str = ""
+    """Name of the bot that steered a team without one, in a game without a network; "": none did,
+    or the fact is older.
+    """
 
 
 class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):
@@ -286,5 +290,5 @@ def decode(data: bytes) -> tuple[AnyFact, ...]:
                 )
             )
         return ordered(msgspec.json.decode(data, type=_File).facts)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(say("league.wrong-facts", error=str(error))) from None

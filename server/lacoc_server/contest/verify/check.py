@@ -1,12 +1,14 @@
 """Checks a published contest on all cores."""
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_server.contest.verify.games import Game, check_game, games_of
+from lacoc_server.contest.league.facts import AnyFact, Played
+from lacoc_server.contest.verify.games import Found, Game, check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, decisions
-from lacoc_server.contest.verify.published import check_published, read
+from lacoc_server.contest.verify.published import check_published, other_sheet, read
 from lacoc_server.contest.verify.sampling import least_forged, sample
 from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
 from lacoc_shared.words import Phrase, say
@@ -19,13 +21,21 @@ class Checked(NamedTuple):
     """What the check of a published contest found."""
 
     findings: tuple[Phrase, ...]
-    """What does not follow; empty: everything does."""
+    """What does not follow; empty: nothing contradicts anything."""
+    unchecked: tuple[Phrase, ...]
+    """What could not be checked, and why: keys of bots, each with its game; the sheet."""
     decisions: tuple[Phrase, ...]
     """What people decided; no record can prove it."""
+    in_play: tuple[Phrase, ...]
+    """What referees decided in games at courts."""
     facts: int
     games: int
     proven: int
     """Games whose records were proven; of the others only the results were compared."""
+    by_bots: int
+    """Games in which the keys of all bots were checked."""
+    by_people: int
+    """Games at courts between teams without bots: no record shows who pressed the keys."""
     least_forged: int
     """If this many records are forged, a check finds one with probability `sampling.CONFIDENCE`."""
 
@@ -38,6 +48,7 @@ def check(
     sampled: int | None = None,
     seed: int = 0,
     jobs: int | None = None,
+    programs: bool = False,
 ) -> Checked:
     """Check a published contest.
 
@@ -50,6 +61,7 @@ def check(
             of all games are compared with their records.
         seed: chooses the games.
         jobs: number of processes; None: one for each core.
+        programs: whether to run the bots' programs that came with entries.
 
     Raises:
         UserError: if facts can't be read, or name a format that is not known here.
@@ -59,15 +71,32 @@ def check(
     findings += check_published(folder, facts)
     games = games_of(facts)
     proven = games if sampled is None else sample(games, sampled, seed)
-    findings += _check_games(folder, games, {game.played.id for game in proven}, jobs, progress)
+    ids = {game.played.id for game in proven}
+    found = [*_check_games(folder, games, ids, jobs, progress, programs)]
+    findings += (one for game in found for one in game.wrong)
+    sound = [game for game in found if not (game.wrong or game.unchecked)]
     return Checked(
         findings=tuple(findings),
-        decisions=tuple(decisions(facts)),
+        unchecked=(
+            *filter(None, [other_sheet(folder)]),
+            *(one for game in found for one in game.unchecked),
+        ),
+        decisions=(*decisions(facts), *_steered(facts)),
+        in_play=tuple(one for game in found for one in game.decided),
         facts=len(facts),
         games=len(games),
         proven=len(proven),
+        by_bots=sum(game.has_bots for game in sound),
+        by_people=sum(not game.has_bots for game in sound),
         least_forged=least_forged(len(games), len(proven)),
     )
+
+
+def _steered(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
+    """Yield which bots steered teams that have entered none: somebody chose them."""
+    bots = Counter(fact.steer for fact in facts if isinstance(fact, Played) and fact.steer)
+    for bot, games in bots.items():
+        yield say("verify.steered", bot=bot, games=games)
 
 
 def _check_games(
@@ -76,26 +105,25 @@ def _check_games(
     proven: set[str],
     jobs: int | None,
     progress: Callable[[int, int], None],
-) -> list[Phrase]:
-    found: list[Phrase] = []
+    programs: bool,
+) -> Iterator[Found]:
     with Workers(jobs, limit_s=_LONGEST_S) as workers:
         futures = [
-            workers.submit(check_game, folder, game, game.played.id in proven) for game in games
+            workers.submit(check_game, folder, game, game.played.id in proven, programs)
+            for game in games
         ]
         for number, (game, future) in enumerate(zip(games, futures, strict=True), 1):
             try:
-                found += future.result()
+                yield future.result()
             except (WorkerDied, WorkerFailed) as error:  # no record may end the check of the others
                 why = str(error).strip().splitlines()[-1]
                 played = game.played
-                found.append(
-                    say(
-                        "verify.not-checked",
-                        record=played.record,
-                        why=why,
-                        pairing=played.pairing,
-                        game=played.game,
-                    )
+                failed = say(
+                    "verify.not-checked",
+                    record=played.record,
+                    why=why,
+                    pairing=played.pairing,
+                    game=played.game,
                 )
+                yield Found(wrong=(failed,))
             progress(number, len(games))
-    return found

@@ -7,22 +7,33 @@ from typing import Any
 import msgspec
 
 from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
 from lacoc_server.contest.headless.play import late_ticks, outcome
+from lacoc_server.contest.headless.pool import setup_of
 from lacoc_server.contest.kept.entries import Entry, EntryFolder
-from lacoc_server.contest.kept.folder import file_hash
+from lacoc_server.contest.kept.folder import hash_of
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Planned, Played
+from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.publish import ENTRIES, RECORDS
-from lacoc_server.contest.verify.bots import may_have_pressed
-from lacoc_server.contest.verify.history import call_of, files_of, known_before
+from lacoc_server.contest.verify.alone import Checked, Side, check_inputs, ends_alike
+from lacoc_server.contest.verify.history import call_of, files_of
 from lacoc_server.journal.replay import verify as prove
-from lacoc_server.journal.verdict import Verdict
+from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_shared.command import regular
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase, say
+
+RECORD_BYTES = 1 << 27
+"""Largest record that is read. A match of three minutes has 3 MB."""
+_ROUTINE = ("ready", "start", "official", "next")
+"""Decisions that each match at a court has; they change no result."""
 
 
 class Game(msgspec.Struct, frozen=True, kw_only=True):
@@ -31,12 +42,27 @@ class Game(msgspec.Struct, frozen=True, kw_only=True):
     played: Played
     plan: Planned | None
     """The plan of its stage; None: it was not the turn of this game."""
-    call: str = ""
-    """Id of the call by which a court got the game; "": it was played without a network."""
+    why_not: Phrase | None = None
+    """Why it was not the turn of this game."""
+    call: Called | None = None
+    """The call by which a court got the game; None: it was played without a network."""
     late_ticks: int = 0
     """How many ticks later its bots start, if it was played without a network."""
     files: tuple[tuple[str, ...], ...]
     """By seat: hashes of the entries with which the team may have played."""
+
+
+class Found(msgspec.Struct, frozen=True, kw_only=True):
+    """What the check of a game found."""
+
+    wrong: tuple[Phrase, ...] = ()
+    """What does not follow from facts, entries and record."""
+    unchecked: tuple[Phrase, ...] = ()
+    """Which keys of bots could not be checked, and why."""
+    decided: tuple[Phrase, ...] = ()
+    """What referees decided in it; no record proves that they were right."""
+    has_bots: bool = False
+    """Whether a bot has entered for one of the teams, or steered it."""
 
 
 def games_of(facts: Sequence[AnyFact]) -> list[Game]:
@@ -45,116 +71,218 @@ def games_of(facts: Sequence[AnyFact]) -> list[Game]:
 
 
 def _game(facts: Sequence[AnyFact], played: Played) -> Game:
-    before = known_before(facts, played)
-    contest = compute(before, FORMATS)
-    files = tuple(files_of(facts, played, team) for team in played.teams)
     call = call_of(facts, played)
+    before = facts[: facts.index(call or played)]
+    contest = compute(before, FORMATS)
+    files = tuple(files_of(facts, call, played, team) for team in played.teams)
     for view in contest.stages:
         for match in view.matches:
-            due = (match.pairing.id, match.next_game, match.next_seats)
-            if due == (played.pairing, played.game, played.teams):
-                late = late_ticks(contest, before, match)
-                return Game(played=played, plan=view.plan, call=call, late_ticks=late, files=files)
-    return Game(played=played, plan=None, call=call, files=files)
+            if match.pairing.id != played.pairing:
+                continue
+            if (why := _why_not(match, call, played)) is not None:
+                return Game(played=played, plan=None, why_not=why, call=call, files=files)
+            late = late_ticks(contest, before, match)
+            return Game(played=played, plan=view.plan, call=call, late_ticks=late, files=files)
+    why = say("due.no-pairing")
+    return Game(played=played, plan=None, why_not=why, call=call, files=files)
 
 
-def check_game(folder: Path, game: Game, proven: bool) -> list[Phrase]:
-    """Compare the result of a game with its record; return what is wrong.
+def _why_not(match: Match, call: Called | None, played: Played) -> Phrase | None:
+    """Say why a game was not the next one of its match; None: it was."""
+    for game in match.games:
+        if game.number == played.game:
+            return say("due.has-result", fact=game.fact)
+    if match.state != "open":
+        return say("due.not-open")
+    if match.next_game != played.game:
+        return say("due.other-game", game=match.next_game)
+    if match.next_seats != played.teams or (call is not None and call.teams != played.teams):
+        return say("due.other-seats")
+    return None
+
+
+def check_game(folder: Path, game: Game, proven: bool, programs: bool = False) -> Found:
+    """Compare the result of a game with its record.
 
     Args:
         folder: the published folder.
         game: the game.
         proven: whether to prove the record too: its inputs are played again.
+        programs: whether to run the bots' programs that came with entries.
     """
-    return [*_faults(folder, game, proven)]
-
-
-def _faults(folder: Path, game: Game, proven: bool) -> Iterator[Phrase]:
     played = game.played
     file, pairing, number = played.record, played.pairing, played.game
-    if not played.record or Path(played.record).name != played.record or "\0" in played.record:
-        yield say("verify.no-record", pairing=played.pairing, game=played.game)
-        return
-    if game.plan is None:
-        yield say("verify.not-due", pairing=played.pairing, game=played.game)
-        return
-    path = folder / RECORDS / played.record
+    if not file:
+        return Found(wrong=(say("verify.no-record", pairing=pairing, game=number),))
+    if game.why_not is not None:
+        why = game.why_not
+        return Found(wrong=(say("verify.not-due", pairing=pairing, game=number, why=why),))
     try:
-        if played.record_hash and file_hash(path) != played.record_hash:
-            yield say("verify.record-changed", record=file, pairing=pairing, game=number)
-        record = Record.read(path)
-        wrong = [*_differences(folder, game, game.plan, record)]
-        verdict = _verdict(record) if proven and not wrong else None
-    except OSError as error:
-        yield say("verify.no-file", file=played.record, why=error.strerror or str(error))
+        data = regular.read(folder, RECORDS, file, most_bytes=RECORD_BYTES)
+        if played.record_hash and hash_of(data) != played.record_hash:
+            changed = say("verify.record-changed", record=file, pairing=pairing, game=number)
+            return Found(wrong=(changed,))
+        record = Record.read([folder / RECORDS / file])
+        found = _compared(folder, game, record, programs)
+        if not found.wrong and proven:
+            return _proven(folder, game, record, found, programs)
     except UserError as error:
-        yield say("verify.bad-record", record=file, pairing=pairing, game=number, why=error.phrase)
-    else:
-        yield from (
-            say("verify.other-game", record=file, pairing=pairing, game=number, what=what)
-            for what in wrong
-        )
-        if verdict is not None and (not verdict.same or record.lost):
-            yield say(
-                "verify.not-proven", record=file, pairing=pairing, game=number, why=verdict.said
-            )
+        bad = say("verify.bad-record", record=file, pairing=pairing, game=number, why=error.phrase)
+        return Found(wrong=(bad,))
+    return found
 
 
-def _verdict(record: Record) -> Verdict:
-    """Prove a record.
-
-    Raises:
-        UserError: if its arena is not installed, other physics made it, or it is damaged.
-    """
-    return next(step for step in prove(record, processes=1) if isinstance(step, Verdict))
-
-
-def _differences(folder: Path, game: Game, plan: Planned, record: Record) -> Iterator[Phrase]:
-    """Yield each difference between a record and what the facts say about its game.
+def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found:
+    """Compare a game with its record, without physics; arguments as in `check_game`.
 
     Raises:
         UserError: if the arena of the plan is not installed, or its settings are wrong.
     """
+    arena = _arena(game)
+    wrong = [*_differences(game, arena, record)]
+    sides: list[Side] = []
+    if not wrong:
+        sides = _sides(folder, game, record)
+        teams = game.played.teams
+        wrong += (say("verify.of-files", team=one) for one in teams if one not in _teams(sides))
+    checked = Checked()
+    if not wrong and game.call is None:
+        checked = check_inputs(record, arena, sides, game.late_ticks, programs=programs)
+    elif not wrong:
+        at_court = (say("unchecked.court", team=one.team) for one in sides if one.entry.bot)
+        checked = Checked(unchecked=tuple(at_court))
+    return Found(
+        wrong=tuple(_other_game(game, what) for what in (*wrong, *checked.wrong)),
+        unchecked=tuple(_unchecked(game, why) for why in checked.unchecked),
+        decided=() if wrong or game.call is None else tuple(_decisions(record, game.played)),
+        has_bots=game.call is None or any(one.entry.bot for one in sides),
+    )
+
+
+def _proven(folder: Path, game: Game, record: Record, found: Found, programs: bool) -> Found:
+    """Prove the record of a game, and add what that found.
+
+    With another arithmetic a forger can choose between paths that are a little apart. So a game
+    without a network is then played again: what it ends with here is nobody's choice.
+
+    Raises:
+        UserError: if other physics made the record, or it is damaged.
+    """
+    verdict = next(step for step in prove(record, processes=1) if isinstance(step, Verdict))
+    played = game.played
+    if not verdict.same:
+        said = say(
+            "verify.not-proven",
+            record=played.record,
+            why=verdict.said,
+            pairing=played.pairing,
+            game=played.game,
+        )
+        return msgspec.structs.replace(found, wrong=(said,))
+    if verdict.kind is Kind.SAME or game.call is not None or found.unchecked:
+        return found
+    sides = _sides(folder, game, record)
+    if ends_alike(record, _arena(game), sides, game.late_ticks, programs=programs):
+        return found
+    why = _unchecked(game, say("unchecked.arithmetic"))
+    return msgspec.structs.replace(found, unchecked=(why,))
+
+
+def _arena(game: Game) -> Arena:
+    """Load the arena of a game; an installed one alone, because facts must not name code to run.
+
+    Raises:
+        UserError: if it is not installed, or its settings are wrong.
+    """
+    assert game.plan is not None
+    return arenas.load_installed(game.plan.arena, game.plan.arena_settings)
+
+
+def _sides(folder: Path, game: Game, record: Record) -> list[Side]:
+    """Return who played, by seat; a team without an entry that fits the record is left out."""
+    entries = EntryFolder(folder / ENTRIES)
+    sides: list[Side] = []
+    for seat, team in enumerate(game.played.teams):
+        joins = {*map(_content, _joins(record, seat))}
+        for one in game.files[seat]:
+            entry = _load(entries, one)
+            if entry is not None and joins == {_content(entry.join(seat, team))}:
+                sides.append(Side(team, entry, game.played.steer))
+                break
+    return sides
+
+
+def _teams(sides: Sequence[Side]) -> set[str]:
+    return {one.team for one in sides}
+
+
+def _other_game(game: Game, what: Phrase) -> Phrase:
+    played = game.played
+    return say(
+        "verify.other-game",
+        record=played.record,
+        what=what,
+        pairing=played.pairing,
+        game=played.game,
+    )
+
+
+def _unchecked(game: Game, why: Phrase) -> Phrase:
+    return say("verify.unchecked", pairing=game.played.pairing, game=game.played.game, why=why)
+
+
+def _differences(game: Game, arena: Arena, record: Record) -> Iterator[Phrase]:
+    """Yield each difference between a record and what the facts say about its game."""
     played = game.played
     setup, result = record.header.setup, record.result
+    if record.cut is not None:  # nobody answered in its last beat, so nothing proves that one
+        yield say("verify.of-end", cut=record.cut)
     if setup.origin is not None:
         yield say("verify.of-fork", match=setup.origin.match_id, beat=setup.origin.beat)
-    if packed_path(Path(), record.header.match_id).name != played.record:
+    if {packed_path(Path(), one).name for one in (record.header.match_id, setup.match_id)} != {
+        played.record
+    }:
         yield say("verify.of-name")
-    if (setup.assigned.call if setup.assigned else "") != game.call:
+    if (setup.assigned.call if setup.assigned else "") != (game.call.id if game.call else ""):
         yield say("verify.of-call")
-    # An installed arena alone is loaded: a folder's code must not run because the facts name it.
-    arena = arenas.load_installed(plan.arena, plan.arena_settings)
+    elif not _is_of_court(record, setup, game, arena):
+        yield say("verify.of-court")
     if (setup.arena, _rules(setup.settings)) != (arena.name, _rules(arena.settings)):
         yield say("verify.of-arena")
         return
-    if setup.limits != plan.limits:
+    if game.plan is None or setup.limits != game.plan.limits:
         yield say("verify.of-limits")
     if result is None or result.teams != played.teams:
         yield say("verify.of-teams")
         return
     seats = tuple(seat.id for seat in arena.seats)
     # A game that a referee voided in play has no score for the office, but one in its record.
-    no_score = played.outcome == "void" and not any(played.scores)
+    no_score = game.call is not None and played.outcome == "void" and not any(played.scores)
     same_score = no_score or result.scores == played.scores
     if not same_score or outcome(seats, result.official) != played.outcome:
         yield say("verify.of-result")
-    entries = EntryFolder(folder / ENTRIES)
-    for seat, team in enumerate(played.teams):
-        allowed = [found for one in game.files[seat] if (found := _load(entries, one)) is not None]
-        joins = [
-            one
-            for inputs in record.inputs.values()
-            for one in inputs
-            if isinstance(one, JoinSeat) and one.seat == seat
-        ]
-        fits = [
-            one for one in allowed if {*map(_content, joins)} == {_content(one.join(seat, team))}
-        ]
-        if not fits:
-            yield say("verify.of-files", team=team)
-        elif not any(may_have_pressed(record, arena, seat, one, game.late_ticks) for one in fits):
-            yield say("verify.of-bot", team=team)
+
+
+def _is_of_court(record: Record, setup: Setup, game: Game, arena: Arena) -> bool:
+    """Return whether a record is of the court of the call; or without a call, of no court."""
+    if game.call is not None:
+        return setup.court == game.call.court
+    wanted = setup_of(setup.match_id, arena, setup.limits)
+    same = msgspec.structs.replace(setup, settings=wanted.settings, arena=wanted.arena) == wanted
+    return same and len(record.headers) == 1 and record.health is None
+
+
+def _decisions(record: Record, played: Played) -> Iterator[Phrase]:
+    """Yield what referees decided in a game, besides what each match has."""
+    for event in record.events:
+        if event.kind == "decision" and event.data.get("decision") not in _ROUTINE:
+            yield say(
+                "verify.in-play",
+                pairing=played.pairing,
+                game=played.game,
+                at_s=event.clock_ticks * BEAT_S,
+                said=event.said,
+            )
 
 
 def _rules(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -166,9 +294,18 @@ def _rules(settings: Mapping[str, Any]) -> dict[str, Any]:
     return {**settings, "seat": seats}
 
 
-def _content(join: JoinSeat) -> tuple[bytes | None, ...]:
+def _joins(record: Record, seat: int) -> list[JoinSeat]:
+    return [
+        one
+        for inputs in record.inputs.values()
+        for one in inputs
+        if isinstance(one, JoinSeat) and one.seat == seat
+    ]
+
+
+def _content(join: JoinSeat) -> tuple[object, ...]:
     files = (join.robot, join.postures, join.locomotion)
-    return tuple(None if file is None else file.data for file in files)
+    return (join.team, *(None if file is None else file.data for file in files))
 
 
 def _load(entries: EntryFolder, entry: str) -> Entry | None:

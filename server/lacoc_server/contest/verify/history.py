@@ -12,6 +12,7 @@ from lacoc_server.contest.league.facts import (
     Entered,
     FilesChanged,
     Played,
+    Recalled,
     RoundDrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -20,7 +21,15 @@ from lacoc_shared.words import Phrase, say
 
 OfFiles = Entered | FilesChanged
 """Facts that give a team its files."""
-_HARMLESS = ("league.result-replaced", "league.result-unneeded", "league.other-teams")
+_HARMLESS = (
+    "league.match-void",
+    "league.other-teams",
+    "league.result-again",
+    "league.result-early",
+    "league.result-replaced",
+    "league.result-unneeded",
+    "league.result-void",
+)
 """Why facts of an honest contest may change nothing: a later decision has changed the bracket."""
 
 
@@ -65,32 +74,37 @@ def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Itera
             return
 
 
-def known_before(facts: Sequence[AnyFact], played: Played) -> Sequence[AnyFact]:
-    """Return the facts before the call of a game, or before its result if nobody called it."""
-    at = facts.index(played)
-    for place in range(at - 1, -1, -1):
-        fact = facts[place]
-        if isinstance(fact, Called) and (fact.pairing, fact.game) == (played.pairing, played.game):
-            return facts[:place]
-    return facts[:at]
+def call_of(facts: Sequence[AnyFact], played: Played) -> Called | None:
+    """Return the call by which a court got a game; None: it was played without a network.
+
+    A call that was taken back, or that has had its result, is none any more.
+    """
+    call: Called | None = None
+    for fact in facts[: facts.index(played)]:
+        if isinstance(fact, Called | Recalled | Played) and _game(fact) == _game(played):
+            call = fact if isinstance(fact, Called) else None
+    return call
 
 
-def files_of(facts: Iterable[AnyFact], game: Played, team: str) -> tuple[str, ...]:
+def _game(fact: Called | Recalled | Played) -> tuple[str, int]:
+    return fact.pairing, fact.game
+
+
+def files_of(
+    facts: Sequence[AnyFact], call: Called | None, played: Played, team: str
+) -> tuple[str, ...]:
     """Return the hashes of the files with which a team may have played a game.
 
-    These are the newest files before the result of the game. If the team handed them in after
-    entries were closed, the files before them count too: a game goes on with the files with which
-    it began.
+    Without a network these are its newest files before the result. At a court they are its newest
+    ones before the call, or those that it has handed in since: a court that lost its machine may
+    have been given the game again.
     """
+    began, ended = facts.index(call or played), facts.index(played)
     hashes: list[str] = []
-    closed = False
-    for fact in facts:
-        if fact.number >= game.number:
-            break
-        closed = closed or isinstance(fact, Closed)
+    for at, fact in enumerate(facts[:ended]):
         if isinstance(fact, OfFiles) and fact.team == team:
-            hashes = [*hashes, fact.files] if closed else [fact.files]
-    return tuple(hashes[-2:])
+            hashes = [*hashes, fact.files] if at > began else [fact.files]
+    return tuple(hashes)
 
 
 def _gaps(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
@@ -129,15 +143,3 @@ def _content(draw: Closed | Drawn | RoundDrawn) -> tuple[object, ...]:
     if isinstance(draw, RoundDrawn):
         return draw.stage, draw.round, draw.pairs
     return ()
-
-
-def call_of(facts: Sequence[AnyFact], played: Played) -> str:
-    """Return the id of the call by which a court got a game; "" if nobody called it."""
-    calls = [
-        fact.id
-        for fact in facts
-        if isinstance(fact, Called)
-        and (fact.pairing, fact.game) == (played.pairing, played.game)
-        and fact.number < played.number
-    ]
-    return calls[-1] if calls else ""

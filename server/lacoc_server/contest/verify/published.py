@@ -1,6 +1,7 @@
 """A published folder: its facts are read, and all in it that follows from them is checked."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import msgspec
@@ -11,10 +12,22 @@ from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import AnyFact, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.publish import ENTRIES, FACTS, SHEET, tables
+from lacoc_server.contest.publish import (
+    ENTRIES,
+    FACTS,
+    RECORDS,
+    SHEET,
+    entries_of,
+    records_of,
+    tables,
+)
 from lacoc_server.contest.verify.history import OfFiles, check_history
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.command import regular
+from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import Phrase, say
+
+_MOST_BYTES = 1 << 25
+"""Largest file of facts, sheet or table that is read. 10,000 games have 4 MB."""
 
 
 def read(path: Path) -> tuple[AnyFact, ...]:
@@ -23,12 +36,10 @@ def read(path: Path) -> tuple[AnyFact, ...]:
     Raises:
         UserError: if there are none, or they can't be read.
     """
-    file = path / FACTS if path.is_dir() else path
-    try:
-        return league_facts.decode(file.read_bytes())
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise UserError(say("command.cannot-read", path=str(file), why=why)) from None
+    if path.is_dir():
+        return league_facts.decode(regular.read(path, FACTS, most_bytes=_MOST_BYTES))
+    file = path.resolve()  # the user named it, so it may be a link
+    return league_facts.decode(regular.read(file.parent, file.name, most_bytes=_MOST_BYTES))
 
 
 def check_published(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
@@ -44,27 +55,64 @@ def check_published(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase
         UserError: if the facts name a format or a tie-break that is not known here.
     """
     contest = compute(facts, FORMATS)
+    yield from _check_facts(folder, facts)
     yield from check_history(facts, contest)
     yield from _check_tables(folder, contest)
     yield from _records_used_twice(facts)
     if contest.closed:  # until then the files of a team are nobody else's business
         yield from _check_entries(folder, facts)
+    yield from _check_names(folder, facts, contest)
+
+
+def _check_facts(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
+    """Check that nothing in the file was passed over: a field twice, or one that is not known."""
+    if regular.read(folder, FACTS, most_bytes=_MOST_BYTES) != league_facts.encode(facts):
+        yield say("verify.more-in-facts", file=FACTS)
+
+
+def other_sheet(folder: Path) -> Phrase | None:
+    """Return why the sheet can't be compared: another version wrote its layout; None: it can be."""
+    try:
+        found = msgspec.json.decode(_sheet(folder), type=_Layout).version
+    except (UserError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+        return None  # it is told as one that can't be read
+    if found == sheets.VERSION:
+        return None
+    return say("unchecked.sheet", file=SHEET, there=found, here=sheets.VERSION)
+
+
+class _Layout(msgspec.Struct):
+    """The one entry that sheets of all versions have."""
+
+    version: int
+
+
+def _sheet(folder: Path) -> bytes:
+    return regular.read(folder, SHEET, most_bytes=_MOST_BYTES)
 
 
 def _check_tables(folder: Path, contest: Contest) -> Iterator[Phrase]:
-    try:
-        stored = (folder / SHEET).read_bytes()
-        name = sheets.decode(stored).name
-    except (OSError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        yield say("verify.no-file", file=SHEET, why=str(error))
-        return
-    sheet = sheets.sheet(name, contest)
-    for file, content in {SHEET: sheets.encode(sheet), **tables(sheet)}.items():
+    if other_sheet(folder) is None:
+        yield from _check_sheet(folder, contest)
+    for file, content in tables(sheets.sheet("", contest)).items():
         try:
-            if (folder / file).read_bytes() != content:
+            if regular.read(folder, file, most_bytes=_MOST_BYTES) != content:
                 yield say("verify.other-sheet", file=file)
-        except OSError as error:
-            yield say("verify.no-file", file=file, why=error.strerror or str(error))
+        except UserError as error:
+            yield error.phrase
+
+
+def _check_sheet(folder: Path, contest: Contest) -> Iterator[Phrase]:
+    try:
+        stored = _sheet(folder)
+        name = sheets.decode(stored).name
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        yield say("verify.no-file", file=SHEET, why=str(error))
+    except UserError as error:
+        yield error.phrase
+    else:
+        if sheets.encode(sheets.sheet(name, contest)) != stored:
+            yield say("verify.other-sheet", file=SHEET)
 
 
 def _records_used_twice(facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
@@ -90,3 +138,20 @@ def _check_entries(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]
                 yield error.phrase
         if bots[fact.files] not in (None, fact.bot):
             yield say("verify.other-bot", team=fact.team)
+
+
+def _check_names(folder: Path, facts: tuple[AnyFact, ...], contest: Contest) -> Iterator[Phrase]:
+    """Check that each record and each entry in the folder is one that the facts name."""
+    entries = entries_of(facts) if contest.closed else set()
+    for below, known in ((RECORDS, records_of(facts).keys()), (ENTRIES, entries)):
+        try:
+            for name in regular.names(folder, below):
+                if name not in known:
+                    yield say("verify.not-named", file=text_of(Path(below, name)))
+        except UserError as error:
+            yield error.phrase
+    kept = EntryFolder(folder / ENTRIES)
+    for name in entries:
+        with suppress(UserError):  # an entry that can't be read was told
+            for other in kept.others(name):
+                yield say("verify.not-named", file=text_of(Path(ENTRIES, name, other)))

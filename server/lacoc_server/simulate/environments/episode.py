@@ -17,7 +17,8 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
 from lacoc_server.simulate.environments.opening import Opening, begun_at, places
 from lacoc_server.simulate.environments.steered import Steered
-from lacoc_server.simulate.headless import closing, to_play
+from lacoc_server.simulate.headless import to_play
+from lacoc_server.simulate.inputs import closing
 from lacoc_server.world.world import World
 from lacoc_shared.codec import BadMessage, decode, encode, message_hash
 from lacoc_shared.gait.tables import Level, Posture
@@ -99,7 +100,7 @@ class Begun:
             FileRefused: if a file has mistakes.
         """
         if place not in self._saved:
-            for _ in to_play(match, self.joins, match.beat):
+            for _ in to_play(self.joins, match.beat):
                 if self.angles and match.phase is Phase.READY:
                     _steer(match)
             if match.phase is not Phase.PLAYING:
@@ -315,11 +316,11 @@ class Episode:
         journal = Journal(match, file.parent)
         assert journal.writer is not None
         try:
-            for _ in to_play(match, self.begun.joins, lambda items: journal.beat(items)[0]):
+            for _ in to_play(self.begun.joins, lambda items: journal.beat(items)[0]):
                 pass
             while match.beats < self.match.beats:
                 journal.beat(keys.get(match.beats + 1, ()))
-            journal.beat([closing(match)])
+            journal.beat([closing(match.phase)])
             journal.flush()
             journal.close()
             pack([journal.writer.path], file)

@@ -1,0 +1,190 @@
+"""A game that was played without a network: its record must be what `simulate` writes.
+
+The player of such games is shown the recorded frames, and must put in exactly what the record has:
+who sits down, when play begins, each key, and the decision at the end. So nothing that a match at a
+court may have can be added, whatever it is. This needs no physics and is exact on any machine.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from msgspec.structs import replace
+
+from lacoc_arenas import brains
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_server.contest.headless.pool import bot_of
+from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.simulate.headless import Seated, simulate
+from lacoc_server.simulate.inputs import Player, whole_match
+from lacoc_shared import __version__
+from lacoc_shared.codec import decode
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.inputs import KeySeat
+from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.words import Phrase, say
+
+
+class Side(NamedTuple):
+    """Who played in a seat, as facts and entries say."""
+
+    team: str
+    entry: Entry
+    steer: str
+    """The bot that steered the team if its entry has none; "": the facts do not name one."""
+
+
+class Checked(NamedTuple):
+    """What came of a check of a game's inputs."""
+
+    wrong: tuple[Phrase, ...] = ()
+    """What no game without a network can have."""
+    unchecked: tuple[Phrase, ...] = ()
+    """Why the keys of a team could not be checked."""
+
+
+class _NoSheet(Exception):
+    """Play begins in the record, and no sheet says who plays."""
+
+
+def check_inputs(
+    record: Record, arena: Arena, sides: Sequence[Side], late_ticks: int, *, programs: bool
+) -> Checked:
+    """Check that the inputs of a record are those that `simulate` puts in.
+
+    Args:
+        record: the record of the game.
+        arena: its arena.
+        sides: who played, by seat.
+        late_ticks: how many ticks later than play the bots started.
+        programs: whether to run the bots' programs that came with entries.
+    """
+    version = record.header.versions.get("lacoc", "?")
+    others = [_recorded(record, seat) for seat in range(len(sides))]
+    beat = _first_difference(record, _players(sides, others, late_ticks))
+    if beat is not None:
+        if version != __version__:
+            return Checked(unchecked=(say("unchecked.inputs", there=version, here=__version__),))
+        return Checked(wrong=(say("verify.of-inputs", beat=beat),))
+    wrong: list[Phrase] = []
+    unchecked: list[Phrase] = []
+    for seat, side in enumerate(sides):
+        try:
+            bots = [*others]
+            bots[seat] = _bot(arena, side, programs)
+            beat = _first_difference(record, _players(sides, bots, late_ticks))
+        except UserError as error:
+            unchecked.append(error.phrase)
+            continue
+        if beat is None:
+            continue
+        if version == __version__:
+            wrong.append(say("verify.of-bot", team=side.team))
+        else:
+            why = say("unchecked.version", team=side.team, there=version, here=__version__)
+            unchecked.append(why)
+    return Checked(tuple(wrong), tuple(unchecked))
+
+
+def ends_alike(
+    record: Record, arena: Arena, sides: Sequence[Side], late_ticks: int, *, programs: bool
+) -> bool:
+    """Play the game again on this machine, and return whether it ends with the recorded result.
+
+    Raises:
+        UserError: if a bot is not installed here, or breaks.
+    """
+    bots = [_bot(arena, side, programs) for side in sides]
+    again = simulate(record.header.setup, _players(sides, bots, late_ticks))
+    there = record.result
+    return there is not None and (again.teams, again.scores, again.official) == (
+        there.teams,
+        there.scores,
+        there.official,
+    )
+
+
+def _players(sides: Sequence[Side], bots: Sequence[BotFactory], late_ticks: int) -> list[Player]:
+    return [
+        Player(side.entry.join(seat, side.team), bot, late_ticks)
+        for seat, (side, bot) in enumerate(zip(sides, bots, strict=True))
+    ]
+
+
+def _bot(arena: Arena, side: Side, programs: bool) -> BotFactory:
+    """Find the bot of a team.
+
+    Raises:
+        UserError: if it is not installed, not named, or a program that must not run.
+    """
+    entry, team = side.entry, side.team
+    if entry.program is not None and not programs:
+        raise UserError(say("unchecked.program", team=team))
+    name = entry.bot or side.steer
+    if not name:
+        raise UserError(say("unchecked.steer", team=team))
+    try:
+        if entry.program is not None:
+            return bot_of(arena, Seated(entry.join(0, team), name, entry.program))
+        return brains.find_installed(arena, name)
+    except UserError as error:
+        raise UserError(say("unchecked.bot", team=team, why=error.phrase)) from None
+
+
+def _recorded(record: Record, seat: int) -> BotFactory:
+    """Return a bot that presses the recorded keys of a seat, each at its recorded beat."""
+    keys = {
+        beat: one
+        for beat, inputs in record.inputs.items()
+        for one in inputs
+        if isinstance(one, KeySeat) and one.seat == seat and one.level in (0, 1)
+    }
+
+    def brain(frame: Frame) -> Key | None:
+        found = keys.get(frame.beat + 1)
+        return None if found is None else Key(Level(found.level), found.key)
+
+    def bot(sheet: Sheet, index: int) -> Brain:
+        return brain
+
+    return bot
+
+
+def _first_difference(record: Record, players: Sequence[Player]) -> int | None:
+    """Return the first beat whose inputs are not those of `simulate`; None: there is none.
+
+    Raises:
+        UserError: if a bot breaks.
+    """
+    frames = dict(record.frames)
+    frame: Frame | None = None
+    beat = -1
+
+    def sheet() -> Sheet:
+        found = record.sheet_at(beat)
+        if found is None:
+            raise _NoSheet
+        return found
+
+    script = whole_match(players, sheet)
+    inputs = next(script)
+    while True:
+        beat += 1
+        if record.inputs.get(beat, []) != inputs:
+            return beat
+        if beat in frames:
+            frame = decode(frames[beat], Frame)
+        elif frame is None:
+            return beat
+        else:  # a beat in which nothing happened has no frame
+            frame = replace(frame, beat=beat)
+        try:
+            inputs = script.send(frame)
+        except StopIteration:
+            return None if record.last_beat == beat else beat + 1
+        except _NoSheet:
+            return beat
+        if beat > record.last_beat:
+            return beat

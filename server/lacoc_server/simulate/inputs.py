@@ -1,0 +1,95 @@
+"""The inputs of a match without a network, beat by beat.
+
+A script is a generator: it yields the inputs of the next beat, and is sent the frame of that beat.
+`simulate` plays a match with it. Who checks a record sends it the recorded frames, and learns which
+inputs the record must have.
+"""
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+
+from lacoc_arenas.bot import BotFactory
+from lacoc_shared.decisions import Abort, Official, Start
+from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.words import say
+
+AUTHOR = "simulate"
+"""Author of the decisions in a match without a referee."""
+SETTLE_BEATS = BEATS_PER_S
+"""Robots stand in READY until this beat of the match; then the match is started."""
+
+Inputs = list[Input]
+
+
+@dataclass(frozen=True)
+class Player:
+    """A player of a seat: files and a bot."""
+
+    join: JoinSeat
+    """The join; its `seat` is the player's seat."""
+    bot: BotFactory
+    late_ticks: int = 0
+    """Ticks of PLAYING that pass before the brain sees its first frame. Players who meet again get
+    another number, so that they play another match.
+    """
+
+
+def whole_match(
+    players: Sequence[Player], sheet: Callable[[], Sheet]
+) -> Generator[Inputs, Frame, None]:
+    """Yield the inputs of each beat of a match, up to the decision that closes it.
+
+    Args:
+        players: one for each seat.
+        sheet: returns the match's sheet; it is called when play begins.
+    """
+    frame = yield from opening([player.join for player in players])
+    if frame.phase == Phase.PLAYING:
+        frame = yield from _play(frame, players, sheet())
+    yield [closing(Phase(frame.phase))]
+
+
+def opening(joins: Sequence[JoinSeat]) -> Generator[Inputs, Frame, Frame]:
+    """Yield the inputs of each beat until play begins: joins, ready, and the start.
+
+    Args:
+        joins: a join for each seat.
+
+    Returns:
+        The newest frame. If physics stopped, it is not in PLAYING.
+    """
+    yield [*joins]
+    frame = yield [ReadySeat(join.seat, True) for join in joins]
+    while frame.phase == Phase.READY and frame.beat < SETTLE_BEATS:
+        frame = yield []
+    if frame.phase == Phase.READY:
+        frame = yield [Decide(AUTHOR, "", Start())]
+    while frame.phase == Phase.COUNTDOWN:
+        frame = yield []
+    return frame
+
+
+def _play(frame: Frame, players: Sequence[Player], sheet: Sheet) -> Generator[Inputs, Frame, Frame]:
+    """Yield the keys of all players while play goes on; return the first frame after it."""
+    minds = [player.bot(sheet, player.join.seat) for player in players]
+    seqs = [0] * len(players)
+    while frame.phase == Phase.PLAYING:
+        keys: Inputs = []
+        for index, (player, mind) in enumerate(zip(players, minds, strict=True)):
+            key = mind(frame) if frame.clock_ticks > player.late_ticks else None
+            if key is not None:
+                seqs[index] += 1
+                keys.append(KeySeat(player.join.seat, seqs[index], int(key.level), key.key))
+        frame = yield keys
+    return frame
+
+
+def closing(phase: Phase) -> Decide:
+    """Return the decision that ends a match: official after its end, void before it."""
+    if phase is Phase.FINISHED:
+        return Decide(AUTHOR, "", Official())
+    halted = phase is Phase.HALTED
+    reason = say("reason.physics-stopped") if halted else say("reason.ended-early")
+    return Decide(AUTHOR, reason, Abort())
