@@ -2,8 +2,6 @@
 
 import asyncio
 import os
-import shutil
-import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Literal
@@ -21,6 +19,7 @@ from lacoc_client.simulation import (
     StandingsLine,
 )
 from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import Mistake, UserError, text_of
 from lacoc_shared.words import Phrase, say
 
@@ -137,18 +136,18 @@ class Tournament:
     async def _play(self, players: Mapping[str, SeatFiles], words: list[str]) -> None:
         is_done = False
         trouble: Phrase | None = None
-        folder: Path | None = None
+        scratch: Scratch | None = None
         try:
-            folder = Path(await asyncio.to_thread(tempfile.mkdtemp, prefix="lacoc-tournament-"))
-            teams = await asyncio.to_thread(_written, players, folder)
+            scratch = await asyncio.to_thread(Scratch, "tournament")
+            teams = await asyncio.to_thread(_written, players, scratch.path)
             if not self._stopping:
                 trouble = await self._simulate(teams, words)
                 is_done = trouble is None
         except OSError as error:
             trouble = say("tournament.cannot-start", why=error.strerror or str(error))
         finally:
-            if folder is not None:
-                shutil.rmtree(folder, ignore_errors=True)
+            if scratch is not None:
+                scratch.close()
             if self._stopping:
                 trouble = None  # its complaint that it was ended
             self._change(state="done" if is_done else "stopped", trouble=trouble)

@@ -1,6 +1,5 @@
 """`lacoc design`: design a gait on a page (workshop 3-2, 4-2)."""
 
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -18,6 +17,7 @@ from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import PageFiles
 from lacoc_shared.command.child import kept_child
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.words import say
 
 app = typer.Typer()
@@ -84,7 +84,7 @@ def design_command(
 def own_studio() -> Iterator[str]:
     """Run a studio for this machine until the block ends; give its address."""
     with (
-        tempfile.TemporaryDirectory(prefix="lacoc-design-") as folder,
+        Scratch("design") as folder,
         kept_child(
             _words("tcp/127.0.0.1:0"),
             Path(folder),

@@ -1,6 +1,5 @@
 """`lacoc practice`: practise on a court of your own (workshop 4-4)."""
 
-import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -15,6 +14,7 @@ from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.command import options
 from lacoc_shared.command.child import child
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.words import render, say
 
@@ -49,7 +49,7 @@ def practice_command(
     if not terminal:
         pages.check_pages()
     with ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="lacoc-practice-")))
+        folder = stack.enter_context(Scratch("practice"))
         access = stack.enter_context(_court(folder, recordings or folder / "recordings"))
         if terminal:
             greeting = _greeting(files.files)

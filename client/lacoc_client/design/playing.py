@@ -1,11 +1,11 @@
 """The way from a table on /design to a court: to practice, or to a seat of a contest."""
 
-import tempfile
 import threading
 from pathlib import Path
 
 from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_shared.command.child import Child
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.words import say
 
 
@@ -18,7 +18,7 @@ class Playing:
 
     def __init__(self, invitation: Path | None = None) -> None:
         self.invitation = None if invitation is None else invitation.resolve()
-        self._folder = tempfile.TemporaryDirectory(prefix="lacoc-playing-")
+        self._folder = Scratch("playing")
         self._child: Child | None = None
         self._url = ""
         self._lock = threading.Lock()
@@ -38,7 +38,7 @@ class Playing:
         with self._lock:
             paths = self._write(files)
             if self._child is None or self._child.ended:
-                self._child = Child(self._words(paths), Path(self._folder.name), say("child.court"))
+                self._child = Child(self._words(paths), self._folder.path, say("child.court"))
                 self._url = self._child.opened()["url"]
             return self._url
 
@@ -47,11 +47,11 @@ class Playing:
         with self._lock:
             if self._child is not None:
                 self._child.close()
-            self._folder.cleanup()
+            self._folder.close()
 
     def _write(self, files: SeatFiles) -> list[Path]:
         """Write the files; return their paths: of the robot, level A, level B."""
-        paths = [Path(self._folder.name) / name for name in USUAL_NAMES]
+        paths = [self._folder.path / name for name in USUAL_NAMES]
         for path, file in zip(paths, files, strict=True):
             if file is None:
                 path.unlink(missing_ok=True)

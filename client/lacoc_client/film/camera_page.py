@@ -1,9 +1,12 @@
 """The page /film in a Chromium of its own: it is told a beat, and gives the picture of it."""
 
 import base64
+import os
+import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Any
 
 from playwright.sync_api import (
@@ -19,9 +22,13 @@ from playwright.sync_api import (
 from lacoc_client.film.chromium import FLAGS, find
 from lacoc_client.film.look import Look
 from lacoc_client.film.plan import Picture
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
 
+_STARTING = threading.Lock()
+_TEMPORARY = ("TMPDIR", "TEMP", "TMP")
+"""Variables that name the folder for temporary files, on one system or another."""
 _WAIT_S = 120.0
 """A slow machine loads the page and compiles its shaders for many seconds."""
 _LOOK_S = 0.02
@@ -125,7 +132,7 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
     Raises:
         UserError: if there is no browser, it does not start, or the page can't show the record.
     """
-    with sync_playwright() as playwright:
+    with Scratch("browser") as folder, _started(folder) as playwright:
         program = find(playwright.chromium.executable_path)
         browser = _launched(playwright, program)
         try:
@@ -159,6 +166,27 @@ def empty_page(browser: Browser, context: BrowserContext, look: Look) -> tuple[P
     except Error:
         return context.new_page(), False
     return opened.value, True
+
+
+@contextmanager
+def _started(folder: Path) -> Iterator[Playwright]:
+    """Start Playwright with a folder of ours for temporary files.
+
+    It leaves the browser's profile there if this process is killed.
+    """
+    with ExitStack() as stack:
+        with _STARTING:  # the environment is that of all threads
+            before = {name: os.environ.get(name) for name in _TEMPORARY}
+            os.environ.update(dict.fromkeys(_TEMPORARY, str(folder)))
+            try:
+                playwright = stack.enter_context(sync_playwright())
+            finally:
+                for name, value in before.items():
+                    if value is None:
+                        del os.environ[name]
+                    else:
+                        os.environ[name] = value
+        yield playwright
 
 
 def _launched(playwright: Playwright, program: str) -> Browser:

@@ -1,7 +1,6 @@
 """Serves the film's page and a record to the browser that draws it, on this machine only."""
 
 import shutil
-import tempfile
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -17,6 +16,7 @@ from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.site import page_routes, recording_routes
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -60,15 +60,15 @@ def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
     files = PageFiles()
     if not files.built:
         raise UserError(NOT_BUILT)
-    with tempfile.TemporaryDirectory(prefix="lacoc-film-") as folder:
+    with Scratch("film") as folder:
         names = tuple(f"{number}.mcap" for number in range(len(paths)))
         for name, path in zip(names, paths, strict=True):
             try:
-                shutil.copyfile(path, Path(folder, name))
+                shutil.copyfile(path, folder / name)
             except OSError as error:
                 why = error.strerror or str(error)
                 raise UserError(say("film.cannot-read", file=str(path), why=why)) from None
-        shelf = Recordings(Path(folder), lambda: ())
+        shelf = Recordings(folder, lambda: ())
         routes = page_routes(files, (_PATH,), recording_routes(shelf))
         opened = server.listen(server.LOOPBACK)
         stopped = threading.Event()

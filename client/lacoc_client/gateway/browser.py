@@ -8,12 +8,13 @@ browser opens the file, which redirects to the address.
 import html
 import os
 import sys
-import tempfile
 import threading
 import webbrowser
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+
+from lacoc_shared.command.scratch import Scratch
 
 _BROWSER_S = 2.0
 _LEADS_ON = (
@@ -43,10 +44,8 @@ def unseen(address: str) -> Iterator[str]:
 def _file(address: str) -> Iterator[Path]:
     # Visible, and in the home folder: browsers in a sandbox (snap, flatpak) have their own /tmp and
     # see no hidden folders.
-    with tempfile.TemporaryDirectory(
-        prefix="lacoc-", dir=Path.home(), ignore_cleanup_errors=True
-    ) as folder:  # private to its owner
-        path = Path(folder, "lacoc.html")
+    with Scratch("opens", Path.home()) as folder:
+        path = folder / "lacoc.html"
         with open(path, "x", encoding="utf-8", opener=_private) as file:
             file.write(_LEADS_ON.format(html.escape(address)))
         yield path

@@ -6,7 +6,6 @@ just seen would be missing, so the gateway packs a copy of what is there.
 
 import contextlib
 import subprocess
-import tempfile
 from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
 from pathlib import Path
@@ -15,6 +14,7 @@ from threading import Lock
 import msgspec
 
 from lacoc_shared.command import regular
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.pack import copy_in_background
@@ -51,8 +51,8 @@ class Recordings:
     def __init__(self, folder: Path | None, over: Callable[[], Iterable[str]]) -> None:
         self._folder = folder
         self._over = over
-        self._copies = tempfile.TemporaryDirectory(prefix="lacoc-recordings-")
-        self.own = Path(self._copies.name)
+        self._copies = Scratch("recordings")
+        self.own = self._copies.path
         """Folder of the gateway's own records: copies, and forks that pages ask for."""
         self._copying: dict[str, subprocess.Popen[bytes]] = {}
         self._summaries: dict[tuple[Path, int, int], Summary | None] = {}
@@ -95,7 +95,7 @@ class Recordings:
         for copying in self._copying.values():
             copying.terminate()
             copying.wait()
-        self._copies.cleanup()
+        self._copies.close()
 
     def _paths(self) -> dict[str, Path]:
         if self._folder is None:

@@ -2,14 +2,12 @@
 
 import os
 import re
-import sys
 from pathlib import Path
-from typing import BinaryIO
 
+from lacoc_shared.command.holding import hold
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-_LOCKED_BYTE = 2**40  # beyond any record: Windows lets nobody read a locked part
 _SEGMENT = re.compile(r"(?P<match_id>.+)\.(?P<segment>\d{3,})\.live\.mcap")
 
 
@@ -61,21 +59,6 @@ def record_paths(path: Path) -> list[Path]:
     return segment_paths(path.parent, name[0]) if name else [path]
 
 
-def hold(file: BinaryIO) -> bool:
-    """Lock an open segment for writing or packing, until it is closed or its process ends.
-
-    Returns:
-        False if another process has locked it. True also if the file system has no locks.
-    """
-    try:
-        _lock(file)
-    except (BlockingIOError, PermissionError):
-        return False
-    except OSError:  # a file system without locks: other processes can't be told
-        return True
-    return True
-
-
 def is_held(path: Path) -> bool:
     """Say whether a running process writes or packs a segment; True if the segment has gone."""
     try:
@@ -83,22 +66,6 @@ def is_held(path: Path) -> bool:
             return not hold(file)
     except FileNotFoundError:  # it was packed just now
         return True
-
-
-def _lock(file: BinaryIO) -> None:
-    if sys.platform == "win32":
-        import msvcrt
-
-        at = file.tell()
-        file.seek(_LOCKED_BYTE)
-        try:
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        finally:
-            file.seek(at)
-    else:
-        import fcntl
-
-        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def sync_folder(folder: Path) -> None:

@@ -15,6 +15,7 @@ from mcap.writer import Writer
 
 from lacoc_shared import __version__
 from lacoc_shared.command import keep
+from lacoc_shared.command.holding import hold
 from lacoc_shared.command.priority import give_way
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
@@ -52,7 +53,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
     try:
         with ExitStack() as held:
             for segment in segments:
-                if not files.hold(held.enter_context(segment.open("rb+"))):
+                if not hold(held.enter_context(segment.open("rb+"))):
                     raise UserError(say("pack.busy", file=str(segment)))
             if out.exists():
                 _compare(*_messages(segments), out)

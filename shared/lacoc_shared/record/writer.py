@@ -18,6 +18,7 @@ from mcap.records import Header as FileHeader
 from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import __version__, codec
+from lacoc_shared.command.holding import hold
 from lacoc_shared.inputs import Input
 from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
@@ -57,7 +58,7 @@ class RecordWriter:
             self._file = self.path.open("xb", buffering=0)
         except OSError as error:
             raise _no_record(self.path, error) from None
-        files.hold(self._file)
+        hold(self._file)
         self._backlog = bytearray()
         self._write_error = ""
         self._sync_error: Phrase | None = None

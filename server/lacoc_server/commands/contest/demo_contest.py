@@ -1,10 +1,10 @@
 """`lacoc demo --contest`: a whole contest of bots, from its file to its proof."""
 
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from lacoc_server.commands.contest import checking, playing
 from lacoc_shared.command import screen
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.words import say
 
 _SECONDS = 20.0
@@ -27,9 +27,9 @@ def show(arena: str, seconds: float | None, speed: float, folder: Path, *, headl
     """
     from lacoc_server.contest.demo import champion, write_contest
 
-    with TemporaryDirectory(prefix="lacoc-demo-") as place:
+    with Scratch("demo") as place:
         screen.show(say("demo.contest"))
-        file = write_contest(Path(place), arena, seconds or _SECONDS)
+        file = write_contest(place, arena, seconds or _SECONDS)
         playing.run(file, headless=headless, speed=speed, browser=not headless)
         checking.publish(folder, file)
         screen.show(say("demo.champion", team=champion(file)))

@@ -2,8 +2,6 @@
 
 import time
 from contextlib import ExitStack
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
@@ -11,6 +9,7 @@ import typer
 from lacoc_server.commands.contest.playing import Contest
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -48,7 +47,7 @@ def courts(
         if not where.contest.court(name)[1].elsewhere:
             raise UserError(say("contest.not-elsewhere", court=name))
     with ExitStack() as stack:
-        logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-courts-")))
+        logs = stack.enter_context(Scratch("courts"))
         for name in chosen:
             opened = venue.court(where, name, logs / name, speed, screen.note, here=False)
             screen.show(say("contest.court-runs", court=name, at=stack.enter_context(opened)))

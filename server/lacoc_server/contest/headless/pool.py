@@ -2,7 +2,6 @@
 
 import os
 import signal
-import tempfile
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
@@ -17,6 +16,7 @@ from lacoc_arenas.bot import BotFactory
 from lacoc_server.simulate import Player, Seated, simulate
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
@@ -170,8 +170,8 @@ def attempt(job: Job) -> Ended | Phrase:
     try:
         if not job.brings_record:
             return Ended(_play(job), None)
-        with tempfile.TemporaryDirectory() as folder:
-            here = msgspec.structs.replace(job, folder=folder)
+        with Scratch("game") as folder:
+            here = msgspec.structs.replace(job, folder=str(folder))
             result = _play(here)
             assert here.record is not None
             return Ended(result, here.record.read_bytes())
@@ -218,8 +218,8 @@ def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
     """
     if seated.program is None:
         return brains.find(arena, seated.bot)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, "bot.py")
+    with Scratch("bot") as folder:
+        file = folder / "bot.py"
         file.write_bytes(seated.program)
         return brains.find(arena, str(file))
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.plans import game, plans
+from lacoc_shared.command.holding import hold
 from lacoc_shared.contest import file as contests
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError, text_of
-from lacoc_shared.record import files
 from lacoc_shared.words import say
 
 
@@ -63,7 +63,7 @@ class ContestFolder:
             path = text_of(self._lock)
             raise UserError(say("command.cannot-write", path=path, why=why)) from None
         with lock:
-            if not files.hold(lock):
+            if not hold(lock):
                 raise UserError(say("contest.runs-already", file=text_of(self.file)))
             yield
 

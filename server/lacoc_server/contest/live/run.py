@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from lacoc_server.contest.desk.book import Book, milliseconds
@@ -25,6 +24,7 @@ from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.ticker import Ticker
 from lacoc_server.contest.organiser import prepare
 from lacoc_server.contest.sheet import ContestSheet
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest.entrances import event_code, organiser_key
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
@@ -102,7 +102,7 @@ def play_live(
         stack.enter_context(where.alone())
         store = stack.enter_context(FactStore(where.facts))
         prepare(where, store, entering=entering)
-        logs = Path(stack.enter_context(TemporaryDirectory(prefix="lacoc-contest-")))
+        logs = stack.enter_context(Scratch("contest"))
         run_here = partial(_run_here, where, logs, speed, tell)
         addresses: dict[str, str] = {}
         told: dict[str, str] = {}

@@ -1,6 +1,5 @@
 """Plays a fork of a record, and writes it as a record of its own."""
 
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate.forks.line import REFEREE, Change, Line
 from lacoc_server.simulate.forks.origin import Source, stem
 from lacoc_shared.command import keep
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
@@ -75,9 +75,9 @@ def fork(
     match = resume(before.record, folder=arena).match
     if folder is not None:
         keep.make_folder(folder)  # before the fork is played, which takes long
-    with tempfile.TemporaryDirectory() as scratch:
+    with Scratch("fork") as scratch:
         segment = before.record.headers[-1].segment + 1
-        journal = Journal(match, Path(scratch) if out else None, segment)
+        journal = Journal(match, scratch if out else None, segment)
         try:
             while match.beats < beat - 1:  # beats in which nothing was recorded
                 journal.beat()

@@ -1,0 +1,93 @@
+"""Folders for files that are needed only while a program runs.
+
+A program that is killed leaves its folder behind. Each folder therefore has a file that its program
+has locked; the system ends the lock with the program. Whoever makes a folder first removes those
+whose programs have gone.
+"""
+
+import contextlib
+import shutil
+import tempfile
+import time
+import weakref
+from pathlib import Path
+from typing import BinaryIO
+
+from lacoc_shared.command.holding import hold
+
+_PREFIX = "lacoc-"
+_OWNER, _MAKING = "owner.lock", "owner.lock.new"
+_MAKING_S = 3600.0
+"""A folder that is still being made after this time [s] was left behind."""
+
+
+class Scratch:
+    """A folder of this program, deleted with all that is in it; used as a context manager.
+
+    Only its owner can read it.
+
+    Args:
+        what: what it is for; part of its name.
+        where: the folder to make it in; None: the system's folder for temporary files.
+
+    Raises:
+        OSError: if it can't be made.
+    """
+
+    def __init__(self, what: str, where: Path | None = None) -> None:
+        parent = Path(tempfile.gettempdir()) if where is None else where
+        sweep(parent)
+        self.path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{what}-", dir=parent))
+        """The folder."""
+        lock = _locked(self.path)
+        self._remove = weakref.finalize(self, _remove, self.path, lock)
+
+    def __enter__(self) -> Path:
+        return self.path
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Delete the folder."""
+        self._remove()
+
+
+def sweep(parent: Path) -> None:
+    """Remove the folders of programs that have gone; what can't be removed stays.
+
+    Args:
+        parent: the folder that they are in.
+    """
+    for folder in parent.glob(f"{_PREFIX}*"):
+        with contextlib.suppress(OSError):  # another user's, or removed at this moment
+            if folder.is_dir() and not folder.is_symlink() and _is_left(folder):
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _locked(folder: Path) -> BinaryIO:
+    """Make and lock the file that shows that a folder has an owner."""
+    made = folder / _MAKING
+    lock = made.open("xb")
+    hold(lock)
+    made.rename(folder / _OWNER)  # so nobody finds it before it is locked
+    return lock
+
+
+def _is_left(folder: Path) -> bool:
+    """Return whether a folder was made here, and the program that made it has gone.
+
+    A folder without our file is somebody's own, whatever its name is.
+    """
+    try:
+        with (folder / _OWNER).open("rb+") as lock:
+            return hold(lock)
+    except FileNotFoundError:
+        made = [*folder.iterdir()]
+        was_made = [path.name for path in made] == [_MAKING]
+        return was_made and time.time() - made[0].stat().st_mtime > _MAKING_S
+
+
+def _remove(folder: Path, lock: BinaryIO) -> None:
+    lock.close()  # Windows deletes no open file
+    shutil.rmtree(folder, ignore_errors=True)
