@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+import tracemalloc
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -22,15 +23,16 @@ from mcap.reader import make_reader
 from mcap.writer import MCAP0_MAGIC, Writer
 
 from lacoc_shared import codec
-from lacoc_shared.inputs import Input, KeySeat
-from lacoc_shared.messages import Frame, Scene, Sheet
+from lacoc_shared.inputs import Input, JoinSeat, KeySeat
+from lacoc_shared.messages import Event, Frame, Scene, SentFile, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files, pack
 from lacoc_shared.record.reader import NoMatch, Record
-from lacoc_shared.record.schema import BEAT_NS, KINDS, Header, Result, Touch
+from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, Touch
+from lacoc_shared.record.stream import walk_bytes
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import BEATS_PER_S
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 WriteMatch = Callable[..., Path]
 MakeHeader = Callable[..., Header]
@@ -249,6 +251,7 @@ import msgspec
 from lacoc_shared import codec
 from lacoc_shared.messages import Frame
 from lacoc_shared.record.schema import Header
+from lacoc_shared.record.stream import walk_bytes
 from lacoc_shared.record.writer import RecordWriter
 
 header = msgspec.json.decode(sys.argv[2], type=Header)
@@ -443,6 +446,80 @@ def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
             UserError, match=r"Nothing can be read of the match: .*damaged at byte 8"
         ):
             Record.read(path)
+
+
+def _event(number: int, data: dict[str, object]) -> Event:
+    said = say("event.flip", team="Bees", marker="c1r1", also=("c1r2", "c1r3"))
+    return Event(
+        number=number, match=1, beat=number, clock_ticks=0, kind="flip", said=said, data=data
+    )
+
+
+def test_values_are_counted_before_they_are_made(header: MakeHeader, tmp_path: Path) -> None:
+    """A small packed record of 30 million empty maps takes little memory to read, and says why.
+
+    As many real events as a match has in an hour are read.
+    """
+    writer = RecordWriter(tmp_path, header())
+    writer.snapshot(0, os.urandom(700_000))  # so large a file may unpack to 39 MB
+    for _ in range(5):
+        writer.event(_event(1, {"a": [{}] * 6_000_000}))
+    writer.close()
+    packed = tmp_path / "m.mcap"
+    with packed.open("wb") as file:
+        again = Writer(file)
+        again.start(PROFILE)
+        numbers = {topic: again.register_channel(topic, "msgpack", 0) for topic in KINDS}
+        walk_bytes(
+            writer.path,
+            lambda topic, beat, data: again.add_message(
+                numbers[topic], beat * BEAT_NS, data, beat * BEAT_NS
+            ),
+        )
+        again.finish()
+    assert packed.stat().st_size < 1_000_000
+    tracemalloc.start()
+    try:
+        record = Record.read(packed)
+    finally:
+        _, peak_bytes = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert record.events == []
+    assert record.cut is not None
+    assert record.lost
+    assert "it has more values than a match" in words_of(record)
+    assert peak_bytes < 200e6
+
+    writer = RecordWriter(tmp_path / "usual", header())
+    for number in range(1, 30_001):
+        data = {"marker": "c1r1", "also": ["c1r2", "c1r3"], "points": 3}
+        writer.event(_event(number, data))
+    writer.close()
+    pack.pack([writer.path], tmp_path / "usual.mcap")
+    assert len(Record.read(tmp_path / "usual.mcap").events) == 30_000
+
+
+def test_names_in_a_record_have_a_limit(
+    header: MakeHeader, sheet: Sheet, result: Result, tmp_path: Path
+) -> None:
+    """A record with a team's name of 200,000 signs is read up to it, and called damaged."""
+    long = "o" + "\u0301" * 200_000
+    seats = (msgspec.structs.replace(sheet.seats[0], team=long), *sheet.seats[1:])
+    joined = JoinSeat(0, long, SentFile("a", b""), None, None, token_hash="")
+    for number, write in enumerate(
+        (
+            lambda one: one.sheet(3, msgspec.structs.replace(sheet, seats=seats)),
+            lambda one: one.input(3, joined),
+            lambda one: one.result(msgspec.structs.replace(result, teams=(long, "Bees"))),
+        )
+    ):
+        writer = RecordWriter(tmp_path / str(number), header())
+        writer.input(1, KeySeat(0, 1, 1, 2))
+        write(writer)
+        writer.close()
+        record = Record.read(writer.path)
+        assert len(record.inputs) == 1
+        assert "a team's name is too long" in words_of(record)
 
 
 def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_path: Path) -> None:

@@ -17,9 +17,11 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
+from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.messages import Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.record.protocol_1 import read_event
-from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
+from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE, Result
 from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, say
 
@@ -48,6 +50,16 @@ _ENDING_BYTES = _RECORD_HEAD_BYTES + 16 + _CRC_BYTES + len(MCAP0_MAGIC)
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
 """A file may unpack to at most this many bytes plus this many times its own size. Real matches
 unpack to three or four times their size, even if nothing happens at the court."""
+
+_VALUES, _VALUES_RATIO = 500_000, 0.5
+"""A file may have at most this many lists and maps, plus this many for each of its bytes. An empty
+one is a single byte in a message, and 60 bytes when it is read."""
+_COUNTED = frozenset(KINDS) - {"/lacoc/frame", "/lacoc/snapshot"}
+"""Topics whose messages may have values of any kind."""
+_LISTS_AND_MAPS = bytes([*range(0x80, 0xA0), *range(0xDC, 0xE0)])
+"""The bytes with which a list or a map begins in msgpack; ASCII text has none of them."""
+_NAME_MOST = 200
+"""Longest name of a team in a record [characters]; courts take shorter ones."""
 
 _LONGEST_GAP_BEATS = 3600 * BEATS_PER_S
 """A court records a frame every second, so a gap of more than an hour means a damaged time. A
@@ -88,9 +100,20 @@ def walk(path: Path, take: Take) -> Stop | None:
 
     See `walk_bytes`. Bytes that can't be decoded as their topic's message are a fault too.
     """
-    return walk_bytes(
-        path, lambda topic, beat, data: take(topic, beat, data, _decode(path, topic, data))
-    )
+    try:
+        values = _VALUES + path.stat().st_size * _VALUES_RATIO
+    except OSError:
+        values = 0.0  # `walk_bytes` says what is wrong with the file
+
+    def decoded(topic: str, beat: int, data: bytes) -> None:
+        nonlocal values
+        if topic in _COUNTED:
+            values -= len(data) - len(data.translate(None, _LISTS_AND_MAPS))
+            if values < 0:
+                raise codec.BadMessage("it has more values than a match")
+        take(topic, beat, data, _decode(path, topic, data))
+
+    return walk_bytes(path, decoded)
 
 
 def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
@@ -263,4 +286,21 @@ def _decode(path: Path, topic: str, data: bytes) -> Any:
     if topic == "/lacoc/event":
         return read_event(data, _MAX_BYTES)
     kind = KINDS[topic]
-    return data if kind is None else codec.decode(data, kind, _MAX_BYTES)
+    if kind is None:
+        return data
+    message = codec.decode(data, kind, _MAX_BYTES)
+    if any(len(name) > _NAME_MOST for name in _names(message)):
+        raise codec.BadMessage("a team's name is too long")
+    return message
+
+
+def _names(message: object) -> tuple[str, ...]:
+    match message:
+        case JoinSeat(team=team):
+            return (team,)
+        case Sheet(seats=seats):
+            return tuple(seat.team for seat in seats)
+        case Result(teams=teams):
+            return teams
+        case _:
+            return ()

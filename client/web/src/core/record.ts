@@ -79,7 +79,15 @@ export class Unplayable extends Error {
 
 const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
 /** No record has a larger chunk; a damaged size must not take all memory. */
-const CHUNK_MOST_BYTES = 1 << 28;
+const CHUNK_MOST_BYTES = 1 << 26;
+/** A file may unpack to this many bytes, and to this many times its own size, as stream.py has it. */
+const UNPACKED_BYTES = 1 << 22;
+const UNPACKED_RATIO = 50;
+/** A file may have so many lists and maps, and so many for each of its bytes. */
+const VALUES = 500_000;
+const VALUES_RATIO = 0.5;
+/** Longer texts are cut: a page takes seconds to draw some hundred thousand signs in one line. */
+const TEXT_MOST = 1000;
 
 interface FrameBytes {
   beat: number;
@@ -143,7 +151,9 @@ function readFile({ name, data }: RecordFile): Segment[] {
   if (!startsAsMcap(data)) throw new Unplayable("notMcap", { name });
   const segments: Segment[] = [];
   const topics = new Map<number, string>();
-  const reader = new McapStreamReader({ decompressHandlers: { zstd: unpack } });
+  const budget = new Budget(data.length);
+  const zstd = (packed: Uint8Array, size: bigint) => budget.unpack(packed, size);
+  const reader = new McapStreamReader({ decompressHandlers: { zstd } });
   let closed = false;
   let broken = false;
   try {
@@ -152,8 +162,8 @@ function readFile({ name, data }: RecordFile): Segment[] {
       if (record.type === "Message") {
         const beat = Number(record.logTime / BigInt(BEAT_NS));
         const topic = topics.get(record.channelId);
-        if (topic === "/lacoc/header") segments.push(begin(name, record.data));
-        else if (topic && segments.length) take(segments.at(-1)!, topic, beat, record.data);
+        if (topic === "/lacoc/header") segments.push(begin(name, record.data, budget));
+        else if (topic && segments.length) take(segments.at(-1)!, topic, beat, record.data, budget);
       } else if (record.type === "Channel") topics.set(record.id, record.topic);
       else if (record.type === "DataEnd") closed = true;
       else if (record.type === "Header" && record.profile !== RECORD_PROFILE) {
@@ -172,8 +182,8 @@ function readFile({ name, data }: RecordFile): Segment[] {
   return segments;
 }
 
-function begin(file: string, data: Uint8Array): Segment {
-  const header = decode(data) as Header;
+function begin(file: string, data: Uint8Array, budget: Budget): Segment {
+  const header = budget.read<Header>(data);
   if (header.format !== RECORD_FORMAT) {
     throw new Unplayable("format", {
       name: file,
@@ -195,10 +205,16 @@ function begin(file: string, data: Uint8Array): Segment {
   };
 }
 
-function take(segment: Segment, topic: string, beat: number, data: Uint8Array): void {
+function take(
+  segment: Segment,
+  topic: string,
+  beat: number,
+  data: Uint8Array,
+  budget: Budget,
+): void {
   switch (topic) {
     case "/lacoc/event":
-      segment.events.push(readEvent(data));
+      segment.events.push(asEvent(budget.read(data)));
       break;
     case "/lacoc/frame": {
       const { seats, phase } = readFrame(data); // bytes that are no frame must not wait for the page
@@ -206,21 +222,20 @@ function take(segment: Segment, topic: string, beat: number, data: Uint8Array): 
       break;
     }
     case "/lacoc/sheet":
-      segment.sheets.push({ beat, value: decode(data) as Sheet });
+      segment.sheets.push({ beat, value: budget.read<Sheet>(data) });
       break;
     case "/lacoc/scene":
-      segment.scenes.push({ beat, value: decode(data) as Scene });
+      segment.scenes.push({ beat, value: budget.read<Scene>(data) });
       break;
     case "/lacoc/result":
-      segment.results.push(decode(data) as Result);
+      segment.results.push(budget.read<Result>(data));
       return; // its time is that of its match's end, not of its writing
   }
   segment.lastBeat = Math.max(segment.lastBeat, beat);
 }
 
 /** An event; one of protocol 1 has its sentence in English alone. */
-function readEvent(data: Uint8Array): Event {
-  const { text, ...event } = decode(data) as Event & { text?: string };
+function asEvent({ text, ...event }: Event & { text?: string }): Event {
   return text === undefined ? event : { ...event, said: { code: "plain.text", values: { text } } };
 }
 
@@ -298,9 +313,39 @@ function changes(frames: readonly FrameBytes[]): Pick<MatchRecord, "scores" | "p
   return found;
 }
 
-function unpack(data: Uint8Array, size: bigint): Uint8Array {
-  if (size > CHUNK_MOST_BYTES) throw new Error("too large");
-  return decompress(data, new Uint8Array(Number(size)));
+/** What one file may cost: its records come from anybody. */
+class Budget {
+  private bytes: number;
+  private values: number;
+
+  constructor(size: number) {
+    this.bytes = UNPACKED_BYTES + UNPACKED_RATIO * size;
+    this.values = VALUES + VALUES_RATIO * size;
+  }
+
+  unpack(data: Uint8Array, size: bigint): Uint8Array {
+    this.bytes -= Number(size);
+    if (size > CHUNK_MOST_BYTES || this.bytes < 0) throw new Error("too large");
+    return decompress(data, new Uint8Array(Number(size)));
+  }
+
+  read<T>(data: Uint8Array): T {
+    for (const byte of data) {
+      // The bytes with which a list or a map begins in msgpack; ASCII text has none of them.
+      if ((byte >= 0x80 && byte < 0xa0) || (byte >= 0xdc && byte < 0xe0)) this.values--;
+    }
+    if (this.values < 0) throw new Error("too many values");
+    return shortened(decode(data)) as T;
+  }
+}
+
+function shortened(value: unknown): unknown {
+  if (typeof value === "string") {
+    return value.length > TEXT_MOST ? `${value.slice(0, TEXT_MOST)}…` : value;
+  }
+  if (Array.isArray(value)) return value.map(shortened);
+  if (value === null || typeof value !== "object" || ArrayBuffer.isView(value)) return value;
+  return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, shortened(one)]));
 }
 
 function startsAsMcap(data: Uint8Array): boolean {
