@@ -416,6 +416,26 @@ def test_another_version_is_not_proven_if_its_bots_differ(played: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_record_of_other_physics_is_not_proven(copied: Path) -> None:
+    """A record of another MuJoCo is neither proven nor forged; a damaged one is a finding."""
+    folder = copied.parent / "published"
+    game = games_of(read(folder))[-1]
+    path = folder / "records" / game.played.record
+    record = Record.read([path])
+    versions = {**record.header.versions, "mujoco": "3.0.0"}
+    record.headers = [replace(record.header, versions=versions)]
+    path.unlink()
+    game_forger.written(record, path)
+    game = replace(game, played=replace(game.played, record_hash=""))
+    found = check_game(folder, game, proven=True, programs=True)
+    why = found.unchecked[0].values["why"]
+    assert isinstance(why, Phrase)
+    assert (found.wrong, why.code) == ((), "replay.other-mujoco")
+    path.write_bytes(path.read_bytes()[:1000])
+    assert check_game(folder, game, proven=True).wrong
+
+
+@pytest.mark.slow
 def test_a_game_of_another_arithmetic_is_played_again(played: Path, tmp_path: Path) -> None:
     """The record of another arithmetic passes if the game ends here with the same result."""
     folder = played / "published"
