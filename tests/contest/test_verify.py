@@ -99,7 +99,7 @@ def numbered(*facts: AnyFact) -> tuple[AnyFact, ...]:
         (15, ()),
         (4, [contest_forging.AGAIN]),
         pytest.param(60, (), marks=pytest.mark.long),
-        pytest.param(500, [contest_forging.AGAIN], marks=pytest.mark.long(minutes=12)),
+        pytest.param(500, [contest_forging.AGAIN], marks=pytest.mark.long(minutes=20)),
     ],
 )
 def test_no_forgery_is_missed(
@@ -491,6 +491,17 @@ def test_a_team_that_a_bot_steered_is_checked(tmp_path: Path) -> None:
         assert (found.wrong, found.unchecked[0].values["why"].code) == ((), code)  # type: ignore[union-attr]
     played = replace(game.played, steer="straight")
     assert check_game(folder, replace(game, played=played), proven=False).wrong
+
+
+@pytest.mark.slow
+def test_nobody_steers_a_team_with_a_bot(played: Path) -> None:
+    """A fact that names a steering bot where both teams have entered bots is found."""
+    folder = played / "published"
+    game = games_of(read(folder))[-1]
+    game = replace(game, played=replace(game.played, steer="planner"))
+    (found,) = check_game(folder, game, proven=False, programs=True).wrong
+    assert isinstance(what := found.values["what"], Phrase)
+    assert what.code == "verify.of-steer"
 
 
 def test_facts_that_are_nested_too_deep_are_refused(tmp_path: Path) -> None:

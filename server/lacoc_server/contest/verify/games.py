@@ -147,6 +147,9 @@ def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found
         sides = _sides(folder, game, record)
         teams = game.played.teams
         wrong += (say("verify.of-files", team=one) for one in teams if one not in _teams(sides))
+    # `Played.steer` is told as somebody's choice, so it must not be there without a reason.
+    if game.played.steer and (game.call is not None or all(one.entry.bot for one in sides)):
+        wrong.append(say("verify.of-steer", bot=game.played.steer))
     checked = Checked()
     if not wrong and game.call is None:
         checked = check_inputs(record, arena, sides, game.late_ticks, programs=programs)
