@@ -148,7 +148,8 @@ def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found
         teams = game.played.teams
         wrong += (say("verify.of-files", team=one) for one in teams if one not in _teams(sides))
     # `Played.steer` is told as somebody's choice, so it must not be there without a reason.
-    if game.played.steer and (game.call is not None or all(one.entry.bot for one in sides)):
+    has_bots = game.call is not None or all(one.entry.bot for one in sides)
+    if not wrong and game.played.steer and has_bots:
         wrong.append(say("verify.of-steer", bot=game.played.steer))
     checked = Checked()
     if not wrong and game.call is None:
