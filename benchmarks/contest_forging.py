@@ -636,7 +636,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         honest, other = contests(Path(folder))
         found = forge(honest, other, options.forgeries, options.seed, [AGAIN] * options.again)
-    contradicted = sum(found.kinds.values()) - found.fitting
+    contradicted = sum(found.kinds.values()) - found.fitting - sum(found.harmless.values())
     told = {
         "forgeries": dict(found.kinds),
         "found": f"{contradicted - len(found.missed)} of {contradicted}",

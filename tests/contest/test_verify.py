@@ -99,7 +99,7 @@ def numbered(*facts: AnyFact) -> tuple[AnyFact, ...]:
         (15, ()),
         (4, [contest_forging.AGAIN]),
         pytest.param(60, (), marks=pytest.mark.long),
-        pytest.param(500, [contest_forging.AGAIN], marks=pytest.mark.long(minutes=12)),
+        pytest.param(500, [contest_forging.AGAIN], marks=pytest.mark.long(minutes=20)),
     ],
 )
 def test_no_forgery_is_missed(
@@ -416,6 +416,26 @@ def test_another_version_is_not_proven_if_its_bots_differ(played: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_record_of_other_physics_is_not_proven(copied: Path) -> None:
+    """A record of another MuJoCo is neither proven nor forged; a damaged one is a finding."""
+    folder = copied.parent / "published"
+    game = games_of(read(folder))[-1]
+    path = folder / "records" / game.played.record
+    record = Record.read([path])
+    versions = {**record.header.versions, "mujoco": "3.0.0"}
+    record.headers = [replace(record.header, versions=versions)]
+    path.unlink()
+    game_forger.written(record, path)
+    game = replace(game, played=replace(game.played, record_hash=""))
+    found = check_game(folder, game, proven=True, programs=True)
+    why = found.unchecked[0].values["why"]
+    assert isinstance(why, Phrase)
+    assert (found.wrong, why.code) == ((), "replay.other-mujoco")
+    path.write_bytes(path.read_bytes()[:1000])
+    assert check_game(folder, game, proven=True).wrong
+
+
+@pytest.mark.slow
 def test_a_game_of_another_arithmetic_is_played_again(played: Path, tmp_path: Path) -> None:
     """The record of another arithmetic passes if the game ends here with the same result."""
     folder = played / "published"
@@ -471,6 +491,17 @@ def test_a_team_that_a_bot_steered_is_checked(tmp_path: Path) -> None:
         assert (found.wrong, found.unchecked[0].values["why"].code) == ((), code)  # type: ignore[union-attr]
     played = replace(game.played, steer="straight")
     assert check_game(folder, replace(game, played=played), proven=False).wrong
+
+
+@pytest.mark.slow
+def test_nobody_steers_a_team_with_a_bot(played: Path) -> None:
+    """A fact that names a steering bot where both teams have entered bots is found."""
+    folder = played / "published"
+    game = games_of(read(folder))[-1]
+    game = replace(game, played=replace(game.played, steer="planner"))
+    (found,) = check_game(folder, game, proven=False, programs=True).wrong
+    assert isinstance(what := found.values["what"], Phrase)
+    assert what.code == "verify.of-steer"
 
 
 def test_facts_that_are_nested_too_deep_are_refused(tmp_path: Path) -> None:

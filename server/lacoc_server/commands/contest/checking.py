@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 NOT_FOLLOWING = 1
 """Exit code: the standings do not follow from what is published."""
 NOT_PROVEN = 3
-"""Exit code: nothing contradicts the standings, but keys of bots could not be checked."""
+"""Exit code: nothing contradicts the standings, but not all could be checked here."""
 
 _Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The published folder.")]
 
@@ -71,7 +71,7 @@ def verify(
     and each record is proven by playing its inputs again. In games without a network each bot must
     press the recorded keys again. What people decided is listed, because nothing can prove it. The
     exit code is 0 if everything follows, 1 if something does not, 2 if the folder can't be read,
-    and 3 if nothing contradicts the standings but keys of bots could not be checked.
+    and 3 if nothing contradicts the standings but not all could be checked.
     """
     from lacoc_server.contest.verify.check import check
 

@@ -32,6 +32,8 @@ from lacoc_shared.words import Phrase, say
 
 RECORD_BYTES = 1 << 27
 """Largest record that is read. A match of three minutes has 3 MB."""
+_OTHER_PHYSICS = ("replay.other-mujoco", "replay.other-model")
+"""Why a record can't be proven by this software, though nothing speaks against it."""
 _ROUTINE = ("ready", "start", "official", "next")
 """Decisions that each match at a court has; they change no result."""
 
@@ -58,7 +60,7 @@ class Found(msgspec.Struct, frozen=True, kw_only=True):
     wrong: tuple[Phrase, ...] = ()
     """What does not follow from facts, entries and record."""
     unchecked: tuple[Phrase, ...] = ()
-    """Which keys of bots could not be checked, and why."""
+    """What could not be checked here, and why: keys of bots, other physics."""
     decided: tuple[Phrase, ...] = ()
     """What referees decided in it; no record proves that they were right."""
     has_bots: bool = False
@@ -145,6 +147,10 @@ def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found
         sides = _sides(folder, game, record)
         teams = game.played.teams
         wrong += (say("verify.of-files", team=one) for one in teams if one not in _teams(sides))
+    # `Played.steer` is told as somebody's choice, so it must not be there without a reason.
+    has_bots = game.call is not None or all(one.entry.bot for one in sides)
+    if not wrong and game.played.steer and has_bots:
+        wrong.append(say("verify.of-steer", bot=game.played.steer))
     checked = Checked()
     if not wrong and game.call is None:
         checked = check_inputs(record, arena, sides, game.late_ticks, programs=programs)
@@ -166,9 +172,15 @@ def _proven(folder: Path, game: Game, record: Record, found: Found, programs: bo
     without a network is then played again: what it ends with here is nobody's choice.
 
     Raises:
-        UserError: if other physics made the record, or it is damaged.
+        UserError: if the record is damaged.
     """
-    verdict = next(step for step in prove(record, processes=1) if isinstance(step, Verdict))
+    try:
+        verdict = next(step for step in prove(record, processes=1) if isinstance(step, Verdict))
+    except UserError as error:
+        if error.phrase.code not in _OTHER_PHYSICS:
+            raise
+        why = _unchecked(game, error.phrase)
+        return msgspec.structs.replace(found, unchecked=(*found.unchecked, why))
     played = game.played
     if not verdict.same:
         said = say(
