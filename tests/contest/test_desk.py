@@ -312,6 +312,22 @@ def test_entries_close_once_and_need_two_teams(room: Room) -> None:
     assert said(room.ask(Approve(secret=KEY, teams=("Crabs",)))) == "league.closed"
 
 
+def test_more_swiss_rounds_than_opponents_are_told(tmp_path: Path) -> None:
+    """Whoever closes entries is told if a Swiss stage has more rounds than a team has opponents."""
+    swiss = '[stage.swiss]\nformat = "swiss"\nrounds = {}\n'
+    for rounds, doubted in ((3, False), (4, True)):
+        folder = tmp_path / str(rounds)
+        folder.mkdir()
+        room = Room(folder, swiss.format(rounds))
+        room.enter("Ants", "Bees", "Crabs")
+        answer = room.ask(CloseEntries(secret=KEY))
+        assert isinstance(answer, Said)
+        assert ("contest.many-rounds" in [line.code for line in answer.said]) is doubted
+        assert [one.code for one in organiser.doubts_of(room.file)] == (
+            ["contest.many-rounds"] if doubted else []
+        )
+
+
 def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
     """A preview appends no fact; the decision has the shown effect on matches and ranks."""
     room.enter("Ants", "Bees")

@@ -78,3 +78,21 @@ def test_unknown_code() -> None:
     """An unknown tie-break is refused, and the error names it."""
     with pytest.raises(UserError, match="chance"):
         standings(ABCD, [], ("points", "chance"))
+
+
+def test_each_rank_says_what_decided_it() -> None:
+    """A row names the code that ranks its team below the one above; "seed": all were equal."""
+    matches = [
+        Counted(("A", "B"), (5, 5), None),
+        Counted(("C", "D"), (9, 1), 0),
+        Counted(("E", "F"), (2, 1), 0),
+    ]
+    table = standings("ABCDEF", matches, ("points", "difference"), last=("F",))
+    assert [(row.team, row.decided_by) for row in table.rows] == [
+        ("C", ""),
+        ("E", "difference"),
+        ("A", "points"),
+        ("B", "seed"),
+        ("D", "points"),
+        ("F", ""),
+    ]

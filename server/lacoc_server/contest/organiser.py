@@ -298,6 +298,33 @@ def prepare(where: ContestFolder, store: FactStore, *, entering: bool = False) -
         check_teams(where, contest)
 
 
+def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
+    """Return what is possible in the plans of stages, but hardly meant with the teams that are in.
+
+    In a Swiss stage with more rounds than a team has opponents, teams meet again.
+    """
+    here = sum(not team.gone for team in contest.teams)
+    found: list[Phrase] = []
+    for plan in where.plans:
+        teams = min(plan.teams, here) if plan.teams else here
+        most = teams - 1 + teams % 2
+        if plan.format == "swiss" and teams > 1 and plan.settings.rounds > most:
+            rounds = plan.settings.rounds
+            found.append(
+                say("contest.many-rounds", stage=plan.stage, rounds=rounds, teams=teams, most=most)
+            )
+    return found
+
+
+def doubts_of(file: Path) -> list[Phrase]:
+    """Return `doubts` of a contest; none before a team has entered."""
+    where = ContestFolder(file)
+    if not where.facts.exists():  # reading makes no file
+        return []
+    with FactStore(where.facts) as store:
+        return doubts(where, compute(store.facts(), FORMATS))
+
+
 def check_teams(where: ContestFolder, contest: Contest) -> None:
     """Check that there are enough teams for a draw.
 

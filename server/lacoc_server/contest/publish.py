@@ -139,13 +139,18 @@ def _copy(source: Path, to: Path, wanted: str) -> None:
 
 
 def _standings(sheet: ContestSheet) -> list[Sequence[object]]:
-    header = "stage group rank team points won drawn lost scored conceded"
-    rows: list[Sequence[object]] = [header.split()]
-    for view in sheet.stages:
-        for table in view.tables:
-            for row in table.rows:
-                score = (row.points, row.won, row.drawn, row.lost, row.scored, row.conceded)
-                rows.append([view.name, table.section, row.rank, row.team, *score])
+    header = "stage group rank team points won drawn lost scored conceded decided_by"
+    found = [(view, table) for view in sheet.stages for table in view.tables]
+    codes = list(dict.fromkeys(code for _, table in found for code in table.tie_breaks))
+    rows: list[Sequence[object]] = [[*header.split(), *codes]]
+    for view, table in found:
+        for row in table.rows:
+            score = (row.points, row.won, row.drawn, row.lost, row.scored, row.conceded)
+            values = dict(zip(table.tie_breaks, row.tie_breaks, strict=False))
+            rows.append(
+                [view.name, table.section, row.rank, row.team, *score, row.decided_by]
+                + [values.get(code, "") for code in codes]
+            )
     return rows
 
 

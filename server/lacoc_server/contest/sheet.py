@@ -17,7 +17,7 @@ from lacoc_server.contest.league.rating import Rated, Rating, ratings
 from lacoc_server.contest.league.schedule import playable
 from lacoc_shared.words import Phrase
 
-VERSION = 2
+VERSION = 3
 """Version of the layout of a sheet."""
 
 

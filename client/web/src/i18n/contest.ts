@@ -96,6 +96,11 @@ export const contest = {
   "contest.lost.short": ["L", "負"],
   "contest.points.short": ["Pts", "点"],
   "contest.difference.short": ["+/−", "差"],
+  "contest.byDraw": [
+    "equal to the team above in all codes: the order of the draw decides",
+    "上のチームとすべて同じため、組み合わせの順で決定",
+  ],
+  "contest.tie.scored.short": ["For", "得点"],
   "contest.tie.direct.short": ["Dir.", "直接"],
   "contest.tie.buchholz-cut.short": ["BC1", "BC1"],
   "contest.tie.buchholz.short": ["Buch.", "BH"],

@@ -13,6 +13,7 @@ from lacoc_shared.words import render, say
 if TYPE_CHECKING:
     from lacoc_server.contest.kept.entries import HandedIn
     from lacoc_server.contest.kept.sheet_writer import Progress
+    from lacoc_server.contest.league.standings import Table
     from lacoc_server.contest.live.run import Opened
     from lacoc_server.contest.sheet import ContestSheet
     from lacoc_shared.words import Phrase
@@ -125,8 +126,11 @@ def run(
     again. If one entry changes, a new contest with the same folder of records plays only the games
     of that team.
     """
+    from lacoc_server.contest import organiser
     from lacoc_server.contest.headless.pool import Pool, interrupted_by_signals
 
+    for doubt in organiser.doubts_of(file):
+        screen.warn(doubt)
     with interrupted_by_signals(), screen.progress() as progress:
         task = progress.add_task(render(say("simulate.matches")), total=None)
 
@@ -134,7 +138,6 @@ def run(
             progress.update(task, completed=done, total=there)
 
         if headless:
-            from lacoc_server.contest import organiser
             from lacoc_server.contest.headless.cluster import Cluster
 
             engine = Pool(jobs) if cluster is None else Cluster(cluster, screen.warn)
@@ -216,11 +219,22 @@ def _show(sheet: "ContestSheet") -> None:
     titles += [say("fact.lost"), say("fact.points"), say("fact.score")]
     for view in sheet.stages:
         for table in view.tables:
-            shown = screen.table(*titles)
+            codes = _deciding(table)
+            shown = screen.table(*titles, *(say("plain.text", text=code) for code in codes))
             title = say("contest.stage-title", stage=view.name, group=table.section.upper() or None)
             shown.title = render(title)
             for row in table.rows:
                 numbers = (row.won, row.drawn, row.lost, row.points)
                 score = f"{row.scored} : {row.conceded}"
-                shown.add_row(str(row.rank), row.team, *map(str, numbers), score)
+                ties = [str(row.tie_breaks[table.tie_breaks.index(code)]) for code in codes]
+                rank = f"{row.rank} =" if row.decided_by == "seed" else str(row.rank)
+                shown.add_row(rank, row.team, *map(str, numbers), score, *ties)
             screen.show(shown)
+            if any(row.decided_by == "seed" for row in table.rows):
+                screen.show(say("contest.by-the-draw"))
+
+
+def _deciding(table: "Table") -> list[str]:
+    """Return the codes that decided a rank and have no column of their own, in their order."""
+    decided = {row.decided_by for row in table.rows} - {"", "seed", "points"}
+    return [code for code in table.tie_breaks if code in decided]

@@ -199,6 +199,10 @@ def check(file: FileToRead = FILE) -> None:
     close = contest.entries_close
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
         screen.warn(say("contest.close-is-over", time=close.isoformat()))
+    from lacoc_server.contest import organiser
+
+    for doubt in organiser.doubts_of(file):
+        screen.warn(doubt)
 
 
 def keys(

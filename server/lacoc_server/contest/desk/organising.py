@@ -82,7 +82,7 @@ def close(book: Book) -> Said:
         raise UserError(say("desk.closed-already"))
     book.store.append(new(Closed))
     here = sum(not team.gone for team in book.contest.teams)
-    return Said(said=(say("desk.closed", teams=here),))
+    return Said(said=(say("desk.closed", teams=here), *organiser.doubts(book.where, book.contest)))
 
 
 def draw(book: Book, asked: Draw) -> Said:

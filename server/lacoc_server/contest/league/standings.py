@@ -1,6 +1,7 @@
 """Standings: where everybody stands after some matches, with ties broken by a list of codes."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import msgspec
@@ -43,6 +44,9 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     """Points of its opponents in these games."""
     tie_breaks: tuple[int, ...] = ()
     """Values of the tie-breaks in the order of the table's codes."""
+    decided_by: str = ""
+    """The code that ranks the team below the one above it; "seed": all codes left them equal, and
+    the order of the draw decided. "": it is the first of its table, or no code was asked."""
     out: bool = False
     """True: disqualified."""
 
@@ -166,11 +170,20 @@ def standings(
                 scored=tally.scored[team],
                 conceded=tally.conceded[team],
                 tie_breaks=tuple(values[team]),
+                decided_by=_decider(codes, values.get(above, ()), values[team])
+                if (team in last) is (above in last)
+                else "",
                 out=team in last,
             )
-            for rank, team in enumerate(ranked, 1)
+            for rank, (above, team) in enumerate(pairwise(["", *ranked]), 1)
         ),
     )
+
+
+def _decider(codes: Sequence[str], above: Sequence[int], below: Sequence[int]) -> str:
+    """Return the code that ranks one team below another one; "": there is no other one."""
+    values = zip(codes, above, below, strict=False)
+    return next((code for code, one, other in values if one != other), "")
 
 
 def _split(

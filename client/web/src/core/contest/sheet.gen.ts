@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 2;
+export const VERSION = 3;
 
 export interface Team {
   name: string;
@@ -120,6 +120,7 @@ export interface Standing {
   scored: number;
   conceded: number;
   tie_breaks: number[];
+  decided_by: string;
   out: boolean;
 }
 

@@ -242,10 +242,16 @@ export function found(sheet: ContestSheet, pairing: string): Played | null {
 
 /** Tie-breaks that a table shows in columns of their own: the others are columns anyway. */
 const OWN_COLUMNS = ["direct", "buchholz-cut", "buchholz", "sonneborn"];
+/** Tie-breaks whose values a table shows in its other columns, or that have no value to show. */
+const OTHER_COLUMNS = ["points", "wins", "fewest-lost", "difference", "seed"];
 
 /** The columns of a table that tie-breaks have: code, and place among the table's values. */
 export function tieColumns(table: Table): { code: string; index: number }[] {
   return table.tie_breaks
     .map((code, index) => ({ code, index }))
-    .filter(({ code }) => OWN_COLUMNS.includes(code));
+    .filter(
+      ({ code }) =>
+        OWN_COLUMNS.includes(code) ||
+        (!OTHER_COLUMNS.includes(code) && table.rows.some((row) => row.decided_by === code)),
+    );
 }

@@ -63,11 +63,18 @@ export function Standings({ view, table, rows, brief = false }: Props) {
       </thead>
       <tbody>
         {rows.map((row) => {
-          const { team, rank, won, drawn, lost, points, scored, conceded, out } = row;
+          const { team, rank, won, drawn, lost, points, scored, conceded, out, decided_by } = row;
           const all = { played: won + drawn + lost, won, drawn, lost };
           return (
             <tr key={team} data-chosen={chosenTeam.value === team || undefined}>
-              <td>{bracket && isStillIn(view, team) ? "" : rank}</td>
+              <td>
+                {bracket && isStillIn(view, team) ? "" : rank}
+                {decided_by === "seed" && (
+                  <abbr class="by-draw" title={t("contest.byDraw")}>
+                    {" ="}
+                  </abbr>
+                )}
+              </td>
               <th scope="row" class="who">
                 <TeamLink name={team} />
                 {out && <small class="out"> {t("contest.out")}</small>}
@@ -84,6 +91,15 @@ export function Standings({ view, table, rows, brief = false }: Props) {
           );
         })}
       </tbody>
+      {!brief && rows.some((row) => row.decided_by === "seed") && (
+        <tfoot>
+          <tr>
+            <td colSpan={4 + counts.length + ties.length} class="muted">
+              = {t("contest.byDraw")}
+            </td>
+          </tr>
+        </tfoot>
+      )}
     </table>
   );
 }
@@ -102,7 +118,9 @@ function TieColumn({ id, code }: { id: string; code: string }) {
   return (
     <th scope="col">
       <button type="button" class="explains" popovertarget={id} title={tieText(code)}>
-        {t(`contest.tie.${code}.short` as MessageName)}
+        {`contest.tie.${code}.short` in catalogue
+          ? t(`contest.tie.${code}.short` as MessageName)
+          : code}
       </button>
       <p id={id} popover="auto">
         {tieText(code)}
