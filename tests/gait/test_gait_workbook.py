@@ -462,3 +462,12 @@ def test_a_file_that_is_not_there(tmp_path):
     """The error for a missing file names the file and gives the reason."""
     with pytest.raises(UserError, match=r"Cannot read .*none\.txt: No such file or directory\."):
         read_gait_file(tmp_path / "none.txt")
+
+
+def test_a_label_is_text(workshop):
+    """A leg's label comes from anybody's robot file, and is never a formula or a link."""
+    labels = ["=1+2", "http://a", "@SUM(A1)", "R,B", "L,B", "L,C"]
+    sheet = openpyxl.load_workbook(io.BytesIO(write_workbook(workshop, labels)))[INPUT_SHEET]
+    assert [sheet.cell(12, column).value for column in range(2, 8)] == labels
+    assert {sheet.cell(12, column).data_type for column in range(2, 8)} == {"s"}
+    assert not any(sheet.cell(12, column).hyperlink for column in range(2, 8))

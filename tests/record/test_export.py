@@ -207,6 +207,9 @@ def test_foxglove_draws_the_match(record: Record) -> None:
         "/scene foxglove.SceneUpdate",
         "/board foxglove.SceneUpdate",
         "/events foxglove.Log",
+        "/match lacoc.Match",
+        "/robot/left lacoc.Robot",
+        "/robot/right lacoc.Robot",
     }
     transforms = found["/tf foxglove.FrameTransforms"]
     times = [time for time, _ in transforms]
@@ -219,6 +222,36 @@ def test_foxglove_draws_the_match(record: Record) -> None:
     assert last["left/leg"]["rotation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
     logs = found["/events foxglove.Log"]
     assert [log["message"] for _, log in logs] == ['"Ants" flip a disc, and more'] * 4
+
+
+def test_foxglove_has_numbers_to_plot(record: Record) -> None:
+    """A Foxglove file has clock, score, keys, path and joint angles, with names and units."""
+    found = _foxglove(record)
+    matches, left = found["/match lacoc.Match"], found["/robot/left lacoc.Robot"]
+    assert [time for time, _ in matches] == [time for time, _ in left]
+    sheet = record.sheets[-1][1]
+    frame = codec.decode(record.frames[-2][1], Frame)
+    _, last = matches[-1]
+    assert last["phase"] == int(frame.phase)
+    assert last["clock_s"] == pytest.approx(frame.clock_ticks * 0.02)
+    assert last["left_s"] == pytest.approx(max(0, sheet.duration_s - frame.clock_ticks * 0.02))
+    _, robot = left[-1]
+    assert (robot["score"], robot["key"]) == (frame.seats[0].score, frame.seats[0].key)
+    path, _ = export.pos_data(record, "left").decode().splitlines()[-2:]
+    values = [float(value) for value in path.split("\t")[1:]]
+    names = ("x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg")
+    assert [robot[name] for name in names] == pytest.approx(values[:6], abs=1e-5)
+    assert robot["joint_deg"] == pytest.approx(values[6:], abs=1e-4)
+
+
+def test_names_in_tables_are_no_formulas(record: Record) -> None:
+    """A team's name that looks like a formula is text in the table of events."""
+    (beat, sheet), *_ = record.sheets
+    seats = tuple(msgspec.structs.replace(seat, team="=1+2") for seat in sheet.seats)
+    record.sheets = [(beat, msgspec.structs.replace(sheet, seats=seats))]
+    record.events = [msgspec.structs.replace(record.events[0], seat=0)]
+    text = export.events_csv(record).decode("utf-8-sig")
+    assert [row["team"] for row in csv.DictReader(io.StringIO(text))] == ["'=1+2"]
 
 
 def test_foxglove_has_every_shape(record: Record) -> None:

@@ -1,6 +1,5 @@
 """Writes a class into files for a teacher: evidence as CSV, tables as a zip archive."""
 
-import csv
 import io
 import re
 import unicodedata
@@ -13,9 +12,9 @@ import msgspec
 
 from lacoc_client.phases.class_file import Document, Kept
 from lacoc_client.phases.evidence import Evidence, Guessed
+from lacoc_shared.command.csv_text import csv_text
 
 _FIRST = ("number", "time", "student", "kind")
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 _FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f\x7f\ud800-\udfff]')  # in names, on some system
 _LONGEST = 60  # characters of a name: systems allow 255 bytes, and a character has up to four
 _DEVICES = {"con", "prn", "aux", "nul"} | {
@@ -27,16 +26,11 @@ _DEVICES = {"con", "prn", "aux", "nul"} | {
 def evidence_csv(evidence: Iterable[Kept]) -> bytes:
     """Write evidence as CSV: one line for each piece, one column for each field that occurs.
 
-    The text begins with a byte order mark, so that Excel reads it as UTF-8. A value that a
-    spreadsheet program would take for a formula gets an apostrophe before it.
+    A value that a spreadsheet program would take for a formula gets an apostrophe before it.
     """
     lines = [_line(one) for one in evidence]
-    columns = dict.fromkeys((*_FIRST, *(name for line in lines for name in line)))
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(columns), restval="")
-    writer.writeheader()
-    writer.writerows(lines)
-    return text.getvalue().encode("utf-8-sig")
+    columns = list(dict.fromkeys((*_FIRST, *(name for line in lines for name in line))))
+    return csv_text([columns, *([line.get(name, "") for name in columns] for line in lines)])
 
 
 def tables_zip(tables: Iterable[Document]) -> bytes:
@@ -59,7 +53,7 @@ def _line(one: Kept) -> dict[str, Any]:
     at = datetime.fromtimestamp(one.at_s, UTC).isoformat(timespec="milliseconds")
     first = (one.number, at, one.student, type(one.evidence).__name__.lower())
     values = {**dict(zip(_FIRST, first, strict=True)), **_values(one.evidence)}
-    return {name: _harmless(value) for name, value in values.items()}
+    return {name: _as_cell(value) for name, value in values.items()}
 
 
 def _values(evidence: Evidence) -> dict[str, Any]:
@@ -72,13 +66,8 @@ def _values(evidence: Evidence) -> dict[str, Any]:
     return values
 
 
-def _harmless(value: Any) -> Any:
-    match value:
-        case list() | tuple():
-            return _harmless(" ".join(map(_as_text, value)))
-        case str() if value.startswith(_FORMULA):
-            return f"'{value}"
-    return value
+def _as_cell(value: Any) -> Any:
+    return " ".join(map(_as_text, value)) if isinstance(value, list | tuple) else value
 
 
 def _as_text(value: Any) -> str:

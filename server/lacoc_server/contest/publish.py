@@ -1,7 +1,5 @@
 """A contest as a folder that anybody can read, serve as a website, and check."""
 
-import csv
-import io
 import os
 import shutil
 from collections.abc import Callable, Iterable, Sequence
@@ -16,6 +14,7 @@ from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Pl
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.command import plugins, regular
+from lacoc_shared.command.csv_text import csv_text
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.files import segment_paths
@@ -24,9 +23,6 @@ from lacoc_shared.words import say
 FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", "games.csv"
 ENTRIES, RECORDS = "entries", "records"
 """Names of what a published folder has."""
-_FORMULA = (*"=+-@＝＋－＠", "\t", "\r")
-"""A spreadsheet takes a text that begins with one of these for a formula; the wide ones count in
-Japanese."""
 _SITES = "lacoc.site"
 """Entry points that add the pages: functions that are given the folder."""
 
@@ -72,7 +68,7 @@ def tables(sheet: ContestSheet) -> dict[str, bytes]:
 
     The first line of each has the names of the columns.
     """
-    return {STANDINGS: _csv(_standings(sheet)), GAMES: _csv(_games(sheet))}
+    return {STANDINGS: csv_text(_standings(sheet)), GAMES: csv_text(_games(sheet))}
 
 
 def write(path: Path, content: bytes) -> None:
@@ -163,14 +159,3 @@ def _games(sheet: ContestSheet) -> list[Sequence[object]]:
                 place = (view.name, match.pairing.id, game.number)
                 rows.append([*place, *game.teams, *game.scores, game.outcome, game.record])
     return rows
-
-
-def _csv(rows: Iterable[Sequence[object]]) -> bytes:
-    """Return rows as CSV in which a spreadsheet takes no name for a formula."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([_cell(value) for value in row] for row in rows)
-    return text.getvalue().encode("utf-8-sig")  # Excel needs the mark to see UTF-8
-
-
-def _cell(value: object) -> object:
-    return f"'{value}" if isinstance(value, str) and value[:1] in _FORMULA else value

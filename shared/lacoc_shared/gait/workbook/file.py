@@ -122,7 +122,8 @@ def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
     """
     cells = posture_cells(table, legs)
     stream = io.BytesIO()
-    with xlsxwriter.Workbook(stream, {"in_memory": True}) as book:
+    texts = {"strings_to_formulas": False, "strings_to_urls": False}  # labels come from anybody
+    with xlsxwriter.Workbook(stream, {"in_memory": True, **texts}) as book:
         # The date is fixed, so that the same table always gives the same file.
         book.set_properties({"title": "Loco-data", "created": datetime(2020, 1, 1, tzinfo=UTC)})
         add_sheets(book, cells, len(legs))

@@ -1,7 +1,8 @@
 """Export a record as an MCAP that Foxglove, Lichtblick and Rerun draw, 25 frames a second.
 
 Topics: /tf (poses of the robots' parts), /scene (shapes; again when the scene changes),
-/board (all markers as they look now; at each change), /events. Each message of /scene and
+/board (all markers as they look now; at each change), /events, and numbers to plot: /match (phase,
+clock) and /robot/SEAT (score, keys, path, joint angles). Each message of /scene and
 /board is complete, so a viewer may jump to any time. The messages are Foxglove's own
 schemas in protobuf, because Rerun reads transforms in no other encoding.
 """
@@ -35,6 +36,7 @@ from lacoc_shared import __version__, codec
 from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.export.figures import figures, topics
 from lacoc_shared.record.export.kinematics import (
     ForwardKinematics,
     joints_per_seat,
@@ -70,10 +72,12 @@ def foxglove(record: Record) -> bytes:
     file = BytesIO()
     writer = Writer(file)
     writer.start(library=f"lacoc {__version__}")
-    schemas = {kind: register_schema(writer, kind) for kind in dict.fromkeys(_TOPICS.values())}
+    seats = [seat.id for seat in record.sheets[-1][1].seats] if record.sheets else []
+    kinds = _TOPICS | topics(seats)
+    schemas = {kind: register_schema(writer, kind) for kind in dict.fromkeys(kinds.values())}
     channels = {
         topic: writer.register_channel(topic, "protobuf", schemas[kind])
-        for topic, kind in _TOPICS.items()
+        for topic, kind in kinds.items()
     }
     started_ns = int(datetime.fromisoformat(record.header.started).timestamp()) * 10**9
     for beat, topic, message in _messages(record, started_ns):
@@ -95,6 +99,9 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Messa
         sheet = record.sheet_at(shown[-1][0] if shown else begin)
         if sheet is None:
             continue
+        for beat, frame in shown[::_EVERY]:
+            time = _time(started_ns + beat * BEAT_NS)
+            yield from ((beat, topic, message) for topic, message in figures(frame, sheet, time))
         picture = _Picture(scene, sheet)
         yield begin, "/scene", picture.shapes(_time(started_ns + begin * BEAT_NS))
         moving = [item for item in shown[::_EVERY] if item[1].poses]

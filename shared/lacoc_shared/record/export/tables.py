@@ -1,11 +1,9 @@
 """Export tables and JSON from a record; `foxglove` exports the 3D view."""
 
-import csv
-import io
-
 import msgspec
 
 from lacoc_shared import codec
+from lacoc_shared.command.csv_text import csv_text
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export.kinematics import joints_per_seat
@@ -40,17 +38,14 @@ def pos_data(record: Record, seat: str) -> bytes:
 
 
 def events_csv(record: Record) -> bytes:
-    """Make a table of all events with one header row; the texts are in the process's language.
-
-    A byte order mark tells Excel that the file is UTF-8.
-    """
-    file = io.StringIO()
-    table = csv.writer(file, lineterminator="\n")
-    table.writerow(("number", "beat", "clock_s", "kind", "seat", "team", "code", "text"))
+    """Make a table of all events with one header row; the texts are in the process's language."""
+    rows: list[tuple[object, ...]] = [
+        ("number", "beat", "clock_s", "kind", "seat", "team", "code", "text")
+    ]
     for event in record.events:
         sheet = record.sheet_at(event.beat)
         seat = sheet.seats[event.seat] if sheet is not None and event.seat >= 0 else None
-        table.writerow(
+        rows.append(
             (
                 event.number,
                 event.beat,
@@ -62,7 +57,7 @@ def events_csv(record: Record) -> bytes:
                 render(event.said),
             )
         )
-    return file.getvalue().encode("utf-8-sig")
+    return csv_text(rows)
 
 
 def result_json(record: Record) -> bytes:
