@@ -13,6 +13,7 @@ from lacoc_server.contest.league.facts import (
     Settings,
     Withdrawn,
 )
+from lacoc_server.contest.league.schedule import assign
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared.messages.office import Whereabouts
@@ -105,6 +106,34 @@ def test_a_team_rests_before_its_next_match() -> None:
     found = where(cup, {}, rest_ms=60_000)
     coming = [there for there in found.values() if there.about_s is not None]
     assert {there.about_s for there in coming} == {60, 60 + (GAME + 60_000) // 1000}
+
+
+@pytest.mark.parametrize("step_ms", [-900_000, 86_400_000])
+def test_a_clock_that_was_set_makes_nobody_wait_for_it(step_ms: int) -> None:
+    """After the machine's clock was set back or forward, teams wait no longer than before."""
+    cup = Cup(teams=6)
+    calls = playing(cup)
+    waits = str(cup.contest.stages[0].matches[2].teams[0])
+    assert where(cup, calls)[waits].about_s == 120
+    cup.now_ms += step_ms
+    about_s = where(cup, calls, rest_ms=60_000)[waits].about_s
+    assert about_s is not None
+    assert about_s <= 120
+    for call in cup.contest.running:
+        cup.won(call.pairing, call.teams)
+    assert game_ms(cup.facts, GAME) == GAME
+
+
+def test_a_clock_that_was_set_back_stops_no_contest() -> None:
+    """A team whose game seems to end tomorrow does not rest until then."""
+    cup = Cup(teams=3, how="round-robin")
+    match = next(one for one in cup.contest.stages[0].matches if one.state == "open")
+    assert match.next_seats is not None
+    cup.call(match.pairing.id, "north", match.next_seats)
+    cup.now_ms += GAME
+    cup.won(match.pairing.id, match.next_seats)
+    cup.now_ms -= 900_000
+    assert len(assign(cup.contest, ["north"], cup.now_ms, 60_000)) == 1
 
 
 def test_a_knockout_goes_on() -> None:

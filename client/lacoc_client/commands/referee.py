@@ -478,16 +478,17 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
             render(time_left),
         )
     )
-    screen.show(
-        say(
-            "referee.speed",
-            factor=health.real_time_factor,
-            slow=health.slow_beats,
-            worst_ms=health.worst_late_ms,
-        )
-    )
     if health.record_trouble is not None:
-        screen.warn(health.record_trouble)
+        screen.warn(health.record_trouble)  # the court waits, so its speed says nothing
+    else:
+        screen.show(
+            say(
+                "referee.speed",
+                factor=health.real_time_factor,
+                slow=health.slow_beats,
+                worst_ms=health.worst_late_ms,
+            )
+        )
     if health.verdict is not None and health.verdict.advice:
         screen.show(
             Text(render(say("event.advised", reasons=health.verdict.advice)), "bold yellow")

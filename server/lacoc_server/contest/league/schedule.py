@@ -84,7 +84,7 @@ def _assigned(
         teams = match.next_seats
         if teams is None or busy & {*teams} or (match.pairing.id, match.next_game) in without:
             continue
-        if rested_ms(contest, match, least_rest_ms) > now_ms:
+        if rested_ms(contest, match, least_rest_ms, now_ms) > now_ms:
             continue
         move = moves.get(match.pairing.id)
         court = move.court if move is not None and move.court else free[0]
@@ -95,11 +95,19 @@ def _assigned(
         yield Assignment(court=court, pairing=match.pairing.id, game=match.next_game, teams=teams)
 
 
-def rested_ms(contest: Contest, match: Match, least_rest_ms: int) -> int:
-    """Return when both teams of a match will have rested, in milliseconds since 1970, UTC."""
+def rested_ms(contest: Contest, match: Match, least_rest_ms: int, now_ms: int) -> int:
+    """Return when both teams of a match will have rested, in milliseconds since 1970, UTC.
+
+    A game that ended in the future did not: the machine's clock was set back since.
+    """
     ends = (contest.ended_ms.get(team, (match.pairing.id, 0)) for team in match.teams if team)
     return max(
-        (end + least_rest_ms for pairing, end in ends if pairing != match.pairing.id), default=0
+        (
+            end + least_rest_ms
+            for pairing, end in ends
+            if pairing != match.pairing.id and end <= now_ms
+        ),
+        default=0,
     )
 
 

@@ -19,6 +19,8 @@ from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
+_LONGEST = 20
+"""A game that seems to have taken this many times its usual length did not."""
 _COUNTED = 15
 """How many of the newest games count for the usual length of a game."""
 _STEP_S = 5
@@ -69,6 +71,8 @@ class Start(NamedTuple):
 def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
     """Return how long a game usually takes from its call to its result.
 
+    Games during which the machine's clock was set do not count.
+
     Args:
         facts: the facts of the contest, in their order.
         otherwise_ms: what to return before the first game has ended.
@@ -79,7 +83,9 @@ def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
         if isinstance(fact, Called):
             called[fact.pairing, fact.game] = fact.at_ms
         elif isinstance(fact, Played) and (fact.pairing, fact.game) in called:
-            lengths.append(fact.at_ms - called[fact.pairing, fact.game])
+            length_ms = fact.at_ms - called[fact.pairing, fact.game]
+            if 0 <= length_ms <= _LONGEST * otherwise_ms:
+                lengths.append(length_ms)
     return round(median(lengths[-_COUNTED:])) if lengths else otherwise_ms
 
 
@@ -210,10 +216,11 @@ def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[t
     now_ms, game, rest_ms = pace
     matches = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     court_ms = dict.fromkeys(present(seen, now_ms), now_ms)
-    team_ms = {team: end + rest_ms for team, (_, end) in contest.ended_ms.items()}
+    # What happened in the future did not: the machine's clock was set back since.
+    team_ms = {t: end + rest_ms for t, (_, end) in contest.ended_ms.items() if end <= now_ms}
     for call in contest.running:
         view, match = matches[call.pairing]
-        end_ms = max(now_ms, call.at_ms + game) + (_games(view, match) - 1) * game
+        end_ms = max(now_ms, min(call.at_ms, now_ms) + game) + (_games(view, match) - 1) * game
         if call.court in court_ms:
             court_ms[call.court] = end_ms
         team_ms |= dict.fromkeys(call.teams, end_ms + rest_ms)
