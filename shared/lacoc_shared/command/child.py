@@ -21,6 +21,8 @@ _OPEN_S = 60.0
 """Longest time until a process must be ready [s], also on a slow machine."""
 _CLOSE_S = 10.0
 _LOOK_S = 0.02
+_STARTS = 3
+"""How often a process that is kept is started again if it is killed before it is ready."""
 _AGAIN_S = 1.0
 """How often to check whether the process has ended and must be started again [s]."""
 
@@ -87,6 +89,11 @@ class Child:
         return self._process.poll() is not None
 
     @property
+    def was_killed(self) -> bool:
+        """Whether a signal has ended the process, which did not end by itself."""
+        return (self._process.poll() or 0) < 0
+
+    @property
     def ended_for_good(self) -> bool:
         """Whether the process has ended, and must not be started again."""
         return self._process.poll() == NOT_AGAIN
@@ -133,7 +140,8 @@ def kept_child(
 ) -> Iterator[dict[str, Any]]:
     """Run a `lacoc` command as `child` does, and start it again whenever it ends.
 
-    It is not started again after the exit code `NOT_AGAIN`.
+    It is not started again after the exit code `NOT_AGAIN`, nor if it says at its first start why
+    it can't run.
 
     Args:
         words: the words of the command line after `lacoc`.
@@ -142,7 +150,7 @@ def kept_child(
         again: takes the message of the first start, and returns the words for all later starts.
 
     Raises:
-        UserError: if the process does not become ready at the first start.
+        UserError: if the process does not become ready at first.
     """
     process = Child(words, folder, what)
     ending = threading.Event()
@@ -155,7 +163,16 @@ def kept_child(
 
     with ExitStack() as stack:
         stack.callback(lambda: process.close())
-        opened = process.opened()
+        for _ in range(_STARTS):
+            try:
+                opened = process.opened()
+                break
+            except UserError:
+                if not process.was_killed:  # it said itself why it can't start
+                    raise
+                process = Child(words, folder, what)
+        else:
+            opened = process.opened()
         keeper = threading.Thread(target=keep, args=(again(opened),), daemon=True)
         keeper.start()
         stack.callback(keeper.join)

@@ -1,0 +1,51 @@
+"""Processes that a command starts and ends for itself."""
+
+import os
+import threading
+from pathlib import Path
+
+import psutil
+import pytest
+from waiting import until
+
+from lacoc_shared.command.child import kept_child
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name != "posix", reason="kill -9"),
+]
+
+
+def _children() -> list[psutil.Process]:
+    found = psutil.Process().children()
+    return [one for one in found if "lacoc_shared" in " ".join(one.cmdline())]
+
+
+def test_a_process_that_is_killed_while_it_starts_is_started_again(tmp_path: Path) -> None:
+    """A studio that something kills before it is ready does not end the command that wants it."""
+    killed: list[int] = []
+
+    def kill_first() -> None:
+        until(lambda: _children())
+        first = _children()[0]
+        first.kill()
+        killed.append(first.pid)
+
+    killer = threading.Thread(target=kill_first)
+    killer.start()
+    words = ["studio", "--listen", "127.0.0.1:0", "--json", "--jobs", "1"]
+    with kept_child(words, tmp_path, say("child.studio"), lambda _: words) as opened:
+        killer.join()
+        assert opened
+        assert killed[0] not in [one.pid for one in _children()]
+
+
+def test_a_process_that_says_why_it_can_not_start_is_not_tried_again(tmp_path: Path) -> None:
+    """An error of the process is the error of the command."""
+    with (
+        pytest.raises(UserError, match="--nonsense"),
+        kept_child(["studio", "--nonsense"], tmp_path, say("child.studio"), lambda _: []),
+    ):
+        pass
