@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 
 import pytest
 from waiting import LIMIT_S, until
@@ -232,3 +233,17 @@ def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -
         _, errors = process.communicate(timeout=LIMIT_S)
     assert process.returncode == {"pass": 0, "sys.exit(3)": 3}.get(end, 1), errors
     assert ("oops" in errors) == ("oops" in end)
+
+
+@pytest.mark.slow
+def test_silent_connections_keep_nobody_out() -> None:
+    """While 256 connections have sent two bytes and no more, a newcomer is let in."""
+    with open_court(["127.0.0.1:0"]) as session, ExitStack() as stack:
+        (locator,) = session.locators()
+        _, _, place = locator.partition("/")
+        host, _, port = place.rpartition(":")
+        for _ in range(256):
+            silent = stack.enter_context(socket.create_connection((host, int(port)), LIMIT_S))
+            silent.sendall(b"\x01\x02")
+        with open_client([place], LIMIT_S) as newcomer:
+            until(newcomer.routers)
