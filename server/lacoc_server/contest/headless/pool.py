@@ -218,10 +218,7 @@ def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
     """
     if seated.program is None:
         return brains.find(arena, seated.bot)
-    with Scratch("bot") as folder:
-        file = folder / "bot.py"
-        file.write_bytes(seated.program)
-        return brains.find(arena, str(file))
+    return brains.of_program(f"{seated.bot}.py", seated.program)
 
 
 def _play_one(job: Job) -> Result:
