@@ -81,6 +81,8 @@ def broken(name: str, error: BaseException, file: str | None) -> UserError:
     place = None if file is None or line is None else f"{file}:{line}"
     if isinstance(error, NoAnswer):
         return UserError(say("bot.no-answer", bot=name, place=place, why=error.why))
+    if isinstance(error, ModuleNotFoundError) and error.name:
+        return UserError(say("bot.no-module", bot=name, place=place, module=error.name))
     reason = error.msg if isinstance(error, SyntaxError) else error
     what = printable(f"{type(error).__name__}: {reason}", _LONGEST_ERROR)
     return UserError(say("bot.ended", bot=name, place=place, error=what))

@@ -12,7 +12,10 @@ from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
 from typing import Any, NamedTuple, ParamSpec, Self, TypeVar
 
+from lacoc_arenas import time_limit
 from lacoc_shared.command.priority import give_way
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -22,7 +25,16 @@ _END_S = 5.0
 
 
 class WorkerDied(Exception):
-    """The process of a job ended before the job was done, or was ended because it took too long."""
+    """The process of a job ended before the job was done, or was ended because it took too long.
+
+    Args:
+        what: what happened.
+        last_words: why the process ended itself; None: it did not.
+    """
+
+    def __init__(self, what: str = "", last_words: Phrase | None = None) -> None:
+        super().__init__(what)
+        self.last_words = last_words
 
 
 class WorkerFailed(Exception):
@@ -156,10 +168,12 @@ class _Child:
             self._connection.send((function, arguments))
             if self._connection not in wait([self._connection, self.process.sentinel], limit_s):
                 raise WorkerDied(f"{function.__name__}: no result in {limit_s:.0f} s, or it ended")
-            found: tuple[bool, Any] = self._connection.recv()
+            right, found = self._connection.recv()
         except (EOFError, OSError) as error:
             raise WorkerDied(f"{function.__name__}: {error!r}") from None
-        return found
+        if right is None:
+            raise WorkerDied(str(UserError(found)), found)
+        return right, found
 
     def end(self) -> None:
         """End the process."""
@@ -173,6 +187,12 @@ def _work(connection: "Connection[Any, Any]", background: bool) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:
         give_way()
+
+    def end(why: Phrase) -> None:
+        connection.send((None, why))
+        os._exit(1)
+
+    time_limit.when_stuck = end
     with contextlib.suppress(EOFError, OSError):
         while True:
             function, arguments = connection.recv()
