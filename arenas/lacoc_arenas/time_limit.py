@@ -42,7 +42,7 @@ MOST = Most()
 
 
 class NoAnswer(BaseException):
-    """Raised in the code of a bot that takes too long; no `except Exception` of a bot catches it."""
+    """Raised in the code of a bot that takes too long; `except Exception` does not catch it."""
 
     def __init__(self, why: Phrase | None = None) -> None:
         super().__init__()
@@ -57,6 +57,31 @@ def _end_process(said: Phrase) -> None:
 when_stuck: Callable[[Phrase], None] = _end_process
 """Called with what to say of a bot that can't be interrupted; it ends the process."""
 
+NAME_BYTES = 256
+
+
+class _Value:
+    """A value that nobody else reads, in place of shared memory."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+
+class Shown(NamedTuple):
+    """What another process may see of the bots of this one, in shared memory.
+
+    A bot may hold Python's lock, as in a sum without an end, so that no other thread of its process
+    runs. Then another process must name it.
+    """
+
+    bot: Any
+    """`bot.value`: name of the bot that is asked now, UTF-8; empty: none."""
+    looks: Any
+    """`looks.value`: how often this process has looked at its bots."""
+
+
+shown = Shown(_Value(b""), _Value(0))
+
 
 class Timer:
     """Counts the time of one bot in one match.
@@ -67,6 +92,7 @@ class Timer:
 
     def __init__(self, bot: str) -> None:
         self.bot = bot
+        self._name = bot.encode()[: NAME_BYTES - 1]
         self.used_s = 0.0
         """Processor time of all frames."""
         self.waited_s = 0.0
@@ -96,12 +122,14 @@ class Timer:
         if thread in _calls:  # a bot that asks another bot answers for both
             return function(*arguments)
         call = _Call(self, is_frame, thread)
+        shown.bot.value = self._name
         _calls[thread] = call
         try:
             try:
                 found = function(*arguments)
             finally:
                 call.end()
+                shown.bot.value = b""
             if call.why is not None:  # it went on after the interruption, and answered then
                 raise NoAnswer
             return found
@@ -205,6 +233,7 @@ def _watch() -> None:
 def _look() -> None:
     while True:
         time.sleep(LOOK_S)
+        shown.looks.value += 1
         for call in [*_calls.values()]:
             call.look()
 

@@ -1,4 +1,4 @@
-"""Tests of the time that a bot may take: whoever never answers is ended, and named with its line."""
+"""Tests of the time that a bot may take: whoever never answers is ended and named."""
 
 import threading
 from collections.abc import Callable
@@ -72,7 +72,8 @@ def test_an_endless_bot_ends_in_any_thread(tmp_path: Path, how: str) -> None:
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py did not answer .*{says}"):
         ask(tmp_path, source)
     error = in_thread(lambda: ask(tmp_path, source))
-    assert error is not None and "did not answer" in str(error)
+    assert error is not None
+    assert "did not answer" in str(error)
 
 
 @pytest.mark.skipif(not hasattr(time_limit.signal, "pthread_kill"), reason="no signals to threads")
@@ -107,9 +108,7 @@ def test_who_answers_after_the_interruption_has_not_answered(tmp_path: Path) -> 
         ask(tmp_path, source)
 
 
-def test_a_bot_that_can_not_be_interrupted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_bot_that_can_not_be_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A bot that goes on after all interruptions is told with its line; the process would end."""
     told = []
     ends = threading.Event()

@@ -188,7 +188,10 @@ def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
     bad = tmp_path / "your_bot.py"
     bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 / 0\n")
     organiser.enter(file, "Eve", None, str(bad), "")
-    with pytest.raises(UserError, match=r"^Eve: The bot your_bot\.py stopped .*\(your_bot\.py:2\): .*division by zero\.\nGames"):
+    with pytest.raises(
+        UserError,
+        match=r"^Eve: The bot your_bot\.py stopped .*\(your_bot\.py:2\): .* by zero\.\nGames",
+    ):
         contest_played.play(file)
     decided = [match.decided for match in organiser.sheet(file).stages[0].matches]
     assert decided.count(False) == 1
@@ -337,7 +340,11 @@ def test_bad_bots_stop_no_other_game(tmp_path: Path, monkeypatch: pytest.MonkeyP
     told: list[str] = []
     with pytest.raises(UserError) as failed:
         organiser.play_headless(
-            file, "planner", Here(), lambda done, there: None, lambda what: told.append(render(what))
+            file,
+            "planner",
+            Here(),
+            lambda done, there: None,
+            lambda what: told.append(render(what)),
         )
     check_eight(file, str(failed.value), told)
 

@@ -1,6 +1,7 @@
 """Tests of docs/write-a-bot.md: its code works as printed, by the page alone."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -41,4 +42,4 @@ def test_the_page_s_bots_play(tmp_path: Path, block: str, arena: str) -> None:
         if isinstance(one, KeySeat) and one.seat == 0
     ]
     assert keys
-    assert all(now != before for before, now in zip(keys, keys[1:], strict=False))
+    assert all(now != before for before, now in pairwise(keys))

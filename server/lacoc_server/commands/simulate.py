@@ -150,7 +150,7 @@ def simulate_command(
                 if json:
                     screen.print_json(_failed_line(who, found))
                 continue
-            result = results[job.match_id] = found.result
+            results[job.match_id] = found.result
             for name, keys in zip(who, found.refused_keys, strict=True):
                 refused[name] += keys
             table = _standings(fit, names, results, seats)
@@ -332,7 +332,13 @@ def _standings_line(
     done: int, table: Sequence[Standing], teams: Mapping[str, str]
 ) -> dict[str, Any]:
     rows = [
-        {"name": row.team, "team": teams[row.team], "won": row.won, "drawn": row.drawn, "lost": row.lost}
+        {
+            "name": row.team,
+            "team": teams[row.team],
+            "won": row.won,
+            "drawn": row.drawn,
+            "lost": row.lost,
+        }
         | {"points": row.scored}
         for row in table
     ]

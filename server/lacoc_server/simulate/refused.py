@@ -1,4 +1,4 @@
-"""Counts keys that a bot presses in vain: its gait does not have them, so the robot does nothing."""
+"""Counts keys that a bot presses in vain: its gait does not have them."""
 
 from lacoc_shared.messages import Frame
 from lacoc_shared.seat import No

@@ -154,9 +154,7 @@ def _failed(games: Sequence[tuple[Job, Phrase]]) -> UserError:
     """Return one error for games that can't be played; it says each reason once."""
     teams = {why: job.teams for job, why in reversed(games)}
     said = [
-        why
-        if why.code == BotFailed.CODE
-        else say("contest.game-failed", teams=teams[why], why=why)
+        why if why.code == BotFailed.CODE else say("contest.game-failed", teams=teams[why], why=why)
         for why in dict.fromkeys(why for _, why in games)
     ]
     return UserError(*said, say("contest.games-failed", count=len(games)))
