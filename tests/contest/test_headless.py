@@ -322,9 +322,11 @@ def check_eight(file: Path, said: str, told: list[str]) -> None:
     lines = said.splitlines()
     assert len(lines) == 3
     (hangs,) = [line for line in lines if line.startswith("Hangs: ")]
-    assert "The bot hangs_bot.py did not answer (hangs_bot.py:2): it computed" in hangs
+    assert re.search(
+        r"The bot hangs_bot\.py did not answer \(hangs_bot\.py:2\): it computed", hangs
+    )
     (raises,) = [line for line in lines if line.startswith("Raises: ")]
-    assert "The bot raises_bot.py stopped with an error (raises_bot.py:2): ZeroDiv" in raises
+    assert re.search(r"The bot raises_bot\.py stopped .* \(raises_bot\.py:2\): ZeroDiv", raises)
     assert lines[-1].startswith("Games that can't be played: 13; all others are played.")
     (wrong,) = told
     assert re.match(r"Wrong: \d+ keys were refused, because the gait does not have them", wrong)

@@ -155,7 +155,7 @@ def test_a_bot_that_fails_stops_no_other_match(tmp_path: Path) -> None:
 
     Keys that a gait does not have are counted.
     """
-    bad, wrong = tmp_path / "bad.py", tmp_path / "wrong.py"
+    bad, wrong = tmp_path / "my_bot.py", tmp_path / "your_bot.py"
     bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 // 0\n")
     wrong.write_text(
         "from lacoc_arenas.bot import Key\n"
@@ -168,13 +168,13 @@ def test_a_bot_that_fails_stops_no_other_match(tmp_path: Path) -> None:
     assert len(failed) == 4
     assert all(str(bad) in line["players"] for line in failed)
     assert re.match(
-        r"bad: The bot .*bad\.py stopped with an error .*bad\.py:2\)", failed[0]["text"]
+        r"my_bot: The bot .*my_bot\.py stopped with an error .*my_bot\.py:2\)", failed[0]["text"]
     )
     matches = [line for line in lines if line["kind"] == "match"]
     keys = [dict(zip(line["players"], line["refused_keys"], strict=True)) for line in matches]
     assert len(keys) == 2
     assert all(one[str(wrong)] > 20 and not one["straight"] for one in keys)
-    assert re.search(r"wrong: \d+ keys were refused", done.stderr)
+    assert re.search(r"your_bot: \d+ keys were refused", done.stderr)
     assert "Matches without a result: 4 of 6; all others were played." in done.stderr
 
 
