@@ -185,10 +185,7 @@ class _Call:
             if self.why is None:
                 return
             self._interrupted += 1
-            if _signals_come and self._thread == threading.main_thread().ident:
-                signal.pthread_kill(self._thread, signal.SIGVTALRM)  # this wakes a sleeper too
-            else:
-                _raise_in(self._thread, NoAnswer)
+            _interrupt(self._thread)
         if self._interrupted > _IGNORED_LOOKS:
             when_stuck(self._said(self.why))
 
@@ -222,8 +219,8 @@ _signals_come = False
 def _watch() -> None:
     """Begin to look, if no thread of this process looks yet (after a fork none does)."""
     global _watcher, _signals_come
-    if hasattr(signal, "pthread_kill") and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGVTALRM, _interrupt)
+    if sys.platform != "win32" and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGVTALRM, _on_signal)
         _signals_come = True
     if _watcher is None or not _watcher.is_alive():
         _watcher = threading.Thread(target=_look, daemon=True, name="bot-time")
@@ -238,7 +235,15 @@ def _look() -> None:
             call.look()
 
 
-def _interrupt(number: int, stack: FrameType | None) -> None:
+def _interrupt(thread: int) -> None:
+    """Let a thread raise `NoAnswer`."""
+    if sys.platform != "win32" and _signals_come and thread == threading.main_thread().ident:
+        signal.pthread_kill(thread, signal.SIGVTALRM)  # this wakes a sleeper too
+    else:
+        _raise_in(thread, NoAnswer)
+
+
+def _on_signal(number: int, stack: FrameType | None) -> None:
     """Raise `NoAnswer` in the main thread, if its bot still takes too long."""
     call = _calls.get(threading.get_ident())
     if call is not None and call.why is not None:
