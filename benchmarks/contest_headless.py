@@ -152,7 +152,7 @@ def _play(file: Path, engine: Engines) -> tuple[int, float, object]:
     with FactStore(where.facts) as store, engine as opened:
         note_plans(store, where.plans)
         begun_s = time.monotonic()
-        played = play(where, store, opened, "planner", lambda _: None)
+        played = play(where, store, opened, "planner", lambda _: None, lambda _: None)
         took_s = round(time.monotonic() - begun_s, 2)
     return played, took_s, [view.tables for view in organiser.sheet(file).stages]
 

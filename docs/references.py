@@ -23,7 +23,10 @@ ISSUE = re.compile(r"(?<![\w/-])[Ii]ssue #?\d+")
 RULE = re.compile(r"(?<![\w/.])[Rr]ules (\d(?:\.\d)?)\b")
 """Code and tests cite docs/rules.md in this way."""
 
-OF_READERS = {"my_bot.py", "learned_bot.py", "your_bot.py", "walker.py", "mujoco.py"}
+OF_READERS = {
+    *("my_bot.py", "your_bot.py", "pilot_bot.py", "helper.py", "learned_bot.py"),
+    *("walker.py", "mujoco.py"),
+}
 """Files that a page or a message asks its reader to write, or that a test writes."""
 
 

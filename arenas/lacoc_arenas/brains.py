@@ -1,13 +1,13 @@
 """Find a brain: a game's own bot, an installed bot, a bot file, or the ghost of a record."""
 
-import importlib.util
 from collections import deque
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import BotFactory, Brain, Key
-from lacoc_arenas.checked_bot import broken, checked
+from lacoc_arenas.checked_bot import checked, loaded
 from lacoc_shared.codec import decode
 from lacoc_shared.command import plugins
 from lacoc_shared.gait.tables import Level
@@ -55,12 +55,25 @@ def find_installed(arena: Arena, name: str) -> BotFactory:
     return checked(name, _installed(arena, name))
 
 
+def of_program(name: str, source: bytes) -> BotFactory:
+    """Make a bot of the source of a bot file; the result is as in `find`.
+
+    Args:
+        name: name of the file, for messages.
+        source: Python source with a function `bot(sheet, seat)`.
+
+    Raises:
+        UserError: if the source has a mistake.
+    """
+    return checked(name, _from_source(name, source))
+
+
 def _find(arena: Arena, name: str) -> BotFactory:
     if name.startswith(GHOST):
         record, seat = open_ghost(name)
         return lambda sheet, index: ghost(record, seat)
     if name.endswith(".py") and name not in arena.bots:
-        return _from_file(Path(name).expanduser())
+        return _from_file(name)
     return _installed(arena, name)
 
 
@@ -137,16 +150,29 @@ def ghost(record: Record, seat: int) -> Brain:
     return brain
 
 
-def _from_file(path: Path) -> BotFactory:
-    spec = importlib.util.spec_from_file_location(f"lacoc_bot_{path.stem}", path)
-    if spec is None or spec.loader is None or not path.exists():
-        raise UserError(say("bot.no-file", path=str(path)))
-    module: Any = importlib.util.module_from_spec(spec)
+def _from_file(name: str) -> BotFactory:
+    path = Path(name).expanduser()
     try:
-        spec.loader.exec_module(module)
-    except Exception as error:  # whatever a person's code may raise
-        raise broken(str(path), error, spec.origin) from error
+        source = path.read_bytes()
+    except OSError:
+        raise UserError(say("bot.no-file", path=str(path))) from None
+    return _from_source(str(path), source)
+
+
+def _from_source(name: str, source: bytes) -> BotFactory:
+    """Run the source of a bot; tracebacks name its file `name`.
+
+    Raises:
+        UserError: if it fails, or has no function `bot`.
+    """
+    module: Any = ModuleType(f"lacoc_bot_{Path(name).stem}")
+    module.__file__ = name
+
+    def load() -> None:
+        exec(compile(source, name, "exec", dont_inherit=True), module.__dict__)
+
+    loaded(name, load)
     if not callable(getattr(module, "bot", None)):
-        raise UserError(say("bot.no-function", path=str(path)))
+        raise UserError(say("bot.no-function", path=name))
     factory: BotFactory = module.bot
     return factory

@@ -8,12 +8,16 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
+from lacoc_arenas import time_limit
 from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_arenas.time_limit import NoAnswer, Timer
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import RESTART_KEY
 from lacoc_shared.words import Phrase, say
 
+_OURS = (__file__, time_limit.__file__)
+_LONGEST_ERROR = 200
 _A_BRAIN = say("expected.brain")
 _A_KEY = say("expected.key", restart=RESTART_KEY)
 
@@ -21,8 +25,8 @@ _A_KEY = say("expected.key", restart=RESTART_KEY)
 def checked(name: str, bot: BotFactory) -> BotFactory:
     """Return a bot that plays as the given bot does, and checks every result.
 
-    The returned bot and its brains raise UserError if the given bot or its brain fails, or returns
-    something that is not allowed.
+    The returned bot and its brains raise UserError if the given bot or its brain fails, takes too
+    long (`time_limit`), or returns something that is not allowed.
 
     Args:
         name: the bot's name, as the user typed it.
@@ -30,12 +34,13 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
     """
 
     def make(sheet: Sheet, seat: int) -> Brain:
-        brain = _call(name, bot, sheet, seat)
+        timer = Timer(name)
+        brain = _call(timer.begin, name, bot, sheet, seat)
         if not callable(brain):
             raise _gave_back(name, bot, brain, _A_BRAIN)
 
         def see(frame: Frame) -> Key | None:
-            key: Key | None = _call(name, brain, frame)
+            key: Key | None = _call(timer.frame, name, brain, frame)
             if key is not None and not _is_key(key):
                 raise _gave_back(name, brain, key, _A_KEY)
             return key
@@ -45,35 +50,60 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
     return make
 
 
-def broken(name: str, error: Exception, file: str | None) -> UserError:
+def loaded(name: str, load: Callable[[], Any]) -> Any:
+    """Run the code of a bot's file, within the time for that.
+
+    Args:
+        name: the bot's name, as the user typed it; tracebacks name its file so.
+        load: runs the code.
+
+    Raises:
+        UserError: if it fails or takes too long.
+    """
+    try:
+        return Timer(name).begin(load)
+    except (Exception, SystemExit, NoAnswer) as error:  # whatever a person's code may raise
+        raise broken(name, error, name) from error
+
+
+def broken(name: str, error: BaseException, file: str | None) -> UserError:
     """Make the error for an exception of a bot; it names the line of the bot's file that failed.
 
     Args:
         name: the bot's name, as the user typed it.
-        error: the exception.
+        error: the exception; `NoAnswer` if the bot took too long.
         file: the file of the bot's code, as tracebacks name it; None if the bot has no file. Then
             the error names no line.
     """
     calls = traceback.extract_tb(error.__traceback__)
     lines = [call.lineno for call in calls if call.filename == file]
     line = lines[-1] if lines else getattr(error, "lineno", None)  # a SyntaxError has its own
-    reason = error.msg if isinstance(error, SyntaxError) else error
     place = None if file is None or line is None else f"{file}:{line}"
-    what = f"{type(error).__name__}: {reason}"
+    if isinstance(error, NoAnswer):
+        return UserError(say("bot.no-answer", bot=name, place=place, why=error.why))
+    if isinstance(error, ModuleNotFoundError) and error.name:
+        return UserError(say("bot.no-module", bot=name, place=place, module=error.name))
+    reason = error.msg if isinstance(error, SyntaxError) else error
+    what = printable(f"{type(error).__name__}: {reason}", _LONGEST_ERROR)
     return UserError(say("bot.ended", bot=name, place=place, error=what))
 
 
-def _call(name: str, function: Callable[..., Any], *arguments: object) -> Any:
+def _call(
+    timed: Callable[..., Any], name: str, function: Callable[..., Any], *arguments: object
+) -> Any:
     try:
-        return function(*arguments)
-    except Exception as error:  # whatever a person's code may raise
-        called = error.__traceback__ and error.__traceback__.tb_next
-        if called is None:  # it does not take these arguments
+        return timed(function, *arguments)
+    except (Exception, SystemExit, NoAnswer) as error:  # whatever a person's code may raise
+        called = error.__traceback__
+        while called is not None and called.tb_frame.f_code.co_filename in _OURS:
+            called = called.tb_next
+        if called is None and isinstance(error, TypeError):  # it does not take these arguments
             place = _place(function)
             raise UserError(
                 say("bot.can-not-call", bot=name, place=place, error=str(error))
             ) from error
-        raise broken(name, error, called.tb_frame.f_code.co_filename) from error
+        file = called and called.tb_frame.f_code.co_filename
+        raise broken(name, error, file) from error
 
 
 def _is_key(found: object) -> bool:

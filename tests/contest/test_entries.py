@@ -362,3 +362,30 @@ def test_standings_before_the_draw_list_who_has_entered(
     )
     sheet = json.loads(lacoc("contest", "standings", cup.file, "--json")[1])
     assert [team["name"] for team in sheet["teams"]] == ["Bees", "Ants", "Wasps"]
+
+
+@pytest.mark.parametrize(
+    ("line", "missing"),
+    [
+        ("import helper", "helper"),
+        ("from helper.parts import walk", "helper"),
+        ("from .helper import walk", r"\.helper"),
+        ("if True:\n    import helper", "helper"),
+        ("import math, lacoc_arenas.steering", None),
+        ("try:\n    import helper\nexcept ImportError:\n    helper = None", None),
+    ],
+)
+def test_a_program_that_needs_another_file_is_refused(
+    tmp_path: Path, line: str, missing: str | None
+) -> None:
+    """A bot's program is one file; a module beside it would not be there. Nothing of it runs."""
+    (tmp_path / "helper.py").write_text("raise SystemExit\n")
+    bot = tmp_path / "my_bot.py"
+    bot.write_text(f"{line}\ndef bot(sheet, seat):\n    return lambda frame: None\n")
+    handed = gather(None, str(bot), "hexapod")
+    if missing is None:
+        assert weigh(handed, [], {}).program == bot.read_bytes()
+        return
+    says = rf"^The bot my_bot\.py needs the module {missing} \(my_bot\.py:\d\), which is not"
+    with pytest.raises(UserError, match=says):
+        weigh(handed, [], {})

@@ -1,6 +1,7 @@
 """Tests of contests that are played without a network, also after kills in between."""
 
 import os
+import re
 import shutil
 import signal
 from concurrent.futures import Future
@@ -14,6 +15,7 @@ from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, Here
 from lacoc_process import Lacoc
 from waiting import LIMIT_S, until
 
+from lacoc_arenas import time_limit
 from lacoc_server.contest import organiser
 from lacoc_server.contest.headless.play import play
 from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
@@ -26,7 +28,7 @@ from lacoc_server.contest.verify.published import check_published, read
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.summary import Summary, summary
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, render
 
 pytestmark = pytest.mark.slow
 
@@ -172,7 +174,7 @@ def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> No
 
     with FactStore(where.facts) as store, Pool(2) as pool:
         organiser.prepare(where, store)
-        play(where, store, pool, "planner", changed)
+        play(where, store, pool, "planner", changed, lambda _: None)
     assert kills < 3
     assert tables(organiser.sheet(file)) == tables(organiser.sheet(played / "contest.toml"))
 
@@ -186,7 +188,10 @@ def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
     bad = tmp_path / "your_bot.py"
     bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 / 0\n")
     organiser.enter(file, "Eve", None, str(bad), "")
-    with pytest.raises(UserError, match=r"Eve.*can't play their game.*division by zero"):
+    with pytest.raises(
+        UserError,
+        match=r"^Eve: The bot your_bot\.py stopped .*\(your_bot\.py:2\): .* by zero\.\nGames",
+    ):
         contest_played.play(file)
     decided = [match.decided for match in organiser.sheet(file).stages[0].matches]
     assert decided.count(False) == 1
@@ -209,7 +214,7 @@ def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> N
 
     with FactStore(where.facts) as store:
         organiser.prepare(where, store)
-        play(where, store, Here(), "planner", changed)
+        play(where, store, Here(), "planner", changed, lambda _: None)
     view = organiser.sheet(file).stages[0]
     assert "Eve" not in view.stage.entries
     of_bob = [match for match in view.matches if "Bob" in match.teams]
@@ -285,3 +290,71 @@ def test_replays_that_people_ordered_are_no_void_games(
             and (fact.pairing, fact.game) == (last.pairing, last.game)
         ]
     assert ends[-4:] == ["void", "void", "void", "draw"]
+
+
+EIGHT = CONTEST + SWISS.replace('"swiss"', '"round-robin"').replace("rounds = 2\n", "").replace(
+    "duration_s = 4.0", "duration_s = 1.0"
+)
+BAD = {
+    "Hangs": "def brain(frame):\n    while True: pass\n",
+    "Raises": "def brain(frame):\n    return 1 // 0\n",
+    "Wrong": "from lacoc_arenas.bot import Key\ndef brain(frame):\n    return Key(1, 9)\n",
+}
+
+
+def enter_eight(folder: Path) -> Path:
+    """Enter eight bots: one hangs, one raises an error, one presses only keys that nobody has."""
+    good = {f"Good {number}": "straight" for number in range(5)}
+    file = contest_played.enter(folder, EIGHT, good)
+    for team, brain in BAD.items():
+        bot = folder / f"{team.lower()}_bot.py"
+        bot.write_text(f"{brain}def bot(sheet, seat):\n    return brain\n")
+        organiser.enter(file, team, None, str(bot), "")
+    return file
+
+
+def check_eight(file: Path, said: str, told: list[str]) -> None:
+    """Check that all others were played, and that each bad bot is told by its own name."""
+    matches = organiser.sheet(file).stages[0].matches
+    assert len(matches) == 28
+    for match in matches:
+        assert match.decided == (not {"Hangs", "Raises"} & {*match.teams}), match.teams
+    lines = said.splitlines()
+    assert len(lines) == 3
+    (hangs,) = [line for line in lines if line.startswith("Hangs: ")]
+    assert re.search(
+        r"The bot hangs_bot\.py did not answer \(hangs_bot\.py:2\): it computed", hangs
+    )
+    (raises,) = [line for line in lines if line.startswith("Raises: ")]
+    assert re.search(r"The bot raises_bot\.py stopped .* \(raises_bot\.py:2\): ZeroDiv", raises)
+    assert lines[-1].startswith("Games that can't be played: 13; all others are played.")
+    (wrong,) = told
+    assert re.match(r"Wrong: \d+ keys were refused, because the gait does not have them", wrong)
+
+
+def test_bad_bots_stop_no_other_game(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of eight bots one hangs, one raises, one presses wrong keys: the contest ends by itself.
+
+    All other games are played, and each of the three is told by its team and its file.
+    """
+    monkeypatch.setattr(time_limit, "MOST", time_limit.Most(5.0, 0.5, 60.0, 60.0))
+    file = enter_eight(tmp_path)
+    told: list[str] = []
+    with pytest.raises(UserError) as failed:
+        organiser.play_headless(
+            file,
+            "planner",
+            Here(),
+            lambda done, there: None,
+            lambda what: told.append(render(what)),
+        )
+    check_eight(file, str(failed.value), told)
+
+
+@pytest.mark.long
+def test_bad_bots_stop_no_other_game_in_processes(tmp_path: Path) -> None:
+    """The command ends by itself too, with the limits as they are and in worker processes."""
+    file = enter_eight(tmp_path)
+    run = Lacoc("contest", "run", "contest.toml", "--headless", "--jobs", "2", cwd=tmp_path)
+    assert run.wait(10 * LIMIT_S) != 0
+    assert sum(match.decided for match in organiser.sheet(file).stages[0].matches) == 15

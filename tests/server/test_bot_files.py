@@ -73,7 +73,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
         ("def bot(sheet, seat):\n    return sheet.team\n", r"py:5\): AttributeError: .*'team'"),
         (brain("frame.seats[7]"), r"py:6\): IndexError: "),
         (brain("Level(frame.seats)"), r"py:6\): ValueError: "),
-        ("import no_such_package\n", r"py:4\): ModuleNotFoundError: .*no_such_package"),
+        ("import no_such_package\n", r"needs the module no_such_package \(.*py:4\), which"),
         ("def bot(sheet, seat)\n", r"py:4\): SyntaxError: expected ':'"),
     ],
 )

@@ -1,6 +1,7 @@
 """Tests of `lacoc simulate` with many players: who plays, what is printed, how it ends."""
 
 import json
+import re
 import signal
 import subprocess
 import time
@@ -146,3 +147,49 @@ def test_a_worker_that_dies_is_told(many: "subprocess.Popen[str]", tmp_path: Pat
     assert many.returncode == 2
     assert "The process that played straight and nearest was killed" in said
     assert list((tmp_path / "records").iterdir()) == []
+
+
+@pytest.mark.slow
+def test_a_bot_that_fails_stops_no_other_match(tmp_path: Path) -> None:
+    """A match whose bot fails is told by its team, and all others are played.
+
+    Keys that a gait does not have are counted.
+    """
+    bad, wrong = tmp_path / "my_bot.py", tmp_path / "your_bot.py"
+    bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 // 0\n")
+    wrong.write_text(
+        "from lacoc_arenas.bot import Key\n"
+        "def bot(sheet, seat):\n    return lambda frame: Key(1, 9)\n"
+    )
+    done = run_lacoc("simulate", str(bad), str(wrong), "straight", "--seconds", "1", "--json")
+    assert done.returncode == 2
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    failed = [line for line in lines if line["kind"] == "failed"]
+    assert len(failed) == 4
+    assert all(str(bad) in line["players"] for line in failed)
+    assert re.match(
+        r"my_bot: The bot .*my_bot\.py stopped with an error .*my_bot\.py:2\)", failed[0]["text"]
+    )
+    matches = [line for line in lines if line["kind"] == "match"]
+    keys = [dict(zip(line["players"], line["refused_keys"], strict=True)) for line in matches]
+    assert len(keys) == 2
+    assert all(one[str(wrong)] > 20 and not one["straight"] for one in keys)
+    assert re.search(r"your_bot: \d+ keys were refused", done.stderr)
+    assert "Matches without a result: 4 of 6; all others were played." in done.stderr
+
+
+def test_a_player_has_one_name_in_all_tables(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Matches and standings call a player the same; players with one team's name are told apart."""
+    anna, ben = players_of(tmp_path, "anna", "ben")
+    bot, other = tmp_path / "my_bot.py", f"nearest@{tmp_path / 'anna'}"
+    bot.write_text("def bot(sheet, seat):\n    return lambda frame: None\n")
+    simulate_command([str(bot), ben, anna, other], seconds=0.2, jobs=1)
+    matches, standings = (
+        [cells[0].strip() for line in part.splitlines() if len(cells := line.split("│")[1:]) > 2]
+        for part in capsys.readouterr().out.split("points")
+    )
+    assert {*matches} == {*standings}
+    assert {"my_bot", "ben"} < {*standings}
+    assert len({*standings}) == 4

@@ -10,6 +10,8 @@ import psutil
 import pytest
 from waiting import until
 
+from lacoc_arenas import brains, time_limit
+from lacoc_server.studio import workers as workers_module
 from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
 
 pytestmark = pytest.mark.slow
@@ -88,3 +90,37 @@ def test_close_ends_all_processes() -> None:
         with pytest.raises(end):
             job.result(timeout=10)
     assert psutil.wait_procs(children, 10)[1] == []
+
+
+def load(source: str) -> None:
+    """Load a bot; what it does then is up to the source."""
+    brains.of_program("my_bot.py", source.encode())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("source", "says"),
+    [
+        ("sum(iter(int, 1))", r"my_bot\.py did not answer: nothing could interrupt it for 2 s"),
+        (
+            "import time\nwhile True:\n    try: time.sleep(9)\n    except BaseException: pass",
+            r"my_bot\.py did not answer \(my_bot\.py:\d\): it waited for more than 0\.",
+        ),
+    ],
+)
+def test_a_bot_that_nothing_interrupts_is_named(
+    monkeypatch: pytest.MonkeyPatch, source: str, says: str
+) -> None:
+    """A bot that lets nothing else run costs its process; the next job finds another one."""
+    monkeypatch.setattr(workers_module, "_MOST_MISSED", 2)
+    with Workers(1) as workers:
+        assert workers.submit(impatient).result() is None
+        with pytest.raises(WorkerDied, match=says) as died:
+            workers.submit(load, source).result()
+        assert died.value.last_words is not None
+        assert workers.submit(abs, -1).result() == 1
+
+
+def impatient() -> None:
+    """Shorten the limit of bots in a worker process."""
+    time_limit.MOST = time_limit.Most(wait_s=0.3)

@@ -14,17 +14,18 @@ from rich.table import Table
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.stand_test import try_standing
-from lacoc_server.contest.headless.pool import Job, interrupted_by_signals, play_all
+from lacoc_server.contest.headless.pool import Ended, Job, interrupted_by_signals, play_all
 from lacoc_server.contest.league.formats.round_robin import circle_round
 from lacoc_server.contest.league.standings import Counted, Standing, standings
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player, seated
 from lacoc_server.simulate.headless import Seated
+from lacoc_server.simulate.inputs import BotFailed
 from lacoc_shared.command import options, screen
-from lacoc_shared.contest.names import told_apart
-from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+from lacoc_shared.contest.names import same_name, told_apart
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
 from lacoc_shared.record.schema import Result
-from lacoc_shared.words import render, say
+from lacoc_shared.words import Phrase, render, say
 
 _LONGEST_NAME = 100
 app = typer.Typer()
@@ -120,13 +121,16 @@ def simulate_command(
         enumerate(_matches(fit, len(seats), both_sides, rounds, repeat), _first_number(record))
     )
     sit = cache(lambda seat, name: seated(loaded, seat, name, robot))
+    teams = _teams({name: sit(0, name).join.team for name in fit})
     names = {_match_id(number): who for number, (who, _) in matches.items()}
     work = [
         Job(
             match_id=_match_id(number),
             arena=arena,
             overrides=overrides,
-            players=_seated([sit(seat, name) for seat, name in enumerate(who)], seats),
+            players=_seated(
+                [(sit(seat, name), teams[name]) for seat, name in enumerate(who)], seats
+            ),
             late_ticks=late_ticks,
             folder=_text(record),
         )
@@ -135,27 +139,56 @@ def simulate_command(
     if json:
         screen.print_json({"kind": "begin", "players": fit, "matches": len(work)})
     results: dict[str, Result] = {}
+    failed: list[Phrase] = []
+    refused: Counter[str] = Counter()
     table: Sequence[Standing] = ()
     with interrupted_by_signals(), closing(play_all(work, jobs)) as playing:
-        for job, result in playing:
-            results[job.match_id] = result
+        for job, found in playing:
+            who = names[job.match_id]
+            if isinstance(found, BotFailed):
+                failed.append(found.phrase)
+                if json:
+                    screen.print_json(_failed_line(who, found))
+                continue
+            results[job.match_id] = found.result
+            for name, keys in zip(who, found.refused_keys, strict=True):
+                refused[name] += keys
             table = _standings(fit, names, results, seats)
             if json:
-                screen.print_json(_match_line(job, names[job.match_id], result, seats))
-                screen.print_json(_standings_line(len(results), table))
-    if json:
-        return
-    screen.show(_results_table([results[job.match_id] for job in work], seats))
-    if len(work) > 1 and len(seats) > 1:
-        screen.show(_standings_table(table))
+                screen.print_json(_match_line(job, who, found, seats))
+                screen.print_json(_standings_line(len(results), table, teams))
+    if not json and results:
+        shown = [results[job.match_id] for job in work if job.match_id in results]
+        screen.show(_results_table(shown, seats))
+        if len(work) > 1 and len(seats) > 1:
+            screen.show(_standings_table(table, teams))
+    for name, keys in refused.items():
+        if keys:
+            screen.warn(say("simulate.refused-keys", team=teams[name], keys=keys))
+    if failed:
+        count = say("simulate.failed", count=len(failed), matches=len(work))
+        raise UserError(*dict.fromkeys(failed), *([count] if len(work) > 1 else []))
 
 
-def _seated(players: Sequence[Seated], seats: Sequence[str]) -> tuple[Seated, ...]:
-    """Return the players of a match, with names that tell them apart."""
+def _teams(names: Mapping[str, str]) -> dict[str, str]:
+    """Return the name of each player in all tables: the team's, if no other player has it.
+
+    Args:
+        names: the team's name of each player, as on the command line.
+    """
+    often = Counter(map(same_name, names.values()))
+    return {
+        player: team if often[same_name(team)] == 1 else text_of(player)[:_LONGEST_NAME]
+        for player, team in names.items()
+    }
+
+
+def _seated(players: Sequence[tuple[Seated, str]], seats: Sequence[str]) -> tuple[Seated, ...]:
+    """Return the players of a match, with names of teams that tell them apart."""
     found: list[Seated] = []
-    for one, seat in zip(players, seats, strict=True):
+    for (one, name), seat in zip(players, seats, strict=True):
         others = [other.join.team for other in found]
-        team = told_apart(one.join.team, others, seat, most=_LONGEST_NAME)
+        team = told_apart(name, others, seat, most=_LONGEST_NAME)
         found.append(replace(one, join=replace(one.join, team=team)))
     return tuple(found)
 
@@ -260,15 +293,20 @@ def _match_id(number: int) -> str:
 
 
 def _match_line(
-    job: Job, names: Sequence[str], result: Result, seats: Sequence[str]
+    job: Job, names: Sequence[str], found: Ended, seats: Sequence[str]
 ) -> dict[str, Any]:
     return {
         "kind": "match",
         "players": names,
-        "winner": _winner(result, seats),
+        "winner": _winner(found.result, seats),
         "record": job.record and job.record.name,
-        "result": result,
+        "refused_keys": found.refused_keys,
+        "result": found.result,
     }
+
+
+def _failed_line(names: Sequence[str], error: BotFailed) -> dict[str, Any]:
+    return {"kind": "failed", "players": names, "why": error.phrase, "text": str(error)}
 
 
 def _winner(result: Result, seats: Sequence[str]) -> int | None:
@@ -290,9 +328,17 @@ def _standings(
     return standings([*dict.fromkeys(players)], counted, _ORDER).rows
 
 
-def _standings_line(done: int, table: Sequence[Standing]) -> dict[str, Any]:
+def _standings_line(
+    done: int, table: Sequence[Standing], teams: Mapping[str, str]
+) -> dict[str, Any]:
     rows = [
-        {"name": row.team, "won": row.won, "drawn": row.drawn, "lost": row.lost}
+        {
+            "name": row.team,
+            "team": teams[row.team],
+            "won": row.won,
+            "drawn": row.drawn,
+            "lost": row.lost,
+        }
         | {"points": row.scored}
         for row in table
     ]
@@ -318,7 +364,7 @@ def _results_table(results: Sequence[Result], seats: Sequence[str]) -> Table:
     return table
 
 
-def _standings_table(rows: Sequence[Standing]) -> Table:
+def _standings_table(rows: Sequence[Standing], teams: Mapping[str, str]) -> Table:
     table = screen.table(
         say("fact.player"),
         say("fact.won"),
@@ -327,5 +373,5 @@ def _standings_table(rows: Sequence[Standing]) -> Table:
         say("fact.points"),
     )
     for one in rows:
-        table.add_row(one.team, *map(str, (one.won, one.drawn, one.lost, one.scored)))
+        table.add_row(teams[one.team], *map(str, (one.won, one.drawn, one.lost, one.scored)))
     return table

@@ -222,7 +222,11 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
 
 
 def play_headless(
-    file: Path, steer: str, engine: AbstractContextManager[Engine], progress: Progress
+    file: Path,
+    steer: str,
+    engine: AbstractContextManager[Engine],
+    progress: Progress,
+    tell: Callable[[Phrase], None] = lambda _: None,
 ) -> tuple[ContestSheet, int]:
     """Play a contest to its end without a network.
 
@@ -231,6 +235,7 @@ def play_headless(
         steer: the bot that steers teams without a bot.
         engine: plays the games; it is opened and closed here.
         progress: told about each change.
+        tell: called for each team whose bot pressed keys that its gait does not have.
 
     Returns:
         The sheet at the end, and how many games this call played.
@@ -247,7 +252,7 @@ def play_headless(
                 raise UserError(say("contest.no-end", stage=plan.stage))
         writer = SheetWriter(where, progress)
         with engine as opened:
-            played = play(where, store, opened, steer, writer)
+            played = play(where, store, opened, steer, writer, tell)
         return writer.write(), played
 
 

@@ -7,13 +7,18 @@ inputs the record must have.
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from typing import ParamSpec, TypeVar
 
 from lacoc_arenas.bot import BotFactory
 from lacoc_shared.decisions import Abort, Official, Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEATS_PER_S, Phase
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 AUTHOR = "simulate"
 """Author of the decisions in a match without a referee."""
@@ -21,6 +26,18 @@ SETTLE_BEATS = BEATS_PER_S
 """Robots stand in READY until this beat of the match; then the match is started."""
 
 Inputs = list[Input]
+
+
+class BotFailed(UserError):
+    """A team's bot raised an error, took too long, or returned no key; see `failed`."""
+
+    CODE = "simulate.bot-failed"
+    """The code of its phrase."""
+
+
+def failed(team: str, why: Phrase) -> BotFailed:
+    """Make the error for the bot of a team, with what the bot did."""
+    return BotFailed(say("simulate.bot-failed", team=team, why=why))
 
 
 @dataclass(frozen=True)
@@ -44,6 +61,9 @@ def whole_match(
     Args:
         players: one for each seat.
         sheet: returns the match's sheet; it is called when play begins.
+
+    Raises:
+        BotFailed: if a bot fails.
     """
     frame = yield from opening([player.join for player in players])
     if frame.phase == Phase.PLAYING:
@@ -73,17 +93,26 @@ def opening(joins: Sequence[JoinSeat]) -> Generator[Inputs, Frame, Frame]:
 
 def _play(frame: Frame, players: Sequence[Player], sheet: Sheet) -> Generator[Inputs, Frame, Frame]:
     """Yield the keys of all players while play goes on; return the first frame after it."""
-    minds = [player.bot(sheet, player.join.seat) for player in players]
+    minds = [_asked(player, player.bot, sheet, player.join.seat) for player in players]
     seqs = [0] * len(players)
     while frame.phase == Phase.PLAYING:
         keys: Inputs = []
         for index, (player, mind) in enumerate(zip(players, minds, strict=True)):
-            key = mind(frame) if frame.clock_ticks > player.late_ticks else None
+            late = frame.clock_ticks <= player.late_ticks
+            key = None if late else _asked(player, mind, frame)
             if key is not None:
                 seqs[index] += 1
                 keys.append(KeySeat(player.join.seat, seqs[index], int(key.level), key.key))
         frame = yield keys
     return frame
+
+
+def _asked(player: Player, bot: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+    """Call the bot of a player; its error names the team."""
+    try:
+        return bot(*arguments, **named)
+    except UserError as error:
+        raise failed(player.join.team, error.phrase) from error
 
 
 def closing(phase: Phase) -> Decide:

@@ -4,6 +4,7 @@ import contextlib
 import os
 import signal
 import threading
+import time
 import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -12,17 +13,35 @@ from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
 from typing import Any, NamedTuple, ParamSpec, Self, TypeVar
 
+from lacoc_arenas import time_limit
 from lacoc_shared.command.priority import give_way
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 _SPAWN = get_context("spawn")
 _END_S = 5.0
+_WAIT_S = 1.0
+"""How long to wait for an answer before looking whether a bot blocks the process [s]."""
+_MOST_MISSED = 60
+"""A process is ended if it looked at its bot in none of so many such times. On a busy machine a
+look is late, but not all looks are.
+"""
 
 
 class WorkerDied(Exception):
-    """The process of a job ended before the job was done, or was ended because it took too long."""
+    """The process of a job ended before the job was done, or was ended because it took too long.
+
+    Args:
+        what: what happened.
+        last_words: why the process ended itself; None: it did not.
+    """
+
+    def __init__(self, what: str = "", last_words: Phrase | None = None) -> None:
+        super().__init__(what)
+        self.last_words = last_words
 
 
 class WorkerFailed(Exception):
@@ -140,7 +159,10 @@ class _Child:
 
     def __init__(self, background: bool) -> None:
         self._connection, other = _SPAWN.Pipe()
-        self.process = _SPAWN.Process(target=_work, args=(other, background), daemon=True)
+        bot, looks = _SPAWN.RawArray("c", time_limit.NAME_BYTES), _SPAWN.RawValue("L", 0)
+        self._shown = time_limit.Shown(bot, looks)
+        arguments = (other, background, self._shown)
+        self.process = _SPAWN.Process(target=_work, args=arguments, daemon=True)
         self.process.start()
         other.close()  # only the process holds this end now, so it closes with the process
 
@@ -150,16 +172,39 @@ class _Child:
         """Run a function in the process; return whether it worked, and its result or traceback.
 
         Raises:
-            WorkerDied: if the process ended, or took longer than `limit_s`.
+            WorkerDied: if the process ended, took longer than `limit_s`, or gave no sign of life.
         """
         try:
             self._connection.send((function, arguments))
-            if self._connection not in wait([self._connection, self.process.sentinel], limit_s):
+            if self._connection not in self._wait(limit_s):
                 raise WorkerDied(f"{function.__name__}: no result in {limit_s:.0f} s, or it ended")
-            found: tuple[bool, Any] = self._connection.recv()
+            right, found = self._connection.recv()
         except (EOFError, OSError) as error:
             raise WorkerDied(f"{function.__name__}: {error!r}") from None
-        return found
+        if right is None:
+            raise WorkerDied(str(UserError(found)), found)
+        return right, found
+
+    def _wait(self, limit_s: float) -> list[Any]:
+        """Wait for an answer, the end of the process, or the limit; return what has come.
+
+        Raises:
+            WorkerDied: if a bot lets nothing else run in the process.
+        """
+        until_s = time.monotonic() + limit_s
+        looks, missed = -1, 0
+        while True:
+            left_s = max(0.0, until_s - time.monotonic())
+            come = wait([self._connection, self.process.sentinel], min(left_s, _WAIT_S))
+            if come or left_s <= _WAIT_S:
+                return come
+            bot, before = self._shown.bot.value.decode(errors="replace"), looks
+            looks = self._shown.looks.value
+            missed = missed + 1 if bot and looks == before else 0
+            if missed >= _MOST_MISSED:
+                why = say("bot.no-sign", seconds=_WAIT_S * missed)
+                said = say("bot.no-answer", bot=bot, place=None, why=why)
+                raise WorkerDied(str(UserError(said)), said)
 
     def end(self) -> None:
         """End the process."""
@@ -168,11 +213,24 @@ class _Child:
         self.process.join(_END_S)
 
 
-def _work(connection: "Connection[Any, Any]", background: bool) -> None:
-    """Run the functions that come through the pipe until its other end is closed."""
+def _work(connection: "Connection[Any, Any]", background: bool, shown: time_limit.Shown) -> None:
+    """Run the functions that come through the pipe until its other end is closed.
+
+    Args:
+        connection: the pipe.
+        background: whether this process gives way to others.
+        shown: what the parent process sees of bots here.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:
         give_way()
+
+    def end(why: Phrase) -> None:
+        connection.send((None, why))
+        os._exit(1)
+
+    time_limit.when_stuck = end
+    time_limit.shown = shown
     with contextlib.suppress(EOFError, OSError):
         while True:
             function, arguments = connection.recv()

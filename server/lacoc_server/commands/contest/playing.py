@@ -141,7 +141,7 @@ def run(
             from lacoc_server.contest.headless.cluster import Cluster
 
             engine = Pool(jobs) if cluster is None else Cluster(cluster, screen.warn)
-            sheet, played = organiser.play_headless(file, steer, engine, changed)
+            sheet, played = organiser.play_headless(file, steer, engine, changed, screen.warn)
         else:
             sheet, played = _live(file, changed, speed, listen, browser, entries, json), None
     games = sum(len(match.games) for view in sheet.stages for match in view.matches)

@@ -26,6 +26,7 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import due, playable
 from lacoc_server.simulate import Seated
+from lacoc_server.simulate.inputs import BotFailed
 from lacoc_server.simulate.software import software
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_shared.mistakes import UserError
@@ -74,6 +75,7 @@ def play(
     engine: Engine,
     steer: str,
     changed: Callable[[Contest], None],
+    tell: Callable[[Phrase], None],
 ) -> int:
     """Play a contest to its end; whatever is played already is not played again.
 
@@ -83,20 +85,23 @@ def play(
         engine: plays the games.
         steer: the bot that steers teams without a bot.
         changed: called with the contest, at the beginning and after each change.
+        tell: called at the end for each team that pressed keys which its gait does not have.
 
     Returns:
         How many games this call played; games whose result was already there do not count.
 
     Raises:
         EngineLost: if the engine can play no more games; what was played is kept.
-        UserError: if something can't be written; what was played is kept. Also if a game can't be
-            played, for example because a bot has a mistake; all other games are played first.
+        UserError: if something can't be written; what was played is kept. Also if games can't be
+            played, for example because a bot has a mistake or never answers; all other games are
+            played first. It names each bot that failed.
     """
     playing: dict[Future[Ended | Phrase], _Game] = {}
     failed: dict[tuple[str, int], tuple[Job, Phrase]] = {}
     deaths: Counter[str] = Counter()
     entry = cache(folder.entries.load)
     played: set[str] = set()
+    refused: Counter[str] = Counter()
     newest = Newest(FORMATS)
     while True:
         facts = store.facts()
@@ -122,23 +127,37 @@ def play(
             break
         for future in first_done(set(playing))[0]:
             game = playing.pop(future)
-            if isinstance(future.exception(), WorkerDied):
+            died = future.exception()
+            if isinstance(died, WorkerDied) and died.last_words is None:
                 deaths[game.job.match_id] += 1
                 if deaths[game.job.match_id] <= _MOST_DEATHS:
                     continue  # it is played again
             try:
-                record = ended(game.job, future).record
+                found = ended(game.job, future)
             except EngineLost:
                 raise
             except UserError as error:  # a bot with a mistake ends no game of other teams
                 failed[game.name] = (game.job, error.phrase)
                 continue
-            _keep(folder, game.job, record)
+            _keep(folder, game.job, found.record)
             played.add(game.job.match_id)
+            refused.update(dict(zip(game.teams, found.refused_keys, strict=True)))
+    for team, keys in refused.items():
+        if keys:
+            tell(say("simulate.refused-keys", team=team, keys=keys))
     if failed:
-        job, why = next(iter(failed.values()))
-        raise UserError(say("contest.game-failed", teams=job.teams, why=why, count=len(failed)))
+        raise _failed([*failed.values()])
     return len(played)
+
+
+def _failed(games: Sequence[tuple[Job, Phrase]]) -> UserError:
+    """Return one error for games that can't be played; it says each reason once."""
+    teams = {why: job.teams for job, why in reversed(games)}
+    said = [
+        why if why.code == BotFailed.CODE else say("contest.game-failed", teams=teams[why], why=why)
+        for why in dict.fromkeys(why for _, why in games)
+    ]
+    return UserError(*said, say("contest.games-failed", count=len(games)))
 
 
 def _still_due(

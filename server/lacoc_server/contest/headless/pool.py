@@ -14,6 +14,8 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_arenas.bot import BotFactory
 from lacoc_server.simulate import Player, Seated, simulate
+from lacoc_server.simulate.inputs import BotFailed, failed
+from lacoc_server.simulate.refused import RefusedKeys
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
 from lacoc_shared.command.scratch import Scratch
@@ -62,6 +64,8 @@ class Ended(NamedTuple):
     result: Result
     record: bytes | None
     """The record, if the job brings it."""
+    refused_keys: tuple[int, ...]
+    """By seat: how many keys were pressed that the seat's gait does not have."""
 
 
 class EngineLost(UserError):
@@ -117,19 +121,32 @@ def ended(job: Job, future: "Future[Ended | Phrase]") -> Ended:
 
     Raises:
         EngineLost: if no game can be played any more.
+        BotFailed: if a bot failed.
         UserError: if its files or its record have a mistake, or its process died.
     """
     try:
         found = future.result()
-    except WorkerDied:
-        raise UserError(say("simulate.died", players=job.teams)) from None
+    except WorkerDied as error:
+        if error.last_words is None:
+            raise UserError(say("simulate.died", players=job.teams)) from None
+        raise _stuck(job, error.last_words) from None
     if isinstance(found, Phrase):
+        if found.code == BotFailed.CODE:
+            raise BotFailed(found)
         raise UserError(found)
     return found
 
 
-def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Result], None, None]:
-    """Play all matches; yield each with its result when it has ended.
+def _stuck(job: Job, said: Phrase) -> BotFailed:
+    """Return the error for a bot that ended its process; it names the team that has this bot."""
+    of_bot = [one.join.team for one in job.players if _name(one) == said.values["bot"]]
+    return failed(of_bot[0] if of_bot else job.teams[0], said)
+
+
+def play_all(
+    work: Sequence[Job], jobs: int | None
+) -> Generator[tuple[Job, Ended | BotFailed], None, None]:
+    """Play all matches; yield each when it has ended, with its result or the bot that failed.
 
     No half record is left if a worker process dies, or if the caller stops early and closes the
     iterator (`contextlib.closing`).
@@ -143,7 +160,10 @@ def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Resu
         UserError: if a record can't be written, or a worker process dies.
     """
     if len(work) == 1:
-        yield work[0], _play_one(work[0])
+        try:
+            yield work[0], _play_one(work[0])
+        except BotFailed as error:
+            yield work[0], error
         return
     workers = min(jobs or os.cpu_count() or 1, len(work))
     with Pool(workers) as pool, screen.progress() as progress:
@@ -154,7 +174,11 @@ def play_all(work: Sequence[Job], jobs: int | None) -> Generator[tuple[Job, Resu
             done, waiting = first_done(waiting)
             for future in done:
                 progress.advance(task)
-                yield playing[future], ended(playing[future], future).result
+                job = playing[future]
+                try:
+                    yield job, ended(job, future)
+                except BotFailed as error:
+                    yield job, error
 
 
 def first_done(
@@ -169,12 +193,12 @@ def attempt(job: Job) -> Ended | Phrase:
     """Play a match in a worker process; an error that a user can correct is returned."""
     try:
         if not job.brings_record:
-            return Ended(_play(job), None)
+            return _play(job)
         with Scratch("game") as folder:
             here = msgspec.structs.replace(job, folder=str(folder))
-            result = _play(here)
+            found = _play(here)
             assert here.record is not None
-            return Ended(result, here.record.read_bytes())
+            return found._replace(record=here.record.read_bytes())
     except UserError as error:
         return error.phrase
 
@@ -191,11 +215,28 @@ def _remove_half_record(job: Job) -> None:
             path.unlink(missing_ok=True)
 
 
-def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Result:
+def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Ended:
     arena = arenas.load(job.arena, job.overrides)
     setup = setup_of(job.match_id, arena, job.limits)
-    players = [Player(one.join, bot_of(arena, one), job.late_ticks) for one in job.players]
-    return simulate(setup, players, Path(job.folder) if job.folder else None, watch, arena.folder)
+    players = [_player(arena, one, job.late_ticks) for one in job.players]
+    refused = RefusedKeys(len(players))
+
+    def see(frame: Frame) -> None:
+        refused.see(frame)
+        if watch is not None:
+            watch(frame)
+
+    folder = Path(job.folder) if job.folder else None
+    result = simulate(setup, players, folder, see, arena.folder)
+    return Ended(result, None, refused.counts)
+
+
+def _player(arena: arenas.Arena, seated: Seated, late_ticks: int) -> Player:
+    """Make the player of a seat; raise `BotFailed` if its bot has a mistake."""
+    try:
+        return Player(seated.join, bot_of(arena, seated), late_ticks)
+    except UserError as error:
+        raise failed(seated.join.team, error.phrase) from error
 
 
 def setup_of(match_id: str, arena: arenas.Arena, limits: Mapping[str, float]) -> Setup:
@@ -218,13 +259,15 @@ def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
     """
     if seated.program is None:
         return brains.find(arena, seated.bot)
-    with Scratch("bot") as folder:
-        file = folder / "bot.py"
-        file.write_bytes(seated.program)
-        return brains.find(arena, str(file))
+    return brains.of_program(_name(seated), seated.program)
 
 
-def _play_one(job: Job) -> Result:
+def _name(seated: Seated) -> str:
+    """Return what messages call a bot: its file as it was entered, or its name."""
+    return seated.bot if seated.program is None else f"{seated.bot}.py"
+
+
+def _play_one(job: Job) -> Ended:
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
     with screen.progress() as progress:
         task = progress.add_task(" : ".join(job.teams), total=round(duration_s))

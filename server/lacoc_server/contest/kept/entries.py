@@ -1,11 +1,13 @@
 """Entries: the files and the bot with which a team plays, kept unchanged under their hash."""
 
+import ast
 import hashlib
 import re
 import shutil
 import tempfile
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -201,14 +203,47 @@ def _check_program(name: str, source: bytes) -> None:
     """Check a bot's program without running it.
 
     Raises:
-        UserError: if it is no Python, or nothing in it has the name `bot`.
+        UserError: if it is no Python, nothing in it has the name `bot`, or it imports a module
+            that is not installed here.
     """
     try:
-        code = compile(source, name, "exec", dont_inherit=True)
-    except (SyntaxError, ValueError) as error:
+        tree = ast.parse(source, name)
+        code = compile(tree, name, "exec", dont_inherit=True)
+    except (SyntaxError, ValueError, RecursionError) as error:
         raise broken(name, error, name) from None
     if "bot" not in code.co_names:
         raise UserError(say("bot.no-function", path=name))
+    for line, module in _imports(tree):
+        if not _is_installed(module):
+            raise UserError(say("bot.no-module", bot=name, place=f"{name}:{line}", module=module))
+
+
+def _imports(node: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield each import below a node: its line, and the package or module that it needs.
+
+    What a program tries to import (`try`) may be missing.
+    """
+    match node:
+        case ast.Try():
+            return
+        case ast.Import():
+            for one in node.names:
+                yield node.lineno, one.name.partition(".")[0]
+        case ast.ImportFrom():
+            package = (node.module or "").partition(".")[0]
+            yield node.lineno, "." * node.level + package
+    for child in ast.iter_child_nodes(node):
+        yield from _imports(child)
+
+
+def _is_installed(module: str) -> bool:
+    """Return whether a module is there; nothing of it runs."""
+    if module.startswith("."):  # a bot is in no package
+        return False
+    try:
+        return find_spec(module) is not None
+    except ValueError:  # a module without a specification, such as __main__
+        return True
 
 
 class EntryFolder:

@@ -1,0 +1,263 @@
+"""The time that a bot may take: a bot that never answers ends as one that raises an error.
+
+A thread looks several times a second at the bots that have been called and have not answered. What
+it counts is processor time of the bot's own thread, so a busy machine takes nothing from a bot.
+A bot that waits (sleeps, reads, holds a lock) uses none; the looks themselves are counted there,
+and on a busy machine there are fewer of them. The limits are a thousand times what bots need, and
+decide no match: a match in which a bot does not answer has no result.
+"""
+
+import ctypes
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from types import FrameType
+from typing import Any, NamedTuple
+
+from lacoc_shared.command import screen
+from lacoc_shared.words import Phrase, say
+
+LOOK_S = 0.25
+_IGNORED_LOOKS = 20
+"""A bot that goes on after this many interruptions ends the process."""
+
+
+class Most(NamedTuple):
+    """The most time that a bot may take [s]."""
+
+    begin_s: float = 60.0
+    """Processor time to load the file, and to make a brain; big libraries need seconds."""
+    frame_s: float = 10.0
+    """Processor time for one frame."""
+    match_s: float = 600.0
+    """Processor time in all frames of a match, and also the time to wait in them."""
+    wait_s: float = 60.0
+    """Time that a bot waits in one call without using the processor."""
+
+
+MOST = Most()
+
+
+class NoAnswer(BaseException):
+    """Raised in the code of a bot that takes too long; `except Exception` does not catch it."""
+
+    def __init__(self, why: Phrase | None = None) -> None:
+        super().__init__()
+        self.why = why
+
+
+def _end_process(said: Phrase) -> None:
+    screen.error(said)
+    os._exit(1)
+
+
+when_stuck: Callable[[Phrase], None] = _end_process
+"""Called with what to say of a bot that can't be interrupted; it ends the process."""
+
+NAME_BYTES = 256
+
+
+class _Value:
+    """A value that nobody else reads, in place of shared memory."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+
+class Shown(NamedTuple):
+    """What another process may see of the bots of this one, in shared memory.
+
+    A bot may hold Python's lock, as in a sum without an end, so that no other thread of its process
+    runs. Then another process must name it.
+    """
+
+    bot: Any
+    """`bot.value`: name of the bot that is asked now, UTF-8; empty: none."""
+    looks: Any
+    """`looks.value`: how often this process has looked at its bots."""
+
+
+shown = Shown(_Value(b""), _Value(0))
+
+
+class Timer:
+    """Counts the time of one bot in one match.
+
+    Args:
+        bot: the bot's name, for messages.
+    """
+
+    def __init__(self, bot: str) -> None:
+        self.bot = bot
+        self._name = bot.encode()[: NAME_BYTES - 1]
+        self.used_s = 0.0
+        """Processor time of all frames."""
+        self.waited_s = 0.0
+        """Time that it waited in all frames."""
+        _watch()
+
+    def frame(self, function: Callable[..., Any], *arguments: object) -> Any:
+        """Show a frame to a brain: call a function, within the limits of a frame and of a match.
+
+        Raises:
+            NoAnswer: if it takes too long.
+        """
+        return self._call(True, function, arguments)
+
+    def begin(self, function: Callable[..., Any], *arguments: object) -> Any:
+        """Load a bot or make a brain: call a function, within the limit for that.
+
+        Raises:
+            NoAnswer: if it takes too long.
+        """
+        return self._call(False, function, arguments)
+
+    def _call(
+        self, is_frame: bool, function: Callable[..., Any], arguments: tuple[object, ...]
+    ) -> Any:
+        thread = threading.get_ident()
+        if thread in _calls:  # a bot that asks another bot answers for both
+            return function(*arguments)
+        call = _Call(self, is_frame, thread)
+        shown.bot.value = self._name
+        _calls[thread] = call
+        try:
+            try:
+                found = function(*arguments)
+            finally:
+                call.end()
+                shown.bot.value = b""
+            if call.why is not None:  # it went on after the interruption, and answered then
+                raise NoAnswer
+            return found
+        except NoAnswer as error:
+            call.end()  # it may have been interrupted while it ended
+            error.why = call.why
+            raise
+
+
+class _Call:
+    """A call of a bot that has not returned yet."""
+
+    def __init__(self, timer: Timer, is_frame: bool, thread: int) -> None:
+        self.why: Phrase | None = None
+        """Why it takes too long; None: it does not."""
+        self._timer = timer
+        self._is_frame = is_frame
+        self._thread = thread
+        self._began_s = time.thread_time()
+        self._first_s: float | None = None
+        """What `_thread_time_s` gave at the first look."""
+        self._last_s = 0.0
+        self._waited_s = 0.0
+        self._interrupted = 0
+        self._lock = threading.Lock()
+        self._has_ended = False
+
+    def end(self) -> None:
+        """End the call: nothing interrupts this thread any more."""
+        with self._lock:
+            if self._has_ended:
+                return
+            self._has_ended = True
+            _calls.pop(self._thread, None)
+            if self._interrupted:
+                _raise_in(self._thread, None)
+        if self._is_frame:
+            self._timer.used_s += time.thread_time() - self._began_s
+            self._timer.waited_s += self._waited_s
+
+    def look(self) -> None:
+        """Interrupt the bot if it takes too long. The watching thread calls this."""
+        with self._lock:  # as long as it is held, the thread is there
+            if self._has_ended:
+                return
+            now_s = _thread_time_s(self._thread)
+            if self._first_s is None:
+                self._first_s = now_s
+            else:
+                self._waited_s += max(0.0, LOOK_S - (now_s - self._last_s))
+            self._last_s = now_s
+            self.why = self.why or self._too_long(now_s - self._first_s)
+            if self.why is None:
+                return
+            self._interrupted += 1
+            _interrupt(self._thread)
+        if self._interrupted > _IGNORED_LOOKS:
+            when_stuck(self._said(self.why))
+
+    def _said(self, why: Phrase) -> Phrase:
+        """Return the message, with the line of the bot's file where its thread is."""
+        frame, bot = sys._current_frames().get(self._thread), self._timer.bot
+        while frame is not None and frame.f_code.co_filename != bot:
+            frame = frame.f_back
+        place = None if frame is None else f"{bot}:{frame.f_lineno}"
+        return say("bot.no-answer", bot=bot, place=place, why=why)
+
+    def _too_long(self, used_s: float) -> Phrase | None:
+        if self._waited_s > MOST.wait_s:
+            return say("bot.waits", seconds=MOST.wait_s)
+        if not self._is_frame:
+            long = used_s > MOST.begin_s
+            return say("bot.begins-long", seconds=MOST.begin_s) if long else None
+        if used_s > MOST.frame_s:
+            return say("bot.frame-long", seconds=MOST.frame_s)
+        most_s = max(self._timer.used_s + used_s, self._timer.waited_s + self._waited_s)
+        return say("bot.match-long", seconds=MOST.match_s) if most_s > MOST.match_s else None
+
+
+_calls: dict[int, _Call] = {}
+"""The calls that have not returned, by thread."""
+_watcher: threading.Thread | None = None
+_signals_come = False
+"""Whether the main thread takes the signal that interrupts a bot."""
+
+
+def _watch() -> None:
+    """Begin to look, if no thread of this process looks yet (after a fork none does)."""
+    global _watcher, _signals_come
+    if sys.platform != "win32" and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGVTALRM, _on_signal)
+        _signals_come = True
+    if _watcher is None or not _watcher.is_alive():
+        _watcher = threading.Thread(target=_look, daemon=True, name="bot-time")
+        _watcher.start()
+
+
+def _look() -> None:
+    while True:
+        time.sleep(LOOK_S)
+        shown.looks.value += 1
+        for call in [*_calls.values()]:
+            call.look()
+
+
+def _interrupt(thread: int) -> None:
+    """Let a thread raise `NoAnswer`."""
+    if sys.platform != "win32" and _signals_come and thread == threading.main_thread().ident:
+        signal.pthread_kill(thread, signal.SIGVTALRM)  # this wakes a sleeper too
+    else:
+        _raise_in(thread, NoAnswer)
+
+
+def _on_signal(number: int, stack: FrameType | None) -> None:
+    """Raise `NoAnswer` in the main thread, if its bot still takes too long."""
+    call = _calls.get(threading.get_ident())
+    if call is not None and call.why is not None:
+        raise NoAnswer(call.why)
+
+
+def _raise_in(thread: int, error: type[NoAnswer] | None) -> None:
+    """Let a thread raise an error; None takes back what it has not raised yet."""
+    raised = None if error is None else ctypes.py_object(error)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), raised)
+
+
+def _thread_time_s(thread: int) -> float:
+    """Return the processor time of a thread, or of this process where a system can't tell."""
+    if sys.platform == "linux":
+        return time.clock_gettime(time.pthread_getcpuclockid(thread))
+    return time.process_time()

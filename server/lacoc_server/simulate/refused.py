@@ -1,0 +1,33 @@
+"""Counts keys that a bot presses in vain: its gait does not have them."""
+
+from lacoc_shared.messages import Frame
+from lacoc_shared.seat import No
+
+_IN_VAIN = (No.NO_SUCH_KEY, No.LEVEL_CLOSED)
+"""Reasons that last for the whole match. After an [x] and in a freeze keys are refused too; that is
+part of the game.
+"""
+
+
+class RefusedKeys:
+    """Counts the keys of a match that no seat can press in it.
+
+    Args:
+        seats: number of seats.
+    """
+
+    def __init__(self, seats: int) -> None:
+        self._counts = [0] * seats
+        self._seen = [0] * seats
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """The number of such keys, by seat."""
+        return tuple(self._counts)
+
+    def see(self, frame: Frame) -> None:
+        """Count the keys that were refused in the beat of a frame; frames come in their order."""
+        for index, seat in enumerate(frame.seats):
+            if seat.refused_seq != self._seen[index]:
+                self._seen[index] = seat.refused_seq
+                self._counts[index] += seat.refused_why in _IN_VAIN
