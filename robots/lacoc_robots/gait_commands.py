@@ -78,7 +78,8 @@ def sample(
 
     An older file of that name is kept with a number.
     """
-    spec = read_robot(*reversed(find_robot(robot)))
+    name, data = find_robot(robot)
+    spec = read_robot(data, name)
     beside = sample_gait_files(robot).postures
     if beside is None:
         raise UserError(say("gait-command.no-sample", robot=robot))

@@ -1,8 +1,8 @@
 """Tests of `lacoc doctor` on this machine, with real ports, courts and stubs of courts."""
 
 import json
-import re
 import os
+import re
 import socket
 import subprocess
 import sys

@@ -14,6 +14,7 @@ from lacoc_process import COMMAND, run_lacoc
 from waiting import LIMIT_S
 
 from lacoc_robots.library import sample_gait_files
+from lacoc_shared.command import installing
 
 pexpect: Any = pytest.importorskip("pexpect")
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -134,8 +135,7 @@ def test_help_lists_every_command_what_a_contestant_needs_first(lacoc: Lacoc) ->
 class OwnEntry(EntryPoint):
     """An entry point of this package, as far as it can be asked."""
 
-    class dist:  # noqa: N801 - the name of importlib's attribute
-        name = "lacoc"
+    dist = SimpleNamespace(name="lacoc")
 
 
 def test_help_lists_own_commands_without_importing_them(

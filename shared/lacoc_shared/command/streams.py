@@ -8,7 +8,7 @@ would go into that file. And a failed write can't be told from that of any other
 import io
 import os
 import sys
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Literal, TextIO
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -63,7 +63,7 @@ class _Output(io.FileIO):
             raise OutputFailed(error.errno, error.strerror) from None
 
 
-def _opened(number: int, mode: str) -> TextIO:
+def _opened(number: int, mode: Literal["r", "w"]) -> TextIO:
     return open(number, mode, encoding="utf-8", closefd=False)
 
 
