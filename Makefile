@@ -61,6 +61,7 @@ lint: .venv/.lint .venv/.web ## Check format and style.
 
 type: .venv/.lint .venv/.web ## Check types.
 	$(RUN) mypy
+	$(RUN) mypy --platform win32 --cache-dir .mypy_cache/win32
 	$(NPM) run type
 
 walls: .venv/.lint ## Check who imports whom (docs/architecture.md).

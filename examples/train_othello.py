@@ -1,6 +1,6 @@
 """Train a bot for Robot-Othello that learns to imitate a rule, without a GPU; write its file.
 
-    pip install "lacoc[server,rl]"
+    pip install ".[server,rl]"
     python examples/train_othello.py --minutes 30
     lacoc simulate learned_bot.py straight --both-sides
 

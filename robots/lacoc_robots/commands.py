@@ -13,7 +13,7 @@ from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_robots.standing import STAND_TEST_S
-from lacoc_robots.trying import NOT_TRIED, tried
+from lacoc_robots.trying import not_tried, tried
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
@@ -56,7 +56,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
     for note in notes:
         screen.warn(note)
     if json:
-        screen.print_json({**facts, "stands": NOT_TRIED not in notes or None, "mistakes": []})
+        screen.print_json({**facts, "stands": not_tried() not in notes or None, "mistakes": []})
         return
     width_m, length_m, height_m = facts["footprint_m"]
     table = Table(
@@ -65,8 +65,8 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
         show_header=False,
     )
     stands = say("robot-command.stands", seconds=STAND_TEST_S)
-    if NOT_TRIED in notes:
-        stands = NOT_TRIED
+    if (untried := not_tried()) in notes:
+        stands = untried
     size = say("robot-command.size", width_m=width_m, length_m=length_m, height_m=height_m)
     for what, value in (
         (say("fact.legs"), f"{facts['legs']} ({'  '.join(facts['labels'])})"),

@@ -1,4 +1,4 @@
-"""`lacoc gait`: check gait files before a match, and convert one kind into another."""
+"""`lacoc gait`: take a sample, check gait files before a match, convert one kind to another."""
 
 import itertools
 import math
@@ -13,12 +13,12 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_robots.joint_picture import joint_picture, labels_of
-from lacoc_robots.library import find_robot
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot, sample_gait_files
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_robots.trying import tried
 from lacoc_shared.command import options, screen
-from lacoc_shared.command.keep import save
+from lacoc_shared.command.keep import make_folder, save
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.joining import join_postures
 from lacoc_shared.gait.tables import (
@@ -31,16 +31,19 @@ from lacoc_shared.gait.tables import (
     PostureTable,
     to_postures,
 )
-from lacoc_shared.gait.text import write_gait
+from lacoc_shared.gait.text import read_gait, write_gait
 from lacoc_shared.gait.workbook.file import read_gait_file, write_workbook
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
-    help="Check gait files (Loco-data.txt, LocoTra-data.txt, Loco-data.xlsx) and convert them.",
+    help="Take the sample gait, check gait files, and convert one kind to another.\n\n"
+    "The kinds are Loco-data.txt, Loco-data.xlsx (postures) and LocoTra-data.txt (locomotion).",
     no_args_is_help=True,
 )
 
+WORKBOOK = "Loco-data.xlsx"
+"""Name of the table that `sample` writes."""
 _SAMPLE_KEYS_TEXT = ";".join(",".join(map(str, sequence)) for sequence in SAMPLE_KEYS)
 _KEYS = re.compile(r"\d(,\d)*(;\d(,\d)*)*", re.ASCII)
 _LIFTED = 0.1  # link lengths above the lowest foot: 7 mm on the workshop's robot
@@ -55,6 +58,35 @@ class CheckedFile(msgspec.Struct, frozen=True):
     legs: int
     keys: dict[int, int]
     """Digit key -> number of its postures."""
+
+
+@app.command()
+def sample(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder for the table; it is made if it does not exist.")
+    ] = Path(),
+    robot: Annotated[
+        str,
+        typer.Option(
+            metavar="ROBOT",
+            help="The robot whose sample is wanted: an installed name (see 'lacoc robot list') or "
+            "a robot's folder.",
+        ),
+    ] = WORKSHOPS_ROBOT,
+) -> None:
+    """Write a robot's sample gait as the table Loco-data.xlsx, to change it.
+
+    An older file of that name is kept with a number.
+    """
+    name, data = find_robot(robot)
+    spec = read_robot(data, name)
+    beside = sample_gait_files(robot).postures
+    if beside is None:
+        raise UserError(say("gait-command.no-sample", robot=robot))
+    table = read_gait(beside.data, beside.name, legs=spec.labels, range_deg=spec.ranges_deg)
+    assert isinstance(table, PostureTable)  # the name says so
+    make_folder(folder)
+    _write(folder / WORKBOOK, write_workbook(table, spec.labels))
 
 
 @app.command()
@@ -167,10 +199,15 @@ def convert(
         data = write_workbook(table, labels)
     else:
         data = write_gait(table, labels)
-    kept = save(target, data)
+    _write(target, data)
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write a file, and tell its name and that of an older file, which is kept."""
+    kept = save(path, data)
     if kept is not None:
-        screen.note(say("command.kept", path=str(target), kept=str(kept)))
-    screen.note(say("command.written", path=str(target)))
+        screen.note(say("command.kept", path=str(path), kept=str(kept)))
+    screen.note(say("command.written", path=str(path)))
 
 
 def _is_locomotion(target: Path) -> bool:

@@ -3,12 +3,15 @@
 from collections.abc import Collection
 
 from lacoc_robots.robot import RobotSpec
+from lacoc_shared.command import installing
 from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase, say
 
-NOT_TRIED = say("robot.not-tried")
-"""Note that the robot was not tried, because MuJoCo is missing."""
+
+def not_tried() -> Phrase:
+    """Make the note that the robot was not tried, because MuJoCo is missing."""
+    return say("robot.not-tried", install=installing.command("server"))
 
 
 def tried(
@@ -20,6 +23,6 @@ def tried(
     except ModuleNotFoundError as error:
         if error.name != "mujoco":
             raise
-        notes.append(NOT_TRIED)
+        notes.append(not_tried())
         return []
     return try_standing(robot, gait, levels, file)

@@ -330,7 +330,7 @@ def test_a_class_that_can_not_be_opened_leaves_no_folder(
     @contextmanager
     def studio() -> Iterator[str]:
         if missing == "the studio":
-            raise UserError(say("doctor.no-mujoco-todo"))
+            raise UserError(say("doctor.no-server-todo", install="pip"))
         yield "tcp/127.0.0.1:1"
 
     monkeypatch.setattr(class_, "own_studio", studio)

@@ -3,6 +3,7 @@
 import json
 import socket
 import time
+import urllib.error
 import urllib.request
 from collections.abc import Callable
 
@@ -12,6 +13,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
+from lacoc_shared import __version__
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
@@ -53,6 +55,10 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
         trip = ("lacoc_seat_round_trip_seconds", "main", "0.95", "left")
         until(lambda: left.wait_frame(0.5) is not None and trip in scrape(url))
         second = scrape(url)
+    assert second["lacoc_build_info", __version__] == 1
+    for path in ("", "/", "/other", "/metrics/more"):
+        with pytest.raises(urllib.error.HTTPError, match="404"):
+            scrape(url.removesuffix("/metrics") + path)
     beats = ("lacoc_beat_duration_seconds_count", "main")
     assert second[beats] > first[beats]
     assert second["lacoc_beat_duration_seconds_bucket", "main", "+Inf"] == second[beats]

@@ -14,6 +14,7 @@ from lacoc_process import COMMAND, run_lacoc
 from waiting import LIMIT_S
 
 from lacoc_robots.library import sample_gait_files
+from lacoc_shared.command import installing
 
 pexpect: Any = pytest.importorskip("pexpect")
 
@@ -246,7 +247,7 @@ def test_practice_without_mujoco_says_what_to_install(tmp_path: Path) -> None:
 
     assert code == 2
     assert said.count("\n") == 1
-    assert 'pip install "lacoc[server]"' in said
+    assert installing.command("server") in said
 
 
 @pytest.fixture(scope="module")

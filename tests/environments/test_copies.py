@@ -227,6 +227,20 @@ def test_a_copied_world_feels_the_same_touches() -> None:
             assert other.touched() == world.touched()
 
 
+def test_a_program_that_closes_nothing_ends_quietly() -> None:
+    """A program may end without `close` after it has drawn, also with several environments."""
+    program = (
+        "from lacoc_server.simulate.environments import WalkEnv\n"
+        "envs = [WalkEnv(render_mode='rgb_array') for _ in range(3)]\n"
+        "for env in envs:\n"
+        "    env.reset(seed=1)\n"
+        "    assert env.render() is not None\n"
+        "del envs[0]\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
 def test_a_copy_draws_with_a_camera_of_its_own() -> None:
     """A copy and its original give the same picture, and either can be closed."""
     env = WalkEnv(render_mode="rgb_array")

@@ -18,6 +18,7 @@ from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.simulate import Player, player, simulate
 from lacoc_server.simulate.environments import LacocEnv, LacocParallelEnv
+from lacoc_shared.command import installing
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
@@ -423,4 +424,4 @@ def test_without_the_extra_the_error_says_what_to_install(missing: str) -> None:
     )
     told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert f"need {missing}, which" in told.stdout, told.stderr
-    assert 'pip install "lacoc[server,rl]"' in told.stdout
+    assert installing.command("server", "rl") in told.stdout

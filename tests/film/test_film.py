@@ -23,7 +23,7 @@ from lacoc_client.film.chromium import find
 from lacoc_client.film.look import Look, Quality, View
 from lacoc_client.film.site import served
 from lacoc_server.simulate.forks.jobs import ForkJob, play
-from lacoc_shared.command import cli
+from lacoc_shared.command import cli, installing
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEATS_PER_S
 
@@ -263,7 +263,7 @@ def test_a_missing_extra_is_told(tmp_path: Path) -> None:
 
         told = lacoc("any.mcap", str(tmp_path / "a.mp4"))
         assert told.returncode == cli.WRONG_USE
-        assert 'pip install "lacoc[film]"' in told.stderr
+        assert installing.command("film") in told.stderr
         assert lacoc("--help").returncode == 0
     assert list(tmp_path.iterdir()) == []
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from lacoc_robots.joint_picture import joint_picture, labels_of
+from lacoc_robots.library import installed_robots, robot_folder
 from lacoc_shared.command.cli import main
 from lacoc_shared.gait.cells import LEG_LABELS, leg_labels
 from lacoc_shared.gait.tables import SAMPLE_KEYS, PostureTable, to_locomotion
@@ -28,6 +29,45 @@ def lacoc(capsys):
         return code, output.out, output.err
 
     return run
+
+
+def test_the_sample_is_a_table_to_change(lacoc, tmp_path):
+    """`gait sample` writes the robot's own postures, and keeps an older file of that name."""
+    new = tmp_path / "new"
+    code, out, err = lacoc("gait", "sample", new)
+    table = new / "Loco-data.xlsx"
+
+    assert (code, out) == (0, "")
+    assert str(table) in err
+    own = robot_folder("hexapod")
+    assert table.read_bytes() == (own / "Loco-data.xlsx").read_bytes()
+
+    code, _, err = lacoc("gait", "sample", new, "--robot", "octopod")
+    assert code == 0
+    assert "Loco-data.1.xlsx" in err
+    assert (new / "Loco-data.1.xlsx").read_bytes() == (own / "Loco-data.xlsx").read_bytes()
+    assert read_gait_file(table) == read_gait_file(robot_folder("octopod") / "Loco-data.txt")
+
+
+@pytest.mark.parametrize("name", installed_robots())
+def test_each_installed_robot_has_a_sample(lacoc, tmp_path, name):
+    """The sample of each robot has no mistakes for that robot."""
+    assert lacoc("gait", "sample", tmp_path, "--robot", name)[0] == 0
+    code, _, err = lacoc("gait", "check", tmp_path / "Loco-data.xlsx", "--robot", name)
+    assert (code, err) == (0, "")
+
+
+def test_a_robot_without_a_gait_has_no_sample(lacoc, tmp_path):
+    """A robot's folder without Loco-data.txt is told in a sentence, and nothing is written."""
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    (bare / "robot.toml").write_bytes((robot_folder("hexapod") / "robot.toml").read_bytes())
+
+    code, _, err = lacoc("gait", "sample", tmp_path / "out", "--robot", bare)
+
+    assert code == 2
+    assert "no Loco-data.txt" in err
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.fixture

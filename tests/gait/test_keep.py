@@ -1,6 +1,9 @@
 """Writing a file never overwrites an older one (workshop 4-1, rules 2)."""
 
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -62,3 +65,31 @@ def test_writers_at_once_lose_nothing(tmp_path):
     for writer in writers:
         writer.join()
     assert sorted(file.read_text() for file in tmp_path.iterdir()) == list("01234567")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of a file's size")
+def test_a_full_disk_leaves_no_part_of_a_file(tmp_path: Path) -> None:
+    """If the disk takes only a part, that part is removed and the older file has its name again."""
+    program = (
+        "import resource, signal, sys\n"
+        "from pathlib import Path\n"
+        "from lacoc_shared.command.keep import save\n"
+        "from lacoc_shared.mistakes import UserError\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
+        "for name in ('old.txt', 'new.txt'):\n"
+        "    try:\n"
+        "        save(Path(name), bytes(1000))\n"
+        "    except UserError as error:\n"
+        "        print(error)\n"
+    )
+    (tmp_path / "old.txt").write_text("older")
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+
+    assert [line.split(":")[0] for line in done.stdout.splitlines()] == [
+        "Cannot write old.txt",
+        "Cannot write new.txt",
+    ], done.stdout
+    assert {one.name: one.read_text() for one in tmp_path.iterdir()} == {"old.txt": "older"}

@@ -11,7 +11,7 @@ import pytest
 import typer
 
 from lacoc_shared import words
-from lacoc_shared.command import cli
+from lacoc_shared.command import cli, listing, plugins
 from lacoc_shared.command import help as help_text
 
 ROOT: Any = typer.main.get_command(cli.app)
@@ -29,9 +29,26 @@ COMMANDS = dict(walk(ROOT, ("lacoc",)))
 
 def test_all_commands_of_the_contest_are_there() -> None:
     """All commands that the help groups into panels exist."""
-    expected = {name for names in cli._PANELS.values() for name in names}
+    assert {name.split()[1] for name in COMMANDS if " " in name} >= {*listing.COMMANDS}
 
-    assert {name.split()[1] for name in COMMANDS if " " in name} >= expected
+
+@pytest.mark.parametrize(
+    ("group", "listed"), [("lacoc", listing.COMMANDS), ("lacoc replay", listing.REPLAY)]
+)
+def test_the_listing_has_the_first_paragraph_of_each_command(
+    group: str, listed: listing.Listing
+) -> None:
+    """A list of commands, which imports none of them, says what each command's own help says."""
+    own = {name: COMMANDS[f"{group} {name}"].help.partition("\n\n")[0] for name in listed}
+
+    assert {name: one.summary for name, one in listed.items()} == own
+
+
+def test_all_own_commands_are_listed() -> None:
+    """The listings have every command that this package has by entry point."""
+    groups = {"lacoc.commands": listing.COMMANDS, "lacoc.commands.replay": listing.REPLAY}
+    for group, listed in groups.items():
+        assert {entry.name for entry in plugins.installed(group).values()} == {*listed}
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -80,7 +97,8 @@ SENTENCE = re.compile(r"[A-Za-z]+ [a-z]{2,} [a-z]+ [a-z]{2,}")
 
 def texts_of_help() -> set[str]:
     """Return every English text in the help of all commands."""
-    found = set(cli._PANELS) | {cli._OTHERS}
+    found = {listing.OTHERS, listing.NEEDS, listing.LACKS}
+    found |= {one.panel for one in listing.COMMANDS.values()}
     for command in COMMANDS.values():
         for part in (command, *command.params):
             found |= {getattr(part, "help", None) or "", getattr(part, "rich_help_panel", "") or ""}

@@ -17,7 +17,7 @@ import venv
 from pathlib import Path
 
 _LIMIT_S = 300  # longer than any command needs, unless it hangs
-SAMPLE = "import lacoc_robots.samples.hexapod as robot; print(robot.__path__[0])"
+README = "import importlib.metadata as m; print(m.metadata('lacoc').get_payload())"
 IMPORT_ALL = """
 import importlib, pkgutil
 EXTRAS = "lacoc_client.film", "lacoc_server.simulate.environments"
@@ -84,29 +84,44 @@ def fetch(url: str) -> str:
         return text
 
 
+def try_docs(env: Environment) -> None:
+    """Check that pages can be read, and that the metadata names no file that is not there."""
+    assert env.run("lacoc", "docs", "contest").stdout.startswith("# The contest")
+    readme = env.run("python", "-c", README).stdout
+    assert "# LACOC" in readme
+    assert not re.findall(r"\]\((?!https?://)[^)]*\)", readme), readme
+
+
 def try_both(env: Environment) -> None:
     """Try the commands that must work both with and without MuJoCo."""
     try_pages(env)
     env.run("lacoc", "--version")
     assert "practice" in env.run("lacoc", "--help").stdout
-    sample = env.run("python", "-c", SAMPLE).stdout.strip()
-    for name in ("Loco-data.txt", "LocoTra-data.txt"):
-        env.run("lacoc", "gait", "check", str(Path(sample, name)))
+    env.run("lacoc", "gait", "sample", "gaits")
+    env.run("lacoc", "gait", "check", str(Path("gaits", "Loco-data.xlsx")))
+    try_docs(env)
     env.run("lacoc", "contest", "init")
     env.run("lacoc", "contest", "check")
 
 
-def try_contestant(env: Environment) -> None:
+def try_contestant(env: Environment, archive: Path) -> None:
     """Try a contestant's machine: MuJoCo is missing, and `serve` says in a line what to install."""
     try_both(env)
     env.run("python", "-c", IMPORT_ALL.format(packages=["lacoc_shared", "lacoc_client"]))
     error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr
     assert error.count("\n") == 1, error
-    assert 'pip install "lacoc[server]"' in error, error
+    assert f"{archive.resolve()}[server]" in error, error
     error = env.run("lacoc", "film", "a.mcap", "a.mp4", code=2).stderr
-    assert 'pip install "lacoc[film]"' in error, error
+    assert f"{archive.resolve()}[film]" in error, error
     error = env.run("lacoc", "contest", "keys", "--host", "localhost", code=2).stderr
-    assert re.search(r"Needs cryptography.*lacoc\[server\]", error), error
+    assert re.search(r"Needs cryptography.*\[server\]", error), error
+    shown = " ".join(env.run("lacoc", "--help").stdout.split())
+    assert "practice Walk your robot on a field of its own" in shown, shown
+    assert '(needs the extra "server")' in shown, shown
+    checked = json.loads(env.run("lacoc", "doctor", "--json", "--seconds", "0.2").stdout)
+    assert [one["about"] for one in checked if "run a court" in one["found"]] == [
+        "packages of a court"
+    ], checked
 
 
 def try_court(env: Environment) -> None:
@@ -124,7 +139,7 @@ def main(dist: Path) -> None:
     (wheel,) = dist.glob("*.whl")
     (source,) = dist.glob("*.tar.gz")
     with tempfile.TemporaryDirectory(prefix="lacoc smoke ") as folder:
-        try_contestant(Environment(Path(folder, "contestant"), wheel))
+        try_contestant(Environment(Path(folder, "contestant"), wheel), wheel)
         print(f"{wheel.name}: a contestant's machine works")
         try_court(Environment(Path(folder, "court"), source, "[server]"))
         print(f"{source.name}: a court's machine works")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from lacoc_robots.library import find_robot
-from lacoc_shared.command import cli
+from lacoc_shared.command import cli, installing
 
 HEXAPOD = find_robot("hexapod")[1].decode()
 
@@ -126,7 +126,7 @@ def test_export_without_mujoco(
     monkeypatch.delitem(sys.modules, "lacoc_robots.model", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert lacoc("robot", "export", "hexapod", str(tmp_path / "out.xml")) == 2
-    assert 'pip install "lacoc[server]"' in capsys.readouterr().err
+    assert installing.command("server") in capsys.readouterr().err
     assert not (tmp_path / "out.xml").exists()
 
 

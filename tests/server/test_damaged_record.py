@@ -183,6 +183,10 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
     assert done.exit_code == 1
     assert (found["same"], found["verdict"], found["beats"]) == (False, "same", BEATS)
     assert words in found["cut"]
+    assert found["text"].startswith("not proven; only the part that can be read is the same")
+    lines = CliRunner().invoke(verify_app, [str(first)]).stdout.splitlines()
+    assert lines[0].startswith("A part of the record is lost or damaged")
+    assert lines[1].startswith("not proven; ")
 
 
 @pytest.mark.parametrize(

@@ -101,6 +101,8 @@ def test_neighbours_share_their_forks() -> None:
         0.5,
     ]
     assert [one.margins for one in pooled[:-1]] == [*margins.values()]
+    near = [[-2.0, -4.0], [3.0, 1.0, 1.0, 1.0], [-2.0, -4.0], [], []]
+    assert odds.near_margins(pooled) == near
 
 
 class Counting:

@@ -6,11 +6,12 @@ import sys
 from collections.abc import Callable
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from lacoc_shared import __version__
-from lacoc_shared.command import cli, plugins
+from lacoc_shared.command import cli, installing, plugins
 
 COMMANDS = {
     "play": """
@@ -127,8 +128,41 @@ def test_help_lists_every_command_what_a_contestant_needs_first(lacoc: Lacoc) ->
     order = ["Play", "play", "Take your seat.", "Run a contest", "serve", "other packages", "tag"]
     places = [out.index(word) for word in order]
     assert places == sorted(places)
-    assert 'pip install "lacoc[server]"' in out
+    assert installing.command("server") in " ".join(out.split())
     assert "no such planet" in out
+
+
+class OwnEntry(EntryPoint):
+    """An entry point of this package, as far as it can be asked."""
+
+    dist = SimpleNamespace(name="lacoc")
+
+
+def test_help_lists_own_commands_without_importing_them(
+    lacoc: Lacoc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of this package's commands, help tells what they are for and which extra they lack."""
+    entries = {
+        "lacoc.commands": [
+            OwnEntry("play", "fake_play:app", "lacoc.commands"),
+            OwnEntry("serve", "fake_serve:app", "lacoc.commands"),
+            EntryPoint("tag", "fake_tag:app", "lacoc.commands"),
+        ]
+    }
+    monkeypatch.setattr(plugins, "entry_points", lambda group: entries.get(group, []))
+    plugins._installed.cache_clear()
+    monkeypatch.setenv("COLUMNS", "200")
+
+    code, out, _ = lacoc("--help")
+
+    assert code == 0
+    assert not {"fake_play", "fake_serve"} & {*sys.modules}
+    assert "Hold a seat and steer your robot with the keyboard. " in out
+    assert 'records the match. (needs the extra "server")' in out
+    assert "Brought by another package." in out
+    assert out.count(installing.command("server")) == 1
+    assert lacoc("play") == (0, "playing as x\n", "")
+    plugins._installed.cache_clear()
 
 
 def test_a_command_is_imported_when_it_is_asked_for(lacoc: Lacoc) -> None:
@@ -168,7 +202,8 @@ def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> Non
     code, out, err = lacoc(*args)
 
     assert (code, out) == (2, "")
-    assert err == 'Error: Needs mujoco, which is not installed: pip install "lacoc[server]"\n'
+    install = installing.command("server")
+    assert err == f"Error: Needs mujoco, which is not installed. To install it, run: {install}\n"
 
 
 def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
@@ -176,7 +211,7 @@ def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
     code, _, err = lacoc("late")
 
     assert code == 2
-    assert 'pip install "lacoc[server]"' in err
+    assert installing.command("server") in err
     assert err.count("\n") == 1
 
 
@@ -274,6 +309,56 @@ def test_a_reader_who_has_gone_is_no_error() -> None:
         os.close(writer)
 
     assert done.stderr == ""
+
+
+COMMANDS_THAT_PRINT = [
+    ["--version"],
+    ["--help"],
+    ["gait", "convert", "--help"],
+    ["robot", "list"],
+    ["robot", "list", "--json"],
+    ["docs", "contest"],
+    ["simulate", "nearest", "straight", "--seconds", "1"],
+]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device of Linux")
+@pytest.mark.parametrize(
+    ("words", "unbuffered"),
+    [*((words, "") for words in COMMANDS_THAT_PRINT), (["robot", "list"], "1")],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else value,
+)
+@pytest.mark.parametrize(
+    ("stream", "why"),
+    [(">/dev/full", "No space left on device"), (">&-", "Bad file descriptor")],
+)
+def test_output_that_can_not_be_written_is_one_sentence(
+    words: list[str], stream: str, why: str, unbuffered: str
+) -> None:
+    """Full or closed output ends a command with one sentence and exit code 2, not a traceback."""
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@" {stream}', "sh", sys.executable, "-m", "lacoc_shared", *words],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+    )
+
+    assert done.stderr.strip() == f"Error: The output can't be written: {why}"
+    assert done.returncode == 2
+
+
+@pytest.mark.slow
+def test_closed_streams_do_not_catch_what_goes_into_files(tmp_path: Path) -> None:
+    """A command that has nothing to print works with all three streams closed."""
+    if sys.platform == "win32":
+        pytest.skip("a shell of POSIX")
+    command = [sys.executable, "-m", "lacoc_shared", "gait", "sample", str(tmp_path)]
+    done = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *command], check=False)
+
+    assert done.returncode == 0
+    assert [one.name for one in tmp_path.iterdir()] == ["Loco-data.xlsx"]
 
 
 @pytest.mark.slow

@@ -24,6 +24,7 @@ import msgspec
 from packaging.requirements import Requirement
 
 from lacoc_shared import __version__
+from lacoc_shared.command import installing
 from lacoc_shared.command.priority import go_first
 from lacoc_shared.keyspace import EVERY_COURT
 from lacoc_shared.messages import PROTOCOL
@@ -88,33 +89,45 @@ def packages() -> Iterator[Finding]:
         )
     )
     yield Finding("lacoc", Status.OK, say("doctor.lacoc", version=__version__, protocol=PROTOCOL))
-    fine = []
+    fine, lacking = [], []
     for text in lacoc.requires or ():
         needed = Requirement(text)
         here = needed.marker is None or needed.marker.evaluate({"extra": ""})
         if here or (needed.marker is not None and needed.marker.evaluate({"extra": "server"})):
-            finding = _package(needed, optional=not here)
-            if finding.status is Status.OK:
+            finding = _package(needed)
+            if finding is None and not here:
+                lacking.append(needed.name)
+            elif finding is None:
+                yield _not_installed(needed)
+            elif finding.status is Status.OK:
                 fine.append(f"{needed.name} {version(needed.name)}")
             else:
                 yield finding
     yield Finding(say("doctor.packages"), Status.OK, ", ".join(fine))
+    if lacking:
+        todo = say("doctor.no-server-todo", install=installing.command("server"))
+        found = say("doctor.no-server", packages=lacking)
+        yield Finding(say("doctor.server"), Status.NOTE, found, todo)
 
 
-def _package(needed: Requirement, *, optional: bool) -> Finding:
-    about, wanted = needed.name, f"{needed.name}{needed.specifier}"
+def _not_installed(needed: Requirement) -> Finding:
+    return Finding(needed.name, Status.PROBLEM, say("doctor.not-installed"), _install(needed))
+
+
+def _install(needed: Requirement) -> Phrase:
+    return say("doctor.install", install=installing.of(f"{needed.name}{needed.specifier}"))
+
+
+def _package(needed: Requirement) -> Finding | None:
+    """Check the version of a package; None if it is not installed."""
     try:
         found = version(needed.name)
     except PackageNotFoundError:
-        if optional:
-            todo = say("doctor.no-mujoco-todo")
-            return Finding(about, Status.NOTE, say("doctor.no-mujoco"), todo)
-        todo = say("doctor.install", package=wanted)
-        return Finding(about, Status.PROBLEM, say("doctor.not-installed"), todo)
+        return None
     if needed.specifier.contains(found, prereleases=True):
-        return Finding(about, Status.OK, found)
+        return Finding(needed.name, Status.OK, found)
     what = say("doctor.other-package", found=found, wanted=str(needed.specifier))
-    return Finding(about, Status.PROBLEM, what, say("doctor.install", package=wanted))
+    return Finding(needed.name, Status.PROBLEM, what, _install(needed))
 
 
 def court_port(

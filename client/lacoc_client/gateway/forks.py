@@ -7,6 +7,7 @@ the gateway's copies, so it is listed and shown like any other, and goes when th
 import asyncio
 import contextlib
 import os
+import sys
 from asyncio.subprocess import PIPE, Process
 from pathlib import Path
 from typing import Annotated
@@ -109,7 +110,7 @@ class Forks:
         except OSError as error:
             raise UserError(say("gateway.fork-failed", why=error.strerror or str(error))) from None
         self._process = process
-        if hasattr(os, "setpriority"):
+        if sys.platform != "win32":
             with contextlib.suppress(OSError):  # it has ended already
                 os.setpriority(os.PRIO_PROCESS, process.pid, BACKGROUND)
         try:

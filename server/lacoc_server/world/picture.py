@@ -3,6 +3,7 @@
 import copy
 import os
 import sys
+import weakref
 from typing import Any
 
 import mujoco
@@ -63,6 +64,8 @@ class Camera:
             )
         except Exception as error:  # each graphics library raises its own
             raise UserError(say("environment.no-picture", error=str(error)[:200])) from None
+        # At the latest when the program ends, but before the graphics library ends.
+        self._free = weakref.finalize(self, _free, self._context, self._gl)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._scene = mujoco.MjvScene(self._model, _MOST_GEOMS)
         self._option = mujoco.MjvOption()
@@ -94,8 +97,13 @@ class Camera:
 
     def close(self) -> None:
         """Free what the graphics library holds."""
-        self._context.free()
-        self._gl.free()
+        self._free()
+
+
+def _free(context: Any, gl: Any) -> None:
+    gl.make_current()
+    context.free()
+    gl.free()
 
 
 def _graphics() -> Any:

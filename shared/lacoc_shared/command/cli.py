@@ -1,7 +1,7 @@
 """The command `lacoc`.
 
 Subcommands are the entries of an entry-point group. Each is imported only when it is
-called (or when help lists them all). So a contestant's machine needs nothing of the
+called; the help of ours is in `listing`. So a contestant's machine needs nothing of the
 court's, a third party adds a command by installing a package, and `lacoc --version` is
 quick.
 
@@ -10,10 +10,10 @@ otherwise a group. Commands raise `UserError` and `FileRefused`; only this modul
 them into words on the screen and an exit code.
 """
 
-import os
 import sys
 from collections import UserDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib.metadata import EntryPoint
 from typing import Annotated, Any, ClassVar, NamedTuple
 
@@ -23,7 +23,8 @@ from typer.core import TyperCommand, TyperGroup
 
 from lacoc_shared import __version__, words
 from lacoc_shared.command import help as help_text
-from lacoc_shared.command import language, plugins, screen
+from lacoc_shared.command import installing, language, listing, plugins, screen, streams
+from lacoc_shared.command.listing import Listed, Listing
 from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 from lacoc_shared.words import render, say
 
@@ -32,24 +33,6 @@ WRONG_USE = 2
 INTERRUPTED = 130
 """Exit code: Ctrl-C."""
 
-Panels = Mapping[str, tuple[str, ...]]
-"""Heading of the help -> the commands below it, in order."""
-
-_PANELS: Panels = {
-    "Play": ("demo", "practice", "play", "watch"),
-    "Prepare your robot": ("design", "class", "gait", "trial", "coach", "robot"),
-    "Run a contest": ("contest", "serve", "web", "referee", "doctor"),
-    "Study and develop": ("replay", "film", "simulate", "bot", "studio"),
-}
-_OTHERS = "Commands of other packages"
-_EXTRAS = {
-    "av": "film",
-    "cmaes": "server",
-    "cryptography": "server",
-    "mujoco": "server",
-    "playwright": "film",
-}
-"""Packages that the base install leaves out -> the extra that contains each."""
 _COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command only
 
 
@@ -66,46 +49,73 @@ class _Unloaded(NamedTuple):
 class _Commands(UserDict[str, Any]):
     """Commands by name; an entry point is loaded when its command is first read."""
 
-    def __init__(self, own: Mapping[str, Any], entries: Mapping[str, EntryPoint], panels: Panels):
-        self._panel = {name: panel for panel, names in panels.items() for name in names}
-        order = [*(name for name in self._panel if name in entries), *entries]
+    def __init__(
+        self, own: Mapping[str, Any], entries: Mapping[str, EntryPoint], listed: Listing
+    ) -> None:
+        self._listing = listed
+        self._only_lists = False
+        order = [*(name for name in listed if name in entries), *entries]
         super().__init__({**own, **{name: _Unloaded(entries[name]) for name in order}})
 
     def __getitem__(self, name: str) -> Any:
         command = super().__getitem__(name)
+        listed = self._listing.get(name)
         if isinstance(command, _Unloaded):
+            if self._only_lists and listed is not None and _is_ours(command.entry):
+                return _listed(name, listed)
             command = self.data[name] = _load(command.entry)
-            if self._panel:
-                command.rich_help_panel = help_text.in_words(self._panel.get(name, _OTHERS))
+            panel = listing.OTHERS if listed is None else listed.panel
+            if panel and any(one.panel for one in self._listing.values()):
+                command.rich_help_panel = help_text.in_words(panel)
         return command
+
+    @contextmanager
+    def only_list(self) -> Iterator[None]:
+        """In the block, give what the listing says of a command and do not import it."""
+        self._only_lists = True
+        try:
+            yield
+        finally:
+            self._only_lists = False
 
 
 class LazyGroup(TyperGroup):
     """A group that finds its commands in an entry-point group; see `lazy_group`."""
 
     entry_points: ClassVar[str]
-    panels: ClassVar[Panels] = {}
+    listing: ClassVar[Listing] = {}
 
     def __init__(self, **attributes: Any) -> None:
         super().__init__(**attributes)
         entries = plugins.installed(self.entry_points)
-        self.commands = _Commands(self.commands, entries, self.panels)
+        self.commands: _Commands = _Commands(self.commands, entries, self.listing)
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of all commands, in the order of the help; imports none of them."""
         return list(self.commands)
 
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Print the help; imports only commands of other packages."""
+        self.epilog = listing.advice(self.listing)
+        with self.commands.only_list():
+            super().format_help(ctx, formatter)
 
-def lazy_group(entry_points: str, help: str, panels: Panels | None = None) -> typer.Typer:
+    def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
+        """List what completes a word; imports only commands of other packages."""
+        with self.commands.only_list():
+            return super().shell_complete(ctx, incomplete)
+
+
+def lazy_group(entry_points: str, help: str, listing: Listing | None = None) -> typer.Typer:
     """Make a group of commands that are imported only when they are called.
 
     Args:
         entry_points: name of the entry-point group; each entry names a `typer.Typer`.
         help: what the group is for; lists of groups show its first line.
-        panels: headings of the help and the commands below each, in order; without them the
-            commands are in alphabetical order.
+        listing: what the help says of this package's commands, in order; the others follow in
+            alphabetical order.
     """
-    cls = type("_Group", (LazyGroup,), {"entry_points": entry_points, "panels": panels or {}})
+    cls = type("_Group", (LazyGroup,), {"entry_points": entry_points, "listing": listing or {}})
     app = typer.Typer(
         cls=cls,
         help=help,
@@ -114,6 +124,16 @@ def lazy_group(entry_points: str, help: str, panels: Panels | None = None) -> ty
     )
     app.callback()(lambda: None)
     return app
+
+
+def _is_ours(entry: EntryPoint) -> bool:
+    return entry.dist is not None and entry.dist.name == "lacoc"
+
+
+def _listed(name: str, listed: Listed) -> TyperCommand:
+    """Make a command that stands for one that is not imported, in a list of commands."""
+    panel = help_text.in_words(listed.panel) or None
+    return TyperCommand(name, help=listed.in_words(), rich_help_panel=panel)
 
 
 def _load(entry: EntryPoint) -> Any:
@@ -158,9 +178,10 @@ def _broken(error: Exception) -> TyperCommand:
 def _missing_extra(error: Exception) -> str | None:
     """Say how to install a missing package, such as MuJoCo; None for any other error."""
     module = (error.name or "").partition(".")[0] if isinstance(error, ImportError) else ""
-    if module not in _EXTRAS:
+    if module not in installing.EXTRA_OF:
         return None
-    return render(say("command.missing-package", package=module, extra=_EXTRAS[module]))
+    install = installing.command(installing.EXTRA_OF[module])
+    return render(say("command.missing-package", package=module, install=install))
 
 
 def _print_version(wanted: bool) -> None:
@@ -184,7 +205,7 @@ app = lazy_group(
     "lacoc.commands",
     help="The online contest for walking robots: design a gait, meet in a three-minute match.\n\n"
     "New here? See a match with 'lacoc demo', then walk your own with 'lacoc practice'.",
-    panels=_PANELS,
+    listing=listing.COMMANDS,
 )
 app.callback()(_options)
 
@@ -203,13 +224,23 @@ def main(args: Sequence[str] | None = None) -> int:
         Exception: any other error; it is a bug and is shown with its traceback.
     """
     words.use(language.of_process())
+    streams.open_all()
     screen.accept_any_text()
     screen.show_crashes(sys.stderr)
     try:
-        command = typer.main.get_command(app)
-        _prepare_help(command)
-        help_text.translate_typer()
-        command.main(args=args, prog_name="lacoc")
+        try:
+            command = typer.main.get_command(app)
+            _prepare_help(command)
+            help_text.translate_typer()
+            command.main(args=args, prog_name="lacoc")
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        streams.drop_output()  # a reader that has closed the pipe is no error
+    except streams.OutputFailed as error:
+        streams.drop_output()
+        screen.error(say("command.no-output", why=error.strerror))
+        return WRONG_USE
     except UserError as error:
         screen.error(str(error))
         return WRONG_USE
@@ -227,19 +258,9 @@ def main(args: Sequence[str] | None = None) -> int:
         return WRONG_USE
     except KeyboardInterrupt:
         return INTERRUPTED
-    finally:
-        _flush()
     return 0
 
 
 def _no_text(error: UnicodeEncodeError) -> str:
     """Say which file name or argument can't be sent or stored because it is not text."""
     return render(say("command.no-text", text=printable(text_of(error.object))))
-
-
-def _flush() -> None:
-    """Write what is left in the buffer; a reader that has closed the pipe is no error."""
-    try:
-        sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -49,6 +49,14 @@ def in_words(text: str) -> str:
     return text if words.current() == "en" else japanese().get(text, text)
 
 
+def summary_in_words(text: str) -> str:
+    """Return the first paragraph of a command's help in the language of this process."""
+    if words.current() == "en":
+        return text
+    first = (whole for en, whole in japanese().items() if en.partition("\n\n")[0] == text)
+    return next(first, text).partition("\n\n")[0]
+
+
 def translate(command: Any) -> None:
     """Put the help of a command and its parameters into the language of this process."""
     if words.current() == "en":
@@ -115,7 +123,7 @@ def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]
     name = args[0]
     if not name.startswith("-") and group.get_command(ctx, name) is None:
         near = get_close_matches(name, group.list_commands(ctx))
-        ctx.fail(_sentence("No such command '{}'.", name) + _suggested(near))
+        ctx.fail(sentence("No such command '{}'.", name) + _suggested(near))
     return resolve(ctx, args)
 
 
@@ -125,19 +133,20 @@ def _explained(show: Callable[[Any], None], error: Any) -> None:
     hint = error.param.get_error_hint() if getattr(error, "param", None) else ""
     match type(error).__name__:
         case "NoSuchOption":
-            message = _sentence("No such option: {}", error.option_name)
+            message = sentence("No such option: {}", error.option_name)
             message += _suggested(sorted(error.possibilities or ()))
         case "MissingParameter":
-            message = _sentence("Missing {}.", hint)
+            message = sentence("Missing {}.", hint)
         case "BadParameter" if hint:
-            message = _sentence("Invalid value for {}: {}", hint, in_words(message))
+            message = sentence("Invalid value for {}: {}", hint, in_words(message))
     error.format_message = lambda: message
     show(error)
 
 
-def _sentence(text: str, *values: str) -> str:
+def sentence(text: str, *values: str) -> str:
+    """Return a sentence of the help with values in place of each "{}"."""
     return in_words(text).format(*values)
 
 
 def _suggested(names: list[str]) -> str:
-    return _sentence("Did you mean {}?", ", ".join(names)) if names else ""
+    return sentence("Did you mean {}?", ", ".join(names)) if names else ""

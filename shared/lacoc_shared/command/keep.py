@@ -1,7 +1,9 @@
 """Make folders, and write files without losing older ones (workshop 4-1, rules 2)."""
 
+import contextlib
 import itertools
 import os
+from io import FileIO
 from pathlib import Path
 
 from lacoc_shared.mistakes import UserError
@@ -28,19 +30,39 @@ def save(path: Path, data: bytes) -> Path | None:
         Path of the older file ("Loco-data.1.txt"), or None if there was none.
 
     Raises:
-        UserError: if the file can't be written.
+        UserError: if the file can't be written; then the older one has its name again.
     """
     kept = None
     while True:
         kept = make_room(path) or kept
         try:
-            with path.open("xb") as file:
-                file.write(data)
-            return kept
+            file = path.open("xb", buffering=0)
         except FileExistsError:
             continue  # another program just made it: that file is kept too
         except OSError as error:
+            _put_back(kept, path)
             raise _cannot_write(path, error) from error
+        try:
+            with file:
+                _write(file, data)
+        except OSError as error:
+            path.unlink(missing_ok=True)  # a part of a file would be taken for the whole
+            _put_back(kept, path)
+            raise _cannot_write(path, error) from error
+        return kept
+
+
+def _write(file: FileIO, data: bytes) -> None:
+    left = memoryview(data)
+    while left:
+        left = left[file.write(left) :]
+
+
+def _put_back(kept: Path | None, path: Path) -> None:
+    """Give an older file its name again if no newer one has taken its place."""
+    if kept is not None:
+        with contextlib.suppress(OSError):
+            os.replace(kept, path)
 
 
 def make_room(path: Path) -> Path | None:

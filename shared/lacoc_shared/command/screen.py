@@ -11,16 +11,18 @@ import io
 import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import msgspec
 from rich.console import Console, RenderableType
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
 from lacoc_shared.mistakes import ESCAPED, Mistake, text_of
 from lacoc_shared.words import Phrase, render, say
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 _UNLIMITED = 10_000  # characters in a line that only a program reads
 
@@ -143,8 +145,16 @@ def _encodable(value: Any) -> Any:
     return value
 
 
-def progress() -> Progress:
+def progress() -> "Progress":
     """Make a progress bar on standard error; each task is one bar, and all vanish at the end."""
+    from rich.progress import (  # half of the time that the other imports take
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

@@ -9,6 +9,7 @@ zenoh.
 import atexit
 import json
 import os
+import sys
 import tempfile
 import threading
 import time
@@ -398,10 +399,10 @@ def _user_file(protection: Protection | None) -> Iterator[Path | None]:
 
 def _allow_files(count: int) -> None:
     """Raise this process's limit of open files, often 1024, to `count` or as far as allowed."""
-    try:
-        import resource
-    except ImportError:  # Windows has no such limit
+    if sys.platform == "win32":  # it has no such limit
         return
+    import resource
+
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = count if hard == resource.RLIM_INFINITY else min(count, hard)
     if soft != resource.RLIM_INFINITY and soft < wanted:

@@ -12,7 +12,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_shared.command import keep, screen
+from lacoc_shared.command import keep, listing, screen
 from lacoc_shared.command.cli import lazy_group
 from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict
@@ -28,6 +28,7 @@ _NOT_IN_NAMES = re.compile(r"[^\w.-]")
 app = lazy_group(
     "lacoc.commands.replay",
     help="Look at the record of a match, check it, or export tables from it.",
+    listing=listing.REPLAY,
 )
 
 File = Annotated[

@@ -377,7 +377,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "robot.high": ["a robot {metres:.3} m high {posture}", "{posture}高さ {metres:.3} m のロボット"],
   "robot.lowest-part": ["{height_m}: the lowest part is {lowest_m:.3} m above the floor", "{height_m}（最も低い部分が床から {lowest_m:.3} m）"],
   "robot.range": ["{low} to {high}", "{low}～{high}"],
-  "robot.not-tried": ["Nobody has tried yet whether the robot can stand. To try it, run: pip install \"lacoc[server]\"", "ロボットが立てるかどうかは試していません。試すには pip install \"lacoc[server]\" を実行してください。"],
+  "robot.not-tried": ["Nobody has tried yet whether the robot can stand. To try it, run: {install}", "ロボットが立てるかどうかは試していません。試すには次のコマンドを実行してください：{install}"],
   "unit.degrees": ["degrees", "度"],
   "unit.degrees-per-second": ["degrees/s", "度/秒"],
   "posture.zero": ["with every angle 0", "全角度 0 で"],

@@ -93,8 +93,8 @@ least_rest_s = 60          # shortest time between two matches of a team
 [office]                   # gives the courts their matches
 token = "{office}"
 
-# A stage after another one; docs/contest.md has all formats and settings. Without start = "ready"
-# a referee starts each game.
+# A stage after another one; 'lacoc docs contest' has all formats and settings. Without
+# start = "ready" a referee starts each game.
 [stage.groups]
 format = "round-robin"     # or "swiss", "sequential", "single-knockout", "double-knockout"
 groups = 2

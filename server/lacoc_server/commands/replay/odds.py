@@ -1,8 +1,11 @@
 """`lacoc replay odds`: the chance to win over the course of a match."""
 
+from collections.abc import Sequence
+
 import typer
 
 from lacoc_server.commands.replay.curve import ArenaFolder, Every, File, Players, Times, odds_of
+from lacoc_server.simulate.forks.odds import near_margins
 from lacoc_shared.command import options, screen
 from lacoc_shared.words import say
 
@@ -22,7 +25,8 @@ def odds_command(
     """Print how the chance to win changes during a match, computed from forks that bots play.
 
     The chance is that of two bots that take over at a moment. So it tells what the position is
-    worth, not who plays better.
+    worth, not who plays better. Forks of near moments count for a moment's chance too; their
+    margins are in brackets.
 
     The odds are kept beside the record, as MATCH.odds.json; /replay shows them as a curve. Forks
     that were played are not played again.
@@ -39,10 +43,14 @@ def odds_command(
         say("fact.chance", seat=right),
         say("fact.margins"),
     )
-    for one in found.moments:
+    for one, near in zip(found.moments, near_margins(found.moments), strict=True):
         percent = round(100 * one.chance)
-        margins = " ".join(f"{margin:+g}" for margin in one.margins)
+        margins = _margins(one.margins) + (f" ({_margins(near)})" if near else "")
         table.add_row(
             f"{one.clock_s:.1f}", str(one.beat), f"{percent} %", f"{100 - percent} %", margins
         )
     screen.show(table)
+
+
+def _margins(margins: Sequence[float]) -> str:
+    return " ".join(f"{margin:+g}" if margin else "0" for margin in margins)

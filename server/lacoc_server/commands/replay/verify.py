@@ -91,11 +91,18 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
         "differs_at": verdict.differs_at,
         "distance": verdict.distance,
         "worst_section": verdict.worst,
-        "text": render(verdict.said),
+        "text": render(_said(record, verdict)),
         "cut": render(record.cut) if record.cut else "",
         "flaw": render(record.flaw) if record.flaw else "",
         "arithmetic": {"record": record.header.arithmetic, "here": dict(arithmetic.here())},
     }
+
+
+def _said(record: Record, verdict: Verdict) -> Phrase:
+    """Return the verdict in words; of a record that lost a part it is a verdict on the rest."""
+    if record.lost and verdict.same:
+        return say("verdict.rest", verdict=verdict.said)
+    return verdict.said
 
 
 def _lines(record: Record, verdict: Verdict) -> list[str]:
@@ -108,7 +115,7 @@ def _lines(record: Record, verdict: Verdict) -> list[str]:
         say("verdict.lost", cut=record.cut) if record.lost else None,
         say(
             "verdict.line",
-            verdict=verdict.said,
+            verdict=_said(record, verdict),
             beats=verdict.beats,
             frames=verdict.frames,
             sections=verdict.sections,

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from lacoc_server.contest.headless.pool import Ended, EngineLost, Job, attempt
 from lacoc_server.studio.workers import WorkerDied
+from lacoc_shared.command import installing
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -104,7 +105,8 @@ def _connected(address: str) -> Any:
     try:
         from distributed import Client
     except ModuleNotFoundError:
-        raise UserError(say("cluster.not-installed")) from None
+        install = installing.command("server", "cluster")
+        raise UserError(say("cluster.not-installed", install=install)) from None
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # it says what we say
     found: Future[Any] = Future()
 

@@ -6,11 +6,13 @@ Gymnasium.
 
 from importlib.util import find_spec
 
+from lacoc_shared.command import installing
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 if _missing := [name for name in ("mujoco", "gymnasium", "pettingzoo") if find_spec(name) is None]:
-    raise UserError(say("environment.not-installed", missing=_missing))
+    _install = installing.command("server", "rl")
+    raise UserError(say("environment.not-installed", missing=_missing, install=_install))
 
 import gymnasium
 

@@ -76,17 +76,29 @@ def pooled(moments: Iterable[Moment]) -> tuple[Moment, ...]:
         moments: moments of a match, with the forks of each.
     """
     ordered = sorted(moments, key=lambda moment: moment.beat)
-    near_s = NEAR_S + _SPARE_S
 
-    def of(index: int, moment: Moment) -> Moment:
+    def of(moment: Moment, near: Sequence[float]) -> Moment:
         if not moment.key:
             return moment
-        neighbours = ordered[max(0, index - 1) : index + 2]
-        near = [one for one in neighbours if abs(one.clock_s - moment.clock_s) <= near_s]
-        found = chance([margin for one in near if one.key for margin in one.margins])
-        return msgspec.structs.replace(moment, chance=found)
+        return msgspec.structs.replace(moment, chance=chance([*moment.margins, *near]))
 
-    return tuple(of(index, moment) for index, moment in enumerate(ordered))
+    return tuple(map(of, ordered, near_margins(ordered)))
+
+
+def near_margins(ordered: Sequence[Moment]) -> list[list[float]]:
+    """Return for each moment the margins of neighbouring moments that count for its chance too.
+
+    Args:
+        ordered: the moments of a match, in order.
+    """
+    near_s = NEAR_S + _SPARE_S
+
+    def of(index: int, moment: Moment) -> list[float]:
+        neighbours = [*ordered[max(0, index - 1) : index], *ordered[index + 1 : index + 2]]
+        near = [one for one in neighbours if abs(one.clock_s - moment.clock_s) <= near_s]
+        return [margin for one in near if one.key for margin in one.margins] if moment.key else []
+
+    return [of(index, moment) for index, moment in enumerate(ordered)]
 
 
 def student(t: float, freedom: int) -> float:

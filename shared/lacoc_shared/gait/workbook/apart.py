@@ -144,7 +144,9 @@ def _serve() -> None:
 
 
 def _limit_memory() -> None:
-    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no such limits
+    if sys.platform == "win32":  # it has no such limits
+        return
+    with contextlib.suppress(ValueError, OSError):
         import resource
 
         _, hard = resource.getrlimit(resource.RLIMIT_DATA)
@@ -153,7 +155,9 @@ def _limit_memory() -> None:
 
 def _limit_time() -> None:
     """Let the system end this process when it has worked on a workbook for too long."""
-    with contextlib.suppress(ImportError, ValueError, OSError):
+    if sys.platform == "win32":
+        return
+    with contextlib.suppress(ValueError, OSError):
         import resource
 
         used = resource.getrusage(resource.RUSAGE_SELF)

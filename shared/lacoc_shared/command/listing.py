@@ -1,0 +1,146 @@
+"""What the help of a group says of commands that are not imported: their names in a table.
+
+Importing all commands takes a second; their first sentences are here, and a test compares them with
+the commands. The list also tells which commands need packages that are not installed.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from rich.markup import escape
+
+from lacoc_shared.command import help as help_text
+from lacoc_shared.command import installing
+
+NEEDS = '(needs the extra "{}")'
+LACKS = 'The extra "{}" is not installed here. To install it, run: {}'
+"""Texts of the help; the table of phrases takes four times as long to read as that of help."""
+
+
+class Listed(NamedTuple):
+    """A command of this package in the help of its group."""
+
+    summary: str
+    """First paragraph of its help, in English."""
+    extra: str = ""
+    """Extra of the package without which it can't do its usual work; "": none."""
+    panel: str = ""
+    """Heading above it, in English; "": that of all commands."""
+
+    @property
+    def lacking(self) -> bool:
+        """Whether a package that it needs is not installed."""
+        return bool(self.extra) and installing.missing(self.extra)
+
+    def in_words(self) -> str:
+        """Return its line of the help, in the language of this process."""
+        summary = help_text.summary_in_words(self.summary)
+        if self.lacking:
+            summary += " " + escape(help_text.sentence(NEEDS, self.extra))
+        return summary
+
+
+Listing = Mapping[str, Listed]
+"""Name -> command, in the order of the help."""
+
+
+def advice(listing: Listing) -> str:
+    """Say below a list how to install what its commands lack; "": they lack nothing."""
+    extras = dict.fromkeys(one.extra for one in listing.values() if one.lacking)
+    return "\n\n".join(
+        escape(help_text.sentence(LACKS, extra, installing.command(extra))) for extra in extras
+    )
+
+
+_SERVER = "server"
+_PANELS: Mapping[str, Mapping[str, Listed]] = {
+    "Play": {
+        "demo": Listed(
+            "Show a whole match: a court, two bots and a referee meet over the network.", _SERVER
+        ),
+        "practice": Listed(
+            "Walk your robot on a field of its own, with all keys, as long as you like.", _SERVER
+        ),
+        "play": Listed("Hold a seat and steer your robot with the keyboard."),
+        "watch": Listed("Watch a match: clock, score and events as they come."),
+    },
+    "Prepare your robot": {
+        "design": Listed(
+            "Design a gait: change the table, let the robot walk, and see why it walks as it does.",
+            _SERVER,
+        ),
+        "class": Listed(
+            "Let a class design gaits in the browser: 'lacoc class FOLDER' opens it.", _SERVER
+        ),
+        "gait": Listed("Take the sample gait, check gait files, and convert one kind to another."),
+        "trial": Listed(
+            "Let a robot walk alone, and print how well it walks: figures, foot bars and "
+            "explanations.",
+            _SERVER,
+        ),
+        "coach": Listed(
+            "Say which numbers of a gait matter, and search for a better gait with few changes.",
+            _SERVER,
+        ),
+        "robot": Listed("Check a robot file, export it as MJCF, or list the installed robots."),
+    },
+    "Run a contest": {
+        "contest": Listed(
+            "Run a contest: its file, courts and tokens; entries, matches, standings and their "
+            "proof."
+        ),
+        "serve": Listed(
+            "Run a court: it moves the robots, keeps clock and score, and records the match.",
+            _SERVER,
+        ),
+        "web": Listed("Serve the pages: spectators, broadcast, contestants, referee, replays."),
+        "referee": Listed("Referee a match: decide, read the log, see how well the court runs."),
+        "doctor": Listed(
+            "Check whether this machine is ready: packages, ports, graphics, clock, disk."
+        ),
+    },
+    "Study and develop": {
+        "docs": Listed("Read the pages about LACOC: rules, files, a contest day, bots, security."),
+        "replay": Listed("Look at the record of a match, check it, or export tables from it."),
+        "film": Listed(
+            "Make a film of a recorded match, or of the best moments of a contest, as an MP4.",
+            "film",
+        ),
+        "simulate": Listed(
+            "Play matches of bots or ghosts without a picture, and print the results.", _SERVER
+        ),
+        "bot": Listed("Let a bot hold a seat: it joins, says ready and plays, match after match."),
+        "studio": Listed(
+            "Run a studio: it lets robots walk and measures them, for pages on which gaits are "
+            "designed.",
+            _SERVER,
+        ),
+    },
+}
+OTHERS = "Commands of other packages"
+"""Heading for the commands that are not in the listing of a group with headings."""
+COMMANDS: Listing = {
+    name: one._replace(panel=panel)
+    for panel, listed in _PANELS.items()
+    for name, one in listed.items()
+}
+"""The commands of `lacoc`."""
+REPLAY: Listing = {
+    "fork": Listed(
+        "Go on with a recorded match from one of its beats, as a court would have.", _SERVER
+    ),
+    "highlights": Listed(
+        "List the moments in which the odds of a match changed most, the largest change first.",
+        _SERVER,
+    ),
+    "odds": Listed(
+        "Print how the chance to win changes during a match, computed from forks that bots play.",
+        _SERVER,
+    ),
+    "verify": Listed(
+        "Judge a record again, simulate it again section by section, and print one of three "
+        "verdicts.",
+        _SERVER,
+    ),
+}
+"""The commands of `lacoc replay` that a court's packages add."""
