@@ -101,6 +101,7 @@ class _Trial:
         self._store = stack.enter_context(FactStore(where.facts))
         self._applications = stack.enter_context(Applications(where.applications))
         self._tokens = TeamTokens(where.tokens)
+        self._key, self._code = organiser_key(where.contest), event_code(where.contest)
         own = stack.enter_context(FactStore(where.facts))
         organiser.prepare(where, self._store, entering=True)
         for team in (*_IN, _MINE):
@@ -113,7 +114,6 @@ class _Trial:
             EventCode(where.event_code, self._code),
         )
         known = Known({"north": Seen(0)}, Pace(0, 60_000), {})
-        self._key, self._code = organiser_key(where.contest), event_code(where.contest)
         desk = Desk(book, self._key, lambda: known)
         desk.answer(Apply(secret=self._code, team=_WAITS, files=self._files))
         self._mine = self._tokens.of(_MINE)

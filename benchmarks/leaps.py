@@ -174,7 +174,7 @@ def standing(game: str, files: tuple[SentFile, None, SentFile]) -> tuple[float, 
     match = Match(setup, World)
     joins = [JoinSeat(seat, f"Team {seat}", *files, token_hash="") for seat in (0, 1)]
     farthest_m, before = 0.0, None
-    for _ in to_play(match, joins, match.beat):
+    for _ in to_play(joins, match.beat):
         farthest_m = max(farthest_m, _gone_from_start_m(match))
     for _ in range(PLAY_BEATS):
         frame = match.beat().frame

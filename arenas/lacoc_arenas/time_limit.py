@@ -33,9 +33,11 @@ class Most(NamedTuple):
     frame_s: float = 10.0
     """Processor time for one frame."""
     match_s: float = 600.0
-    """Processor time in all frames of a match, and also the time to wait in them."""
+    """Processor time in all frames of a match."""
     wait_s: float = 60.0
     """Time that a bot waits in one call without using the processor."""
+    match_wait_s: float = 600.0
+    """Time that it waits in all frames of a match."""
 
 
 MOST = Most()
@@ -205,8 +207,10 @@ class _Call:
             return say("bot.begins-long", seconds=MOST.begin_s) if long else None
         if used_s > MOST.frame_s:
             return say("bot.frame-long", seconds=MOST.frame_s)
-        most_s = max(self._timer.used_s + used_s, self._timer.waited_s + self._waited_s)
-        return say("bot.match-long", seconds=MOST.match_s) if most_s > MOST.match_s else None
+        if self._timer.waited_s + self._waited_s > MOST.match_wait_s:
+            return say("bot.match-long", seconds=MOST.match_wait_s)
+        long = self._timer.used_s + used_s > MOST.match_s
+        return say("bot.match-long", seconds=MOST.match_s) if long else None
 
 
 _calls: dict[int, _Call] = {}

@@ -272,7 +272,7 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
         ({"court": "centre"}, 'There is no court "centre" at'),
         ({"connect": "tcp/127.0.0.1:1"}, "No program answers at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, '"my court" is not an address.'),
-        ({"name": "x" * 25}, "1 to 24 printable characters"),
+        ({"name": "x" * 25}, "1 to 24 characters that can be seen"),
         ({"robot": "centipede"}, "centipede"),
         ({"contest": "missing.toml"}, "missing.toml"),
     ],

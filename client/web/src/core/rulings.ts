@@ -1,6 +1,6 @@
 /** The referee's changes to score and winner, and the time played, from the events alone. */
 
-import type { Decision, Event } from "./wire";
+import { BEATS_PER_S, type Decision, type Event } from "./wire";
 
 /** The newest declaration of a winner. */
 export function declaration(events: readonly Event[]): Event | null {
@@ -73,18 +73,22 @@ export function decisionOf({ data }: Event): Decision | null {
 }
 
 /**
- * Beats that were played up to an event: a referee may move the clock, and that plays nothing.
+ * Ticks that were played: those on the clock when play last stopped, and the time that the referee
+ * gave until then. `Record.given_s` counts it in the same way.
  */
-export function playedBeats(events: readonly Event[]): number {
+export function playedTicks(events: readonly Event[]): number {
+  let given_s = 0;
   let played = 0;
-  let since: number | null = null;
-  for (const { kind, beat, data } of events) {
-    if (kind !== "phase") continue;
-    if (data.after === "PLAYING") since = beat;
-    else if (since !== null) {
-      played += beat - since;
-      since = null;
+  let isPlaying = false;
+  for (const event of events) {
+    const decision = decisionOf(event);
+    if (decision?.type === "clock") {
+      // Records of protocol 1 have `seconds`, which took time away.
+      given_s += Number(decision.gives_s ?? 0) - Number(decision.seconds ?? 0);
     }
+    if (event.kind !== "phase") continue;
+    if (isPlaying) played = event.clock_ticks + Math.round(given_s * BEATS_PER_S);
+    isPlaying = event.data.after === "PLAYING";
   }
   return played;
 }

@@ -3,7 +3,7 @@
 import { useMemo } from "preact/hooks";
 import { type Match, phaseOf, scoresOf } from "../core/match";
 import type { Phrase } from "../core/phrase";
-import { corrections, decisionOf, declaration, playedBeats } from "../core/rulings";
+import { corrections, decisionOf, declaration, playedTicks } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
 import { byRules, logClock, markerName, team, winnerOf } from "../i18n/words";
@@ -98,7 +98,7 @@ export function Explained({ match }: { match: Match }) {
   const events = match.events.value;
   const phase = useMemo(() => phaseOf(match), [match]).value;
   // Time that is left rounds up, as on a scoreboard; time that was played does not.
-  const time = logClock(playedBeats(events));
+  const time = logClock(playedTicks(events));
   const end = events.findLast(({ data }) => data.after === "FINISHED" || data.after === "VOID");
   const reason = end?.said.values?.why as Phrase | undefined;
   const abort = events.findLast(({ data }) => data.decision === "abort");
