@@ -57,6 +57,10 @@ export const office = {
     "With the old event code nobody can apply any more. Give the new one to those who may enter. Teams that have applied keep their links.",
     "古いイベントコードでは申し込めなくなります。新しいコードを、参加してよい人に伝えてください。申し込み済みのチームのリンクはそのまま使えます。",
   ],
+  "office.decline.many": [
+    "The office forgets these applications, and the teams' links open nothing any more. While entries are open, the teams can apply again.",
+    "これらの申し込みは消え、チームのリンクは使えなくなります。締め切り前なら、どのチームももう一度申し込めます。",
+  ],
   "office.decline.text": [
     "The office forgets this application, and the team's link opens nothing any more. While entries are open, the team can apply again.",
     "この申し込みは消え、チームのリンクは使えなくなります。締め切り前なら、チームはもう一度申し込めます。",

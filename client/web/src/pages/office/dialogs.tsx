@@ -98,13 +98,15 @@ export function DeclineDialog({ organiser, teams }: { organiser: Organiser; team
   const row = organiser.view.value?.teams.find((one) => one.team === team);
   if (!row) return null;
   const count = teams.length;
+  const one = row.state === "late" ? "office.decline.late" : "office.decline.text";
+  const text = many ? "office.decline.many" : one;
   return (
     <Dialog
       title={many ? t("office.declineAll", { count }) : t("office.declineOf", { team })}
       onClose={() => organiser.close()}
     >
       <div class="asks">
-        <p>{t(row.state === "late" ? "office.decline.late" : "office.decline.text")}</p>
+        <p>{t(text)}</p>
         {many && <p class="muted">{teams.join(t("office.comma"))}</p>}
         <button
           class="button danger"
