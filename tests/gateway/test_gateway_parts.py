@@ -7,6 +7,7 @@ import os
 import re
 import socket
 import threading
+import time
 from pathlib import Path
 from typing import Any, cast, get_args
 
@@ -20,7 +21,9 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
 from starlette.types import Receive, Scope, Send
+from starlette.websockets import WebSocket
 from waiting import LIMIT_S
+from websockets.sync.client import connect
 
 from lacoc_client.asking import NoAnswer, NoCourt, NotNow
 from lacoc_client.controller import Hold
@@ -435,6 +438,29 @@ def test_half_a_request_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes
         with socket.create_connection(opened.getsockname(), LIMIT_S) as whole:
             whole.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
             assert whole.recv(100).startswith(b"HTTP/1.1 200")
+    finally:
+        ended.set()
+        thread.join()
+
+
+def test_a_page_stays_connected_longer_than_a_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit of a request ends no WebSocket, however long it is open."""
+    monkeypatch.setattr(page_socket, "REQUEST_S", 0.05)
+
+    async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket":
+            page = WebSocket(scope, receive, send)
+            await page.accept()
+            await page.send_text(await page.receive_text())
+
+    opened, ended = server.listen("127.0.0.1:0"), threading.Event()
+    thread = threading.Thread(target=server.serve, args=(app, opened, ended.is_set))
+    thread.start()
+    try:
+        with connect(f"ws://127.0.0.1:{opened.getsockname()[1]}/") as page:
+            time.sleep(0.3)
+            page.send("still here")
+            assert page.recv(LIMIT_S) == "still here"
     finally:
         ended.set()
         thread.join()

@@ -110,7 +110,8 @@ class PageRequests(H11Protocol):
     def data_received(self, data: bytes) -> None:
         """Take in bytes; see `asyncio.Protocol`."""
         super().data_received(data)
-        if self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
+        own = self.transport.get_protocol() is self  # else it is a WebSocket's connection now
+        if own and self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
             self._wait()
         else:
             self._wait_no_longer()
