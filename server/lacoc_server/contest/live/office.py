@@ -100,7 +100,7 @@ class Office:
 
     def expect(self, court: str) -> None:
         """Count a court as heard now: it is being opened, and goes on with its game."""
-        self._heard_ms[court] = time.time_ns() // 1_000_000
+        self._heard_ms[court] = _now_ms()
 
     def step(self) -> None:
         """Look at the courts once; then note results, draw, take games back and call others.
@@ -108,7 +108,7 @@ class Office:
         Raises:
             UserError: if the facts can't be read or written, or a frozen file has changed.
         """
-        now_ms = time.time_ns() // 1_000_000
+        now_ms = _now_ms()
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
         self.contest = self._compute()  # another program may have appended facts
         refused = self._answers()
@@ -116,6 +116,7 @@ class Office:
         while self._may_draw(now_ms) and _draws(self.contest):
             self._append(_draws)
         self._append(lambda contest: taken_back(contest, seen, now_ms))
+        now_ms = _now_ms()  # a result of this step ended before it, and its teams rest
         self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
         for call in wanted(self.contest, seen):
             link = self._links.get(call.court)
@@ -227,3 +228,7 @@ def _draws(contest: Contest) -> list[AnyFact]:
     """Return the next draw, if the office makes it by itself."""
     draw = None if waits_for_organiser(contest) else due(contest, FORMATS)
     return [] if draw is None else [draw]
+
+
+def _now_ms() -> int:
+    return time.time_ns() // 1_000_000
