@@ -322,10 +322,8 @@ def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
 
 
 def doubts_of(file: Path) -> list[Phrase]:
-    """Return `doubts` of a contest; none before a team has entered."""
+    """Return `doubts` of a contest that has facts."""
     where = ContestFolder(file)
-    if not where.facts.exists():  # reading makes no file
-        return []
     with FactStore(where.facts) as store:
         return doubts(where, compute(store.facts(), FORMATS))
 

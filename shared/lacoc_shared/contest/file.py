@@ -202,6 +202,11 @@ def sheet_path(path: Path) -> Path:
     return path.resolve().with_suffix(".json")
 
 
+def facts_path(path: Path) -> Path:
+    """Return where the database of a contest's facts is: beside its contest file."""
+    return path.resolve().with_suffix(".db")
+
+
 def load(path: Path) -> Contest:
     """Read a contest file; relative paths in it start from its own folder.
 

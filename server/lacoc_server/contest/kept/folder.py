@@ -31,7 +31,7 @@ class ContestFolder:
         self.plans = plans(self.contest, file)
         """The stages, in their order."""
         folder = file.resolve().parent
-        self.facts = folder / f"{file.stem}.db"
+        self.facts = contests.facts_path(file)
         """The database of facts."""
         self.sheet = contests.sheet_path(file)
         """The newest sheet, for pages."""
