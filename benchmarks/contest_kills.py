@@ -85,7 +85,7 @@ def _play(file: Path, kills: int, chance: random.Random, killed: Counter[str]) -
     """Play a contest to its end, with kills on the way; return how long it took [s]."""
     begun_s = time.monotonic()
     while True:
-        words = ("contest", "run", str(file), "--speed", "20", "--json")
+        words = ("contest", "run", str(file), "--until-over", "--speed", "20", "--json")
         with started(LACOC, *words) as process:
             read_line(process)
             while process.poll() is None:

@@ -99,7 +99,7 @@ def test_a_match_goes_on_here_if_its_machine_is_gone(tmp_path: Path, processes: 
     there.mkdir()
     shutil.copy(file, there)
 
-    office = start(processes, "contest", "run", str(file), "--speed", SPEED)
+    office = start(processes, "contest", "run", str(file), "--until-over", "--speed", SPEED)
     words = ("--contest", str(there / "contest.toml"), "--speed", SPEED)
     machine = start(processes, "contest", "courts", *words)
     where = ContestFolder(file)

@@ -59,7 +59,7 @@ def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
     lines = json.loads(invited.stdout)
     assert list(lines) == list(PEOPLE)
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    run = started("contest", "run", str(file), "--speed", "10", "--json", **streams)
+    run = started("contest", "run", str(file), "--until-over", "--speed", "10", "--json", **streams)
     assert run.stdout is not None
     opened = json.loads(run.stdout.readline())
     assert list(opened["courts"]) == ["north", "south"]
@@ -102,7 +102,7 @@ def test_the_terminal_tells_what_happens(tmp_path: Path) -> None:
     file = write_contest(tmp_path)
     for team in PEOPLE:
         enter(file, team, None, "straight", "")
-    ran = run_lacoc("contest", "run", str(file), "--speed", "10", timeout_s=LIMIT_S)
+    ran = run_lacoc("contest", "run", str(file), "--until-over", "--speed", "10", timeout_s=LIMIT_S)
     assert ran.returncode == 0, ran.stderr
     told = ran.stderr
     assert told.count("Result: ") == 6

@@ -26,5 +26,5 @@ def open_venue(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Venue]:
     with ExitStack() as stack:
         venue = Venue(tmp_path_factory.mktemp("venue"), stack)
         venue.court()
-        venue.web("--host", "Pages.Example")
+        venue.web("--pages", "https://Pages.Example")
         yield venue

@@ -66,7 +66,7 @@ def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPM
     ],
 )
 def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> None:
-    """A request's host may be an IP address, localhost, this machine's name or a --host name."""
+    """A request's host may be an IP address, localhost, this machine's name or the public one."""
     status, _, _ = get(open_venue, "/recordings", Host=host.format(port=open_venue.web_port))
     assert status == 200
 
@@ -88,7 +88,7 @@ def test_a_foreign_name_is_refused(open_venue: Venue, host: str) -> None:
     status, _, body = get(open_venue, "/recordings", Host=host)
     assert status in (400, 403)
     if status == 403:
-        assert b"--host" in body
+        assert b"--pages" in body
     with (
         pytest.raises(InvalidStatus),
         connect(
@@ -242,7 +242,7 @@ def test_a_message_without_end_is_cut_off(open_venue: Venue) -> None:
 
 @pytest.mark.parametrize("path", ["/", "/play", "/practice", "/referee", "/watch", "/replay"])
 def test_pages_are_safe_from_other_sites(open_venue: Venue, path: str) -> None:
-    """Headers keep other sites from embedding a page, and browsers from storing it."""
+    """Headers keep other sites from embedding a page, and browsers from showing an old one."""
     status, headers, _ = get(open_venue, path)
     assert status in (200, 503)  # 503: not built
     policy = headers["Content-Security-Policy"]
@@ -250,7 +250,9 @@ def test_pages_are_safe_from_other_sites(open_venue: Venue, path: str) -> None:
     assert "frame-ancestors 'none'" in policy
     assert headers["X-Content-Type-Options"] == "nosniff"
     assert headers["Referrer-Policy"] == "no-referrer"
-    assert headers["Cache-Control"] == "no-store"
+    assert headers["Cache-Control"] == ("no-cache" if status == 200 else "no-store")
+    if status == 200:
+        assert get(open_venue, path, **{"If-None-Match": headers["ETag"]})[0] == 304
 
 
 def test_the_overlay_may_be_embedded(open_venue: Venue) -> None:
@@ -277,10 +279,14 @@ def test_recordings_are_listed_and_fetched(open_venue: Venue, records: Path) -> 
     """Recordings are listed with the newest first, and can be fetched whole or in part."""
     _, headers, body = get(open_venue, "/recordings")
     listed = json.loads(body)
-    assert headers["Cache-Control"] == "no-store"
+    assert headers["Cache-Control"] == "public, max-age=1"
     assert [entry["name"] for entry in listed] == ["second.mcap", "first match.mcap"]
     assert listed[0]["bytes"] == 10
-    assert get(open_venue, "/recordings/first%20match.mcap")[2] == b"first"
+    assert get(open_venue, "/recordings", **{"If-None-Match": headers["ETag"]})[0] == 304
+    _, headers, body = get(open_venue, "/recordings/first%20match.mcap")
+    assert (body, headers["Cache-Control"][-9:]) == (b"first", "immutable")
+    again = {"If-None-Match": headers["ETag"]}
+    assert get(open_venue, "/recordings/first%20match.mcap", **again)[0] == 304
     status, _, body = get(open_venue, "/recordings/second.mcap", Range="bytes=2-4")
     assert (status, body) == (206, b"234")
 

@@ -43,6 +43,7 @@ from lacoc_shared.contest.invitation import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
 PAGE = (Path(__file__).parents[2] / "docs" / "gateway.md").read_text(encoding="utf-8")
@@ -324,7 +325,7 @@ def test_a_wrong_place_to_listen_is_said(where: str) -> None:
 def test_a_port_that_is_in_use_is_said() -> None:
     """If a gateway's port is in use, the error asks for another port."""
     with server.listen("127.0.0.1:0") as opened:
-        address = server.url(opened)
+        address = opened.url
         with pytest.raises(UserError, match="choose another port"):
             server.listen(address.removeprefix("http://"))
 
@@ -341,8 +342,8 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
             writer.close()
 
         with server.listen("127.0.0.1:0") as opened:
-            async with await asyncio.start_server(accepted, sock=opened):
-                _, writer = await asyncio.open_connection(*opened.getsockname())
+            async with await asyncio.start_server(accepted, sock=opened.socket):
+                _, writer = await asyncio.open_connection(*opened.socket.getsockname())
                 writer.close()
                 return bool(await found)
 
@@ -369,12 +370,12 @@ def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatc
 @given(st.text(), st.text())
 def test_no_header_breaks_the_guard(host: str, origin: str) -> None:
     """Random host and origin headers are refused without an exception."""
-    guard = Guard(None, ["pages.example"])  # type: ignore[arg-type]
+    guard = Guard(None, PublicAddress.of("https://pages.example"))  # type: ignore[arg-type]
     headers = [
         (b"host", host.encode("latin-1", "replace")),
         (b"origin", origin.encode("latin-1", "replace")),
     ]
-    assert guard._why_not({"type": "websocket", "headers": headers})
+    assert guard._why_not({"type": "websocket", "scheme": "ws", "headers": headers})
 
 
 def test_a_sheet_is_sent_only_if_it_has_changed(tmp_path: Path) -> None:
@@ -414,7 +415,7 @@ def test_pages_that_are_not_built_can_not_be_published(
 
 
 @pytest.mark.parametrize(
-    "part", [b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n"]
+    "part", [b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n"]
 )
 def test_half_a_request_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes) -> None:
     """A connection that never sends a whole request is closed; a whole one is answered."""
@@ -430,13 +431,13 @@ def test_half_a_request_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes
     thread = threading.Thread(target=server.serve, args=(app, opened, ended.is_set))
     thread.start()
     try:
-        with socket.create_connection(opened.getsockname(), LIMIT_S) as half:
+        with socket.create_connection(opened.socket.getsockname(), LIMIT_S) as half:
             half.sendall(part)
             with contextlib.suppress(ConnectionResetError):
                 assert half.recv(1) == b""
         monkeypatch.setattr(page_socket, "REQUEST_S", LIMIT_S)
-        with socket.create_connection(opened.getsockname(), LIMIT_S) as whole:
-            whole.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+        with socket.create_connection(opened.socket.getsockname(), LIMIT_S) as whole:
+            whole.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
             assert whole.recv(100).startswith(b"HTTP/1.1 200")
     finally:
         ended.set()
@@ -457,7 +458,7 @@ def test_a_page_stays_connected_longer_than_a_request(monkeypatch: pytest.Monkey
     thread = threading.Thread(target=server.serve, args=(app, opened, ended.is_set))
     thread.start()
     try:
-        with connect(f"ws://127.0.0.1:{opened.getsockname()[1]}/") as page:
+        with connect(f"ws://127.0.0.1:{opened.socket.getsockname()[1]}/") as page:
             time.sleep(0.3)
             page.send("still here")
             assert page.recv(LIMIT_S) == "still here"

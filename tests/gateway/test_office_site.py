@@ -21,7 +21,7 @@ def test_a_page_learns_the_address_of_the_network() -> None:
     )
     serving.start()
     try:
-        at = server.url(opened).replace("http", "ws")
+        at = opened.url.replace("http", "ws")
         with connect(f"{at}/office/ws", compression=None) as page:
             page.send(msgpack.packb({"id": 1, "do": "address"}))
             answer = page.recv(LIMIT_S)

@@ -1,15 +1,13 @@
 """Finds a browser for the tests of pages, and builds the pages with npm."""
 
-import contextlib
 import os
 import shutil
 import subprocess
 import sys
-import tempfile
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from debian import install, locked
 from playwright.sync_api import Page
 
 from lacoc_client.film.chromium import FLAGS, SHELL, on_path
@@ -62,9 +60,9 @@ def find_chromium() -> str:
         return found
     with locked("chromium"):
         found = on_path()
-        if found is None and os.name == "posix" and os.geteuid() == 0 and shutil.which("apt-get"):
-            _install()
-            found = on_path()
+        for package in (SHELL, "chromium") if found is None else ():
+            install(package)
+            found = found or on_path()
     if found is None:
         raise NoBrowser(_HOW)
     return found
@@ -106,40 +104,6 @@ def npm(*words: str, web: Path = WEB) -> None:
         if not (web / "node_modules" / ".package-lock.json").exists():
             _run([*command, "ci", "--no-audit", "--no-fund"], web)
     _run([*command, *words], web)
-
-
-@contextlib.contextmanager
-def locked(name: str) -> Iterator[None]:
-    """Let only one test process of this machine into the block at a time; the others wait."""
-    path = Path(tempfile.gettempdir()) / f"lacoc-tests-{name}.lock"
-    with path.open("a") as file:
-        if sys.platform == "win32":
-            import msvcrt
-
-            while True:
-                try:
-                    msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-                    break
-                except OSError:
-                    time.sleep(0.2)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
-def _install() -> None:
-    """Try to install Debian's Chromium; the caller checks whether that worked."""
-    quiet = {
-        "stdout": subprocess.DEVNULL,
-        "env": {**os.environ, "DEBIAN_FRONTEND": "noninteractive"},
-    }
-    install = ("install", "--yes", "--no-install-recommends")
-    for words in (("update",), (*install, SHELL), (*install, "chromium")):
-        subprocess.run(["apt-get", "-qq", *words], check=False, timeout=600, **quiet)  # type: ignore[call-overload]
-        if on_path():
-            return
 
 
 def _newest() -> float:

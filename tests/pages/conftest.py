@@ -29,6 +29,9 @@ from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_
 from contestant import Contestant, Sit
 from venue import Venue
 
+_NAMES = "--host-resolver-rules=MAP *.test 127.0.0.1"
+"""Host names of tests lead to this machine."""
+
 expect.set_options(timeout=LIMIT_MS)
 
 
@@ -40,7 +43,7 @@ def browser() -> Iterator[Browser]:
     except NoBrowser as why:
         pytest.fail(str(why), pytrace=False)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
+        browser = playwright.chromium.launch(executable_path=program, args=[*FLAGS, _NAMES])
         yield browser
         browser.close()
 

@@ -10,7 +10,8 @@ import msgspec
 import mujoco
 import numpy as np
 import pytest
-from chromium import OpenPage, build_stand, locked
+from chromium import OpenPage, build_stand
+from debian import locked
 from match_file import match_file
 from playwright.sync_api import Page
 from stand import Stand, served, share_of

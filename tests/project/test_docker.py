@@ -17,9 +17,11 @@ from typing import Any
 
 import pytest
 import yaml
-from lacoc_process import Lacoc
+from lacoc_process import Lacoc, run_lacoc
 from ports import free_port
 from waiting import LIMIT_S
+
+from lacoc_shared.contest import file as contests
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text(encoding="utf-8"))
@@ -102,6 +104,31 @@ def test_the_composition_plays(tmp_path: Path) -> None:
     assert any("takes the left seat" in line for line in heard)
     assert any("takes the right seat" in line for line in heard)
     assert any("compose" in line for line in heard)  # the name of the referee who started the match
+
+
+def test_the_contest_online_is_the_one_of_its_page(tmp_path: Path) -> None:
+    """The commands of docs/online.md write contest files that fit the proxies in front of them."""
+    online = yaml.safe_load((ROOT / "docker" / "online.yaml").read_text(encoding="utf-8"))
+    contest, caddy = online["services"]["contest"], online["services"]["caddy"]
+    assert caddy["environment"]["LACOC_GATEWAY"] == "contest:8080"
+    assert contest["command"][-1].endswith(":8080")
+    mounted = caddy["volumes"][0].partition(":")[0]
+    assert (ROOT / "docker" / mounted).resolve() == ROOT / "examples" / "online" / "Caddyfile"
+    unit = (ROOT / "examples" / "online" / "lacoc.service").read_text(encoding="utf-8")
+    assert "--listen 127.0.0.1:8080" in unit
+    page = (ROOT / "docs" / "online.md").read_text(encoding="utf-8")
+    lines = re.findall(r"contest init (contest\.toml .*--pages .*)", page)
+    proxies = []
+    for line in lines:
+        words = line.replace("$LACOC_NAME", "lacoc.example.org").split()
+        assert run_lacoc("contest", "init", *words, cwd=tmp_path).returncode == 0
+        made = contests.load(tmp_path / "contest.toml")
+        assert made.public.pages == "https://lacoc.example.org"
+        assert {one.listen[0].partition(":")[0] for one in made.courts.values()} == {
+            "tcp/127.0.0.1"
+        }
+        proxies.append(made.public.proxies)
+    assert proxies == [("172.16.0.0/12",), ("127.0.0.1",)]
 
 
 @contextmanager

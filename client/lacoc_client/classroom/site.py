@@ -15,7 +15,6 @@ from lacoc_client.classroom.teacher_page import TeacherPage
 from lacoc_client.design.design_page import DesignPage
 from lacoc_client.design.site import PATH as STUDENTS
 from lacoc_client.gateway.files import PageFiles
-from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.site import page_routes, recording_routes
 
@@ -43,7 +42,7 @@ def class_site(classroom: Classroom, files: PageFiles) -> ASGIApp:
         await TeacherPage(websocket, classroom).serve()
 
     async def start(_: Request) -> Response:
-        return RedirectResponse(STUDENTS)
+        return RedirectResponse(STUDENTS[1:])
 
     others = [
         Route("/", start),
@@ -51,6 +50,5 @@ def class_site(classroom: Classroom, files: PageFiles) -> ASGIApp:
         WebSocketRoute(f"{PATH}/ws", teacher),
         *recording_routes(shelf),
     ]
-    return Guard(
-        Starlette(routes=page_routes(files, [STUDENTS, PATH, "/replay"], others), lifespan=lifespan)
-    )
+    routes = page_routes(files, [STUDENTS, PATH, "/replay"], others)
+    return Starlette(routes=routes, lifespan=lifespan)

@@ -24,6 +24,7 @@ from lacoc_client.gateway.files import PageFiles
 from lacoc_client.phases.class_file import forget
 from lacoc_shared.command import keep, options, screen
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import render, say
 
 
@@ -64,6 +65,10 @@ def open_command(
             help="Where to serve the pages; by default the whole room can open them.",
         ),
     ] = "0.0.0.0:8080",
+    public_pages: options.Pages = None,
+    certificate: options.Certificate = None,
+    private_key: options.PrivateKey = None,
+    proxy: options.Proxy = None,
     connect: Annotated[
         list[str] | None,
         typer.Option(
@@ -89,14 +94,15 @@ def open_command(
     folder again: code, students and tables are still there.
     """
     pages.check_pages(terminal=False)
+    public = PublicAddress.of(public_pages or "", certificate, private_key, proxy or ())
     with ExitStack() as stack:
-        opened = stack.enter_context(server.listen(listen))
+        opened = stack.enter_context(server.listen(listen, public))
         own = stack.enter_context(own_studio())
         studios = Studios([Asker(address) for address in (own, *(connect or ()))])
-        classroom = Classroom(folder, studios, [server.url(opened)], robot)
+        classroom = Classroom(folder, studios, [opened.url], robot)
         keep.make_folder(folder)  # only now: whoever can't open a class gets no empty folder
         asyncio.run(classroom.open())
-        address = server.url(opened)
+        address = opened.url
         teacher = f"{address}{PATH}#key={classroom.state.key}"
 
         def ready() -> None:

@@ -16,8 +16,10 @@ from lacoc_client.design.studios.asker import Asker
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import PageFiles
+from lacoc_shared.command import options
 from lacoc_shared.command.child import kept_child
 from lacoc_shared.command.scratch import Scratch
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
 app = typer.Typer()
@@ -64,6 +66,10 @@ def design_command(
             "0.0.0.0:8080 a tablet in the room can too.",
         ),
     ] = server.LOOPBACK,
+    public_pages: options.Pages = None,
+    certificate: options.Certificate = None,
+    private_key: options.PrivateKey = None,
+    proxy: options.Proxy = None,
     browser: pages.Browser = True,
 ) -> None:
     """Design a gait: change the table, let the robot walk, and see why it walks as it does.
@@ -73,11 +79,12 @@ def design_command(
     starts a studio, which lets the robot walk, unless --connect names another studio.
     """
     pages.check_pages(terminal=False)
+    public = PublicAddress.of(public_pages or "", certificate, private_key, proxy or ())
     files = Folder(folder)
     with nullcontext(connect) if connect else own_studio() as address:
         designer = Designer(files, Studios([Asker(address)]), robot, invitation)
         site = design_site(designer, PageFiles())
-        pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, MESSAGE_BYTES)
+        pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, public, MESSAGE_BYTES)
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from lacoc_client.gateway.site import site
 from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
 Browser = Annotated[
@@ -62,6 +63,7 @@ def show_app(
     path: str,
     browser: bool,
     listen: str = server.LOOPBACK,
+    public: PublicAddress | None = None,
     most_bytes: int = JOIN_BYTES,
     json: bool = False,
 ) -> None:
@@ -72,14 +74,15 @@ def show_app(
         path: path of the page to open, with its fragment.
         browser: whether to open the page in the browser.
         listen: "HOST:PORT"; see `server.listen`.
+        public: how others reach the page.
         most_bytes: longest message of a page.
         json: print the address as JSON.
 
     Raises:
         UserError: if the address is wrong, or can't be listened on.
     """
-    opened = server.listen(listen)
-    address = f"{server.url(opened)}{path}"
+    opened = server.listen(listen, public)
+    address = f"{opened.url}{path}"
     stack = ExitStack()
 
     def ready() -> None:

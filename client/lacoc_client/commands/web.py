@@ -21,6 +21,7 @@ from lacoc_shared.contest.entrances import page_key
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
@@ -42,14 +43,10 @@ def web_command(
             help="Address for the pages; 0.0.0.0:8080 lets everybody on the same network see them.",
         ),
     ] = server.LOOPBACK,
-    host: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME",
-            help="Another name by which browsers may open this machine's pages; can be given "
-            "more than once.",
-        ),
-    ] = None,
+    pages: options.Pages = None,
+    certificate: options.Certificate = None,
+    private_key: options.PrivateKey = None,
+    proxy: options.Proxy = None,
     key: Annotated[
         str | None,
         typer.Option(
@@ -106,13 +103,19 @@ def web_command(
         sheet=contests.sheet_path(contest) if contest else None,
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
         desk=office is not None,
-        names=frozenset(host or ()),
         viewers_most=viewers,
         exporter=exporter,
         key=_key(plan, key),
     )
-    port = server.listen(listen)
-    address = server.url(port)
+    own = PublicAddress() if plan is None else plan.public
+    public = PublicAddress.of(
+        pages or own.pages,
+        certificate or own.certificate,
+        private_key or own.private_key,
+        proxy or own.proxies,
+    )
+    port = server.listen(listen, public)
+    address = port.url
 
     def ready() -> None:
         built = PageFiles().built

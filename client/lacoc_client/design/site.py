@@ -13,7 +13,6 @@ from starlette.websockets import WebSocket
 from lacoc_client.design.design_page import DesignPage
 from lacoc_client.design.designer import Designer
 from lacoc_client.gateway.files import PageFiles
-from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.site import page_routes
 
 PATH = "/design"
@@ -36,7 +35,7 @@ def design_site(designer: Designer, files: PageFiles) -> ASGIApp:
         await DesignPage(websocket, designer).serve()
 
     async def start(_: Request) -> Response:
-        return RedirectResponse(PATH)
+        return RedirectResponse(PATH[1:])
 
     others = [Route("/", start), WebSocketRoute(f"{PATH}/ws", page)]
-    return Guard(Starlette(routes=page_routes(files, [PATH], others), lifespan=lifespan))
+    return Starlette(routes=page_routes(files, [PATH], others), lifespan=lifespan)

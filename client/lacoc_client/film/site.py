@@ -13,7 +13,6 @@ from starlette.applications import Starlette
 from lacoc_client.film.look import Look, Quality
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.site import page_routes, recording_routes
 from lacoc_shared.command.scratch import Scratch
@@ -60,7 +59,7 @@ def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
     files = PageFiles()
     if not files.built:
         raise UserError(NOT_BUILT)
-    with Scratch("film") as folder:
+    with Scratch("film") as folder, server.listen(server.LOOPBACK) as opened:
         names = tuple(f"{number}.mcap" for number in range(len(paths)))
         for name, path in zip(names, paths, strict=True):
             try:
@@ -70,16 +69,14 @@ def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
                 raise UserError(say("film.cannot-read", file=str(path), why=why)) from None
         shelf = Recordings(folder, lambda: ())
         routes = page_routes(files, (_PATH,), recording_routes(shelf))
-        opened = server.listen(server.LOOPBACK)
         stopped = threading.Event()
         serving = threading.Thread(
-            target=server.serve, args=(Guard(Starlette(routes=routes)), opened, stopped.is_set)
+            target=server.serve, args=(Starlette(routes=routes), opened, stopped.is_set)
         )
         serving.start()
         try:
-            yield FilmSite(server.url(opened), names)
+            yield FilmSite(opened.url, names)
         finally:
             stopped.set()
             serving.join()
-            opened.close()
             shelf.close()

@@ -59,7 +59,11 @@ class PageFiles:
 def _read(path: Path) -> PageFile:
     kind = _TYPES.get(path.suffix) or mimetypes.guess_type(path.name)[0]
     kind = kind or "application/octet-stream"
-    data = path.read_bytes()
+    return page_file(path.read_bytes(), kind)
+
+
+def page_file(data: bytes, kind: str) -> PageFile:
+    """Make what is served of a file's bytes and its media type."""
     packed = None
     if len(data) >= _PACKED_FROM_BYTES and kind.startswith(_PACKED):
         packed = gzip.compress(data, 9, mtime=0)

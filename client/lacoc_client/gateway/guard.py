@@ -1,20 +1,21 @@
 """Decides who may talk to a gateway: browsers that opened its page, and no other site's pages.
 
 Any web site can make a browser send requests to 127.0.0.1. So the Host must be a name of this
-machine, or an IP address: another site's name could be made to point here, an IP address can't. And
-a page of another origin gets no WebSocket.
+machine, the name of its public address, or an IP address: another site's name could be made to
+point here, an IP address can't. And a page of another origin gets no WebSocket. A proxy may replace
+the Host by the gateway's own address; then the origin is still that of the public address.
 """
 
 import ipaddress
 import re
 import socket
-from collections.abc import Iterable
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import PlainTextResponse
+from starlette.responses import PlainTextResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import LANGUAGES, Phrase, render, say
 from lacoc_shared.words.render import Language
 
@@ -36,45 +37,57 @@ def machine_names() -> frozenset[str]:
 
 
 class Guard:
-    """Checks each connection before the application gets it.
+    """Checks each connection before the application gets it, and takes the path of the pages away.
 
     Args:
-        app: the application.
-        names: further names of this machine.
+        app: the application; its paths begin at "/".
+        public: how others reach the pages.
     """
 
-    def __init__(self, app: ASGIApp, names: Iterable[str] = ()) -> None:
+    def __init__(self, app: ASGIApp, public: PublicAddress) -> None:
         self._app = app
-        self._names = machine_names() | {name.lower() for name in names}
+        self._public = public
+        self._names = machine_names() | ({public.host} - {""})
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Let a connection in, or refuse it."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        refusal = self._why_not(scope)
 
         async def send_safely(message: Message) -> None:
             if message["type"] in ("http.response.start", "websocket.http.response.start"):
                 _add_headers(MutableHeaders(scope=message), scope["path"])
             await send(message)
 
-        if refusal is not None:
-            await answer(scope, refusal, 403)(scope, receive, send_safely)
-        else:
-            await self._app(scope, receive, send_safely)
+        await (self._instead(scope) or self._app)(scope, receive, send_safely)
+
+    def _instead(self, scope: Scope) -> ASGIApp | None:
+        """Return what answers in place of the application, if anything does."""
+        if (refusal := self._why_not(scope)) is not None:
+            return answer(scope, refusal, 403)
+        below = self._public.path
+        if below and scope["path"] == below and scope["type"] == "http":
+            return RedirectResponse(f"{below}/")  # else the page would look for its parts beside it
+        if below and scope["path"].startswith(f"{below}/"):  # a proxy may have taken it away
+            scope["path"] = scope["path"].removeprefix(below)
+        if scope["type"] == "http" and scope["path"].endswith("/ws"):
+            return answer(scope, say("gateway.no-websocket"), 426)
+        return None
 
     def _why_not(self, scope: Scope) -> Phrase | None:
         hosts = _all(scope, b"host")
         name = _name_of(hosts[0]) if len(hosts) == 1 else ""
         if not (_is_number(name) or name in self._names):
-            return say("gateway.unknown-name", name=name[:80], host=name[:80] or "NAME")
+            name = name[:80] or "NAME"
+            return say("gateway.unknown-name", name=name, pages=f"{scope['scheme']}://{name}")
         origins = _all(scope, b"origin")
-        if scope["type"] == "websocket" and origins:
+        asks = scope["type"] == "websocket" or scope.get("method") == "POST"
+        if asks and origins:
             origin = urlsplit(origins[0])
             same = origin.scheme in ("http", "https") and origin.netloc.lower() == hosts[0].lower()
-            if len(origins) > 1 or not same:
-                return say("gateway.other-site")
+            if len(origins) > 1 or not (same or origins[0].lower() == self._public.origin):
+                return say("gateway.other-site", origin=origins[0][:80])
         return None
 
 

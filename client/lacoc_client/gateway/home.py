@@ -51,8 +51,6 @@ class Home:
     """The newest sheet of the contest, which its office writes."""
     desk: bool = False
     """Whether there are the pages of a contest's desk: /enter and /office."""
-    names: frozenset[str] = frozenset()
-    """Names by which browsers may call this machine, besides its own."""
     viewers_most: int = VIEWERS_MOST
     exporter: Exporter | None = None
     """Serves the gateway's metrics."""

@@ -5,6 +5,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 
+from lacoc_client.gateway.cached import json_response
 from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_shared.seat import BEAT_S
@@ -34,10 +35,9 @@ def scores_route(courts: Courts) -> BaseRoute:
         courts: the courts of the gateway.
     """
 
-    async def scores(_: Request) -> Response:
+    async def scores(request: Request) -> Response:
         found = [_score(courts.find(name)[0]) for name in courts.home.courts]
-        body = msgspec.json.encode([one for one in found if one is not None])
-        return Response(body, media_type="application/json", headers={"Cache-Control": "no-store"})
+        return json_response(request, [one for one in found if one is not None])
 
     return Route("/courts.json", scores)
 

@@ -10,15 +10,22 @@ from typing import Protocol
 import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, Response
+from starlette.responses import PlainTextResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
+from lacoc_client.gateway.cached import (
+    ASK_AGAIN,
+    FOR_EVER,
+    file_response,
+    json_response,
+    large_response,
+)
 from lacoc_client.gateway.courts import Courts
-from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles
+from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.forks import ForkAsk, Forks, bots
-from lacoc_client.gateway.guard import Guard, answer, language_of
+from lacoc_client.gateway.guard import answer, language_of
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
@@ -31,10 +38,10 @@ from lacoc_shared.words import say
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest")
 """Paths that all serve index.html; the page itself looks at its path."""
 
+_OLD_NAMES = {"favicon.ico": "icon.svg"}
 KEY_HEADER = "X-Lacoc-Key"
 """HTTP header with the page key."""
 
-_FOR_EVER = "public, max-age=31536000, immutable"  # names of assets contain their hash
 _MCAP = "application/octet-stream"
 
 
@@ -90,20 +97,27 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     ]
     paths = PATHS if more is None else (*PATHS, *more.paths)
     routes = page_routes(files, paths, [*others, *(more.routes if more is not None else ())])
-    return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
+    return Starlette(routes=routes, lifespan=lifespan)
 
 
 def recording_routes(shelf: Recordings) -> list[BaseRoute]:
     """Return three routes: of the list of recordings, of a recording, and of its odds."""
 
-    async def recordings(_: Request) -> Response:
+    async def recordings(request: Request) -> Response:
         found = await asyncio.to_thread(shelf.listed)
-        return Response(msgspec.json.encode(found), media_type="application/json")
+        return json_response(request, found)
 
     async def one_recording(request: Request) -> Response:
         name = request.path_params["name"]
         path = await asyncio.to_thread(shelf.find, name)
-        return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
+        if path is None:
+            return _not_found(request)
+        # The gateway's own copy of a match that is just over gives way to the court's record.
+        cache = ASK_AGAIN if path.parent == shelf.own else FOR_EVER
+        try:
+            return large_response(request, path, _MCAP, cache)
+        except OSError:  # it was moved at this moment
+            return _not_found(request)
 
     async def odds(request: Request) -> Response:
         found = await asyncio.to_thread(shelf.odds, request.path_params["name"])
@@ -179,7 +193,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
             found = await asyncio.to_thread(files.find, path.name)
         if found is None:
             return answer(request.scope, say("gateway.no-contest"), 404)
-        return _response(request, found, "no-cache")
+        return file_response(request, found, ASK_AGAIN)
 
     return Route("/contest.json", sheet)
 
@@ -199,36 +213,30 @@ def page_routes(
         file = await asyncio.to_thread(files.find, "index.html")
         if file is None:
             return answer(request.scope, NOT_BUILT, 503)
-        return _response(request, file, "no-store")
+        return file_response(request, file, ASK_AGAIN)
 
     async def asset(request: Request) -> Response:
         name = request.path_params["name"]
         file = await asyncio.to_thread(files.find, f"assets/{name}")
-        return _not_found(request) if file is None else _response(request, file, _FOR_EVER)
+        return _not_found(request) if file is None else file_response(request, file, FOR_EVER)
 
     async def top_file(request: Request) -> Response:
-        """Serve a file beside index.html: the icon."""
-        file = await asyncio.to_thread(files.find, request.path_params["name"])
-        return _not_found(request) if file is None else _response(request, file, "max-age=3600")
+        """Serve a file beside index.html: the icon, also by its old name."""
+        name = request.path_params["name"]
+        file = await asyncio.to_thread(files.find, _OLD_NAMES.get(name, name))
+        return _not_found(request) if file is None else file_response(request, file, "max-age=3600")
+
+    async def healthz(_: Request) -> Response:
+        """Say that the gateway answers, for whoever watches over it."""
+        return PlainTextResponse("ok\n")
 
     return [
+        Route("/healthz", healthz),
         *(Route(path, index) for path in paths),
         Route("/assets/{name:path}", asset),
         *others,
         Route("/{name}", top_file),
     ]
-
-
-def _response(request: Request, file: PageFile, cache: str) -> Response:
-    tag = f'W/"{file.hash}"'
-    headers = {"Cache-Control": cache, "Vary": "Accept-Encoding", "ETag": tag}
-    if request.headers.get("if-none-match") == tag:
-        return Response(status_code=304, headers=headers)
-    data = file.data
-    if file.packed is not None and "gzip" in request.headers.get("accept-encoding", ""):
-        data = file.packed
-        headers["Content-Encoding"] = "gzip"
-    return Response(data, headers=headers, media_type=file.media_type)
 
 
 def _not_found(request: Request) -> Response:

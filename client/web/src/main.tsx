@@ -31,7 +31,7 @@ effect(() => {
 
 addEventListener("vite:preloadError", () => void reloadWhenServed());
 
-const path = ownPage ? `/${ownPage}` : location.pathname.replace(/\/+$/, "") || "/";
+const path = `/${ownPage ?? location.pathname.split("/").at(-1)}`;
 const { default: Page } = await (PAGES[path] ?? PAGES["/"]!)();
 document.body.dataset.page = path.slice(1) || "home";
 render(<Page />, document.getElementById("page")!);

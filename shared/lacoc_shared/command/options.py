@@ -82,6 +82,44 @@ WaitForCourt = Annotated[
         "start by themselves.",
     ),
 ]
+Pages = Annotated[
+    str | None,
+    typer.Option(
+        "--pages",
+        envvar="LACOC_PAGES",
+        metavar="URL",
+        help="Address at which others open the pages, such as https://lacoc.example.org; by "
+        "default this machine's.",
+    ),
+]
+Certificate = Annotated[
+    Path | None,
+    typer.Option(
+        "--certificate",
+        envvar="LACOC_CERTIFICATE",
+        metavar="FILE",
+        help="Certificate for https (PEM); it may be renewed while the command runs.",
+    ),
+]
+PrivateKey = Annotated[
+    Path | None,
+    typer.Option(
+        "--private-key",
+        envvar="LACOC_PRIVATE_KEY",
+        metavar="FILE",
+        help="The certificate's key (PEM).",
+    ),
+]
+Proxy = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--proxy",
+        envvar="LACOC_PROXY",
+        metavar="ADDRESS",
+        help="Address or network of a proxy in front of the pages, such as 127.0.0.1: it says who "
+        "asks; can be given more than once.",
+    ),
+]
 Metrics = Annotated[
     str | None,
     typer.Option(

@@ -31,6 +31,7 @@ from lacoc_shared.network.address import (
     free_beside,
 )
 from lacoc_shared.network.address import host as address_host
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.seat import Colour, Pattern
 from lacoc_shared.words import Phrase, say
 
@@ -152,6 +153,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Limits for robots, by name, where they differ from the defaults (rules 1)."""
     health: HealthLimits = HealthLimits()
     """Limits beyond which a match should be played again."""
+    public: PublicAddress = PublicAddress()
+    """How everybody reaches the pages."""
     keys: KeyFolder | None = None
     """Certificates for encryption and access; None: tokens alone, and no encryption."""
     office: Holder | None = None
@@ -291,6 +294,10 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
     keys: _PathText | None = None
+    pages: str = ""
+    certificate: _PathText | None = None
+    private_key: _PathText | None = None
+    proxies: tuple[str, ...] = ()
     least_rest_s: Annotated[float, msgspec.Meta(ge=0, le=86_400)] = 0.0
     entries_close: datetime | None = None
 
@@ -312,6 +319,9 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         _check_time(entries)
     with found:
         general = convert(entries, _General, "contest")
+    public = PublicAddress()
+    with found:
+        public = _public(general, folder)
     keys = None if general.keys is None else KeyFolder(folder / general.keys)
     robot = general.robot
     with found:
@@ -342,6 +352,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         robot=robot,
         limits=limits,
         health=health,
+        public=public,
         keys=keys,
         office=office,
         courts=courts,
@@ -349,6 +360,17 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         least_rest_s=general.least_rest_s,
         entries_close=general.entries_close,
     )
+
+
+def _public(general: _General, folder: Path) -> PublicAddress:
+    certificate, private_key = (
+        None if name is None else folder / Path(name).expanduser()
+        for name in (general.certificate, general.private_key)
+    )
+    try:
+        return PublicAddress.of(general.pages, certificate, private_key, general.proxies)
+    except UserError as error:
+        raise wrong_in("contest", error) from None
 
 
 def _check_time(entries: dict[str, Any]) -> None:

@@ -84,7 +84,23 @@ export function goToCourt(court: string | null): void {
   location.search = query.toString();
 }
 
-/** Where a WebSocket of the gateway is. */
-export function socketUrl(path = "/ws"): string {
-  return `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${path}`;
+/**
+ * Where a WebSocket of the gateway is. All pages stand side by side, and all their addresses are
+ * relative, because a proxy may have put them below a path.
+ */
+export function socketUrl(path = "ws"): string {
+  const url = new URL(path, location.href);
+  url.protocol = url.protocol.replace("http", "ws");
+  url.hash = "";
+  return url.href;
+}
+
+/** An address without what every browser adds by itself. */
+export function short(address: string): string {
+  return address.replace(/^https?:\/\//, "");
+}
+
+/** The address of the pages as this page was opened, without a slash at its end. */
+export function pagesUrl(): string {
+  return new URL(".", location.href).href.replace(/\/$/, "");
 }

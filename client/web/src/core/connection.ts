@@ -60,6 +60,16 @@ const LATER_MS = 10_000;
 /** A gateway sends a frame or a link message every second: a longer silence means a break. */
 const SILENCE_MS = 5000;
 const LOOK_MS = 1000;
+/** After so many attempts, and then each time again, the page looks what stands in the way. */
+const DOUBTS = 3;
+/** What an answer to a usual request means, by its status, where no WebSocket opens. */
+const IN_THE_WAY: Readonly<Record<number, string>> = {
+  403: "page.not-let-in",
+  426: "page.no-websocket",
+  502: "page.no-gateway",
+  503: "page.no-gateway",
+  504: "page.no-gateway",
+};
 
 export class Connection {
   readonly state = signal<SocketState>({ open: false, attempt: 0, refused: null });
@@ -147,12 +157,26 @@ export class Connection {
       reject(new Unanswered({ code: "page.connection-lost" }));
     this.waiting.clear();
     if (this.ended) return;
-    const { attempt, refused } = this.state.value;
+    const { open, attempt, refused } = this.state.value;
     this.state.value = { open: false, attempt: attempt + 1, refused };
+    if (!open && attempt % DOUBTS === DOUBTS - 1) void this.doubt();
     const soon = Math.min(RETRY_MOST_MS, RETRY_FIRST_MS * 2 ** attempt);
     // Not all pages of a hall at the same moment.
     const wait = later ? LATER_MS * (1 + Math.random()) : soon * (0.7 + 0.6 * Math.random());
     setTimeout(() => this.open(), wait);
+  }
+
+  /** Say what stands in the way if a proxy answers, but opens no WebSocket. */
+  private async doubt(): Promise<void> {
+    try {
+      // A browser says with a POST, as with a WebSocket, which site's page asks.
+      const { status } = await fetch(this.url.replace(/^ws/, "http"), { method: "POST" });
+      const code = IN_THE_WAY[status];
+      if (code && !this.state.peek().open)
+        this.state.value = { ...this.state.peek(), refused: { code } };
+    } catch {
+      // Nothing answers: the page waits, as it says.
+    }
   }
 
   /** A socket can be dead without an event, for example after a cable was pulled. */

@@ -13,7 +13,7 @@ export class Desk {
 
   constructor() {
     this.connection = new Connection(
-      socketUrl("/office/ws"),
+      socketUrl("office/ws"),
       () => this.connection.ask("ping"),
       () => undefined,
     );

@@ -34,7 +34,7 @@ export async function fork(name: string, asked: ForkAsk, language: string): Prom
 }
 
 async function ask(name: string, language: string, body?: string): Promise<unknown> {
-  const response = await fetch(`/recordings/${encodeURIComponent(name)}/forks`, {
+  const response = await fetch(`recordings/${encodeURIComponent(name)}/forks`, {
     method: body === undefined ? "GET" : "POST",
     headers: { "X-Lacoc-Key": runKey() ?? "", "Accept-Language": language },
     ...(body !== undefined && { body }),

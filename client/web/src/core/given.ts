@@ -6,22 +6,19 @@ import type { SentFile } from "./wire";
 export type GivenFiles = Record<Slot, SentFile | null>;
 
 const NAME = "files";
+/** The end of a path: a page of the site, which somebody has copied with the address. */
+const PAGE = /\/(enter|contest|play|watch|office|referee|replay)?\/*$/;
 
-/** The address of /enter at the site of a typed address; "": what was typed is no address. */
+/** The address of /enter beside the typed page, or below a typed path; "": it is no address. */
 export function enterPage(address: string): string {
   const typed = address.trim();
   if (!typed) return "";
   try {
-    const { origin } = new URL(/^https?:\/\//i.test(typed) ? typed : `http://${typed}`);
-    return `${origin}/enter`;
+    const { origin, pathname } = new URL(/^https?:\/\//i.test(typed) ? typed : `http://${typed}`);
+    return `${origin}${pathname.replace(PAGE, "")}/enter`;
   } catch {
     return "";
   }
-}
-
-/** Whether a host name means the machine on which the page itself is shown. */
-export function isThisMachine(hostname: string): boolean {
-  return hostname === "localhost" || hostname === "[::1]" || /^127(\.\d+){3}$/.test(hostname);
 }
 
 /** Files as a fragment, without its "#". */

@@ -43,7 +43,7 @@ export class BadRecord extends Error {
 }
 
 /** Where the recordings are. */
-const FOLDER = ownPage ? "records" : "/recordings";
+const FOLDER = ownPage ? "records" : "recordings";
 
 /** The address of a recording's replay, beside this page. */
 export function replayAddress(name: string): string {

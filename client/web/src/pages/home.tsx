@@ -14,7 +14,7 @@ export default function Home() {
       <p class="muted">{t("home.title")}</p>
       <nav>
         {WAYS.map((way) => (
-          <a key={way} class="button" href={`/${way}${court ? `?court=${court}` : ""}`}>
+          <a key={way} class="button" href={`${way}${court ? `?court=${court}` : ""}`}>
             {t(`home.${way}` as MessageName)}
           </a>
         ))}

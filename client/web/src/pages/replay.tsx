@@ -244,7 +244,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
       </div>
       <div class="top">
         <div class="corner left">
-          <a class="button others" href={ownPage ? "./" : "/replay"} title={others}>
+          <a class="button others" href={ownPage ? "./" : "replay"} title={others}>
             <Icon name="open" />
             <span>{others}</span>
           </a>

@@ -150,7 +150,7 @@ function Brand() {
   const delay = court.delayMs / 1000 + (court.programme.value?.behind_s ?? 0);
   return (
     <div class="corner left">
-      <a class="brand" href="/">
+      <a class="brand" href="./">
         <b>{court.welcome.value?.contest || "LACOC"}</b>
         <small>
           {sheet && played(sheet)}

@@ -22,14 +22,6 @@ def invite(
         typer.Argument(metavar="TEAM", help="Name of the team; by default all teams of people."),
     ] = None,
     contest: Contest = FILE,
-    pages: Annotated[
-        str | None,
-        typer.Option(
-            metavar="URL",
-            help="Address of the pages, as 'lacoc contest run' prints it; by default port 8080 "
-            "of this machine.",
-        ),
-    ] = None,
     host: options.CourtHost = None,
     json: options.Json = False,
 ) -> None:
@@ -44,7 +36,7 @@ def invite(
     tokens = organiser.tokens(contest, team)
     plan = contests.load(contest)
     any_host = host or own_address()
-    address = (pages or f"http://{any_host}:{_PAGES_PORT}").partition("#")[0].rstrip("/")
+    address = plan.public.pages or f"{plan.public.scheme}://{any_host}:{_PAGES_PORT}"
     lines = {
         name: entrances.team_lines(plan, token, address, any_host) for name, token in tokens.items()
     }
@@ -55,5 +47,5 @@ def invite(
         screen.show(Text(render(say("contest.for-team", team=name)), style="dim"))
         for way in ways.values():
             screen.stdout.print(way, markup=False, soft_wrap=True)  # to be copied whole
-    if pages is None:
+    if not plan.public.pages:
         screen.note(say("contest.invite-pages", pages=address))

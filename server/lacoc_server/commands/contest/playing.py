@@ -108,13 +108,20 @@ def run(
         typer.Option(
             "--entries",
             help="First let teams enter on the page /enter, until entries_close or until you close "
-            "entries on the page /office. /office stays open after the last game, until Ctrl-C. "
-            "Not with --headless.",
+            "entries on the page /office. Not with --headless.",
+        ),
+    ] = False,
+    until_over: Annotated[
+        bool,
+        typer.Option(
+            "--until-over",
+            help="End by itself soon after the last result; by default courts and pages stay until "
+            "Ctrl-C. Not with --headless.",
         ),
     ] = False,
     json: options.Json = False,
 ) -> None:
-    """Play the contest to its end: draw each stage when its teams are known, and play its games.
+    """Play the contest: draw each stage when its teams are known, and play its games.
 
     The office of the contest runs here, with all courts of the contest file, the pages, and the
     bots of teams that are bots. A free court gets the next game; its result comes from the court.
@@ -143,7 +150,10 @@ def run(
             engine = Pool(jobs) if cluster is None else Cluster(cluster, screen.warn)
             sheet, played = organiser.play_headless(file, steer, engine, changed, screen.warn)
         else:
-            sheet, played = _live(file, changed, speed, listen, browser, entries, json), None
+            sheet, played = (
+                _live(file, changed, speed, listen, browser, entries, until_over, json),
+                None,
+            )
     games = sum(len(match.games) for view in sheet.stages for match in view.matches)
     if json:
         screen.print_json({"kind": "end", "played": played, "games": games})
@@ -160,9 +170,10 @@ def _live(
     listen: str | None,
     browser: bool,
     entries: bool,
+    until_over: bool,
     json: bool,
 ) -> "ContestSheet":
-    """Run the contest at its courts until it is over, or until Ctrl-C."""
+    """Run the contest at its courts until Ctrl-C, or until it is over."""
     from lacoc_server.contest.live.run import play_live
 
     def opened(where: "Opened") -> None:
@@ -183,6 +194,7 @@ def _live(
         listen=listen,
         show=browser,
         entering=entries,
+        until_over=until_over,
     )
 
 

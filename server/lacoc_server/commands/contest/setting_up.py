@@ -20,6 +20,7 @@ from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import Gathered, UserError
 from lacoc_shared.network.address import own_address
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import render, say
 
 FILE = Path("contest.toml")
@@ -87,7 +88,7 @@ recordings = "recordings"  # folder of the records, beside this file
 robot = "hexapod"          # for a team that brings none: an installed robot or a file
 least_rest_s = 60          # shortest time between two matches of a team
 # entries_close = 2030-05-01T18:00:00   # else with the first draw
-
+{public}
 [limits]                   # for robots that teams bring; see 'lacoc contest init' without --event
 
 [office]                   # gives the courts their matches
@@ -113,15 +114,30 @@ arena = "{arena}"
 settings.match.start = "ready"
 # settings.match.duration_s = 120.0    # length of a game; else as in the arena's file
 {courts}"""
+_HALL = """
+# pages = "https://lacoc.example.org/"  # where everybody opens the pages; else at this machine
+"""
+_ONLINE = """
+pages = "{pages}"  # as everybody opens the pages: all links begin with it
+proxies = ["{proxy}"]  # whose word about who asks is believed ('lacoc docs online')
+# certificate = "fullchain.pem"        # without a proxy: the gateway encrypts by itself
+# private_key = "privkey.pem"
+"""
 _EVENT_COURT = """
 [court.{court}]
 arena = "{arena}"
-listen = ["0.0.0.0:{port}"]
-# connect = "192.168.1.20:{port}"    # where others reach it
+{where}
 [court.{court}.referee]
 token = "{referee}"
 """
+_HALL_COURT = """\
+listen = ["0.0.0.0:{port}"]
+# connect = "192.168.1.20:{port}"    # where others reach it"""
+_ONLINE_COURT = """\
+listen = ["127.0.0.1:{port}"]        # for this machine only: contestants play on pages
+input_delay = "equal"                # the near and the far contestant have the same delay"""
 _FIRST_PORT = 7447
+_PROXY = "127.0.0.1"
 
 
 def init(
@@ -141,6 +157,17 @@ def init(
     courts: Annotated[
         int, typer.Option(metavar="N", help="Number of courts, with --event.", min=1, max=64)
     ] = 1,
+    pages: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="With --event: plan it for the internet, behind a proxy at this address, such as "
+            "https://lacoc.example.org (see 'lacoc docs online').",
+        ),
+    ] = None,
+    proxy: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="Address or network of that proxy.")
+    ] = _PROXY,
 ) -> None:
     """Write a contest file with comments and fresh tokens.
 
@@ -149,9 +176,9 @@ def init(
     Keys(court)
     if event:
         arenas.load(arena)
-        text = _event(
-            arena, [court] if courts == 1 else [f"{court}-{n + 1}" for n in range(courts)]
-        )
+        names = [court] if courts == 1 else [f"{court}-{n + 1}" for n in range(courts)]
+        public = None if pages is None else PublicAddress.of(pages, proxies=[proxy])
+        text = _event(arena, names, public)
     else:
         seats = "\n".join(
             f'[court.{court}.seat.{seat.id}]\ntoken = "{new_token()}"\n'
@@ -173,13 +200,25 @@ def init(
         screen.note(say("contest.written", file=str(file)))
 
 
-def _event(arena: str, courts: list[str]) -> str:
-    """Return the text of the contest file of an event."""
+def _event(arena: str, courts: list[str], public: PublicAddress | None) -> str:
+    """Return the text of the contest file of an event.
+
+    Args:
+        arena: the courts' game.
+        courts: names of the courts.
+        public: where everybody opens the pages of an event on the internet; None: in a hall.
+    """
+    where = _HALL_COURT if public is None else _ONLINE_COURT
     tables = [
-        _EVENT_COURT.format(court=court, arena=arena, port=port, referee=new_token())
+        _EVENT_COURT.format(
+            court=court, arena=arena, where=where.format(port=port), referee=new_token()
+        )
         for port, court in enumerate(courts, _FIRST_PORT)
     ]
-    return _EVENT.format(arena=arena, office=new_token(), courts="".join(tables))
+    head = _HALL
+    if public is not None:
+        head = _ONLINE.format(pages=f"{public.pages}/", proxy=public.proxies[0])
+    return _EVENT.format(arena=arena, office=new_token(), courts="".join(tables), public=head)
 
 
 def check(file: FileToRead = FILE) -> None:

@@ -41,7 +41,7 @@ end 20 s later, and then the result.
 _COPY_S = 60.0
 """Longest further wait for the newest records of courts on other machines."""
 _SHOWN_S = 60.0
-"""If the office stays, the last match is shown for so long on a court of another machine. Then the
+"""The last match is shown for so long on a court of another machine. Then the
 court closes it, so that its record can be copied whole."""
 
 
@@ -69,8 +69,9 @@ def play_live(
     listen: str | None = None,
     show: bool = False,
     entering: bool = False,
+    until_over: bool = False,
 ) -> ContestSheet:
-    """Run a contest at its courts until it is over.
+    """Run a contest at its courts until it is interrupted.
 
     The courts of the contest file, the gateway and the bots of teams run as processes of their own;
     each is started again if it ends.
@@ -85,13 +86,15 @@ def play_live(
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.
         entering: whether teams may enter until the time in the contest file, or until the organiser
-            closes entries, and the office stays after the last game until it is interrupted; False:
-            the first stage is drawn at once.
+            closes entries; False: the first stage is drawn at once.
+        until_over: whether to end soon after the contest is over; False: courts, pages and office
+            stay until somebody interrupts them.
 
     Returns:
         The sheet at the end.
 
     Raises:
+        KeyboardInterrupt: if it is interrupted before the contest is over.
         UserError: if the contest runs already, has no stage, no office or too few teams, or
             something goes wrong.
     """
@@ -137,22 +140,28 @@ def play_live(
         over_s = math.inf  # when the contest was over, as far as is known
         is_late = speed <= 1 and len(addresses) > 1
         farewell_s = _LATE_S if is_late else _FAREWELL_S
-        shown_s = _SHOWN_S if entering else farewell_s
-        while True:
-            office.step()
-            now_s = time.monotonic()
-            if office.over and over_s == math.inf and is_late and not entering:
-                tell(say("contest.stays", seconds=farewell_s))
-            over_s = min(over_s, now_s) if office.over else math.inf
-            for elsewhere in away:
-                elsewhere.step(office, closing=now_s - over_s > shown_s)
-            writer(office.contest)
-            bots.follow(office.contest)
-            for line in ticker.newest(office.contest, office.facts, office.known):
-                news(line)
-            if not entering and _is_done(now_s - over_s - farewell_s, away):
-                return writer.write()
-            time.sleep(_STEP_S)
+        shown_s = farewell_s if until_over else _SHOWN_S
+        try:
+            while not (until_over and _is_done(time.monotonic() - over_s - farewell_s, away)):
+                office.step()
+                now_s = time.monotonic()
+                if office.over and over_s == math.inf:
+                    if not until_over:
+                        tell(say("contest.is-over", url=f"{url}/contest"))
+                    elif is_late:
+                        tell(say("contest.stays", seconds=farewell_s))
+                over_s = min(over_s, now_s) if office.over else math.inf
+                for elsewhere in away:
+                    elsewhere.step(office, closing=now_s - over_s > shown_s)
+                writer(office.contest)
+                bots.follow(office.contest)
+                for line in ticker.newest(office.contest, office.facts, office.known):
+                    news(line)
+                time.sleep(_STEP_S)
+        except KeyboardInterrupt:
+            if not office.over:
+                raise
+        return writer.write()
 
 
 def _run_here(

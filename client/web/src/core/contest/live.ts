@@ -27,7 +27,7 @@ export class LiveScores {
   private async look(): Promise<void> {
     if (!document.hidden) {
       try {
-        const response = await fetch(ADDRESS, { cache: "no-store" });
+        const response = await fetch(ADDRESS, { cache: "no-cache" });
         this.scores.value = response.ok ? ((await response.json()) as CourtScore[]) : [];
       } catch {
         this.scores.value = []; // the page says already that nobody answers

@@ -1,5 +1,6 @@
 /** The head of the page: how students join, who is here, and what is wrong. */
 
+import { pagesUrl, short } from "../../core/address";
 import { said, t } from "../../i18n";
 import { Icon, IconButton } from "../../ui/icons";
 import { toast } from "../../ui/toasts";
@@ -109,12 +110,7 @@ export function Troubles({ teacher }: { teacher: Teacher }) {
 
 /** What students type into their browsers. */
 export function addressOf(teacher: Teacher): string {
-  return teacher.state.value?.addresses[0] ?? location.origin;
-}
-
-/** An address without what every browser adds by itself. */
-export function short(address: string): string {
-  return address.replace(/^http:\/\//, "").replace(/\/$/, "");
+  return teacher.state.value?.addresses[0] ?? pagesUrl();
 }
 
 function Address({ teacher }: { teacher: Teacher }) {

@@ -1,10 +1,11 @@
 /** What fills the screen, for the whole room: how to join, and the standings. */
 
+import { short } from "../../core/address";
 import { t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
 import { toggleFullscreen } from "../../ui/screen";
 import { Frame } from "./frame";
-import { addressOf, short } from "./head";
+import { addressOf } from "./head";
 import type { Teacher } from "./teacher";
 import { Standings } from "./tournament";
 import { Walk } from "./walk";

@@ -88,7 +88,7 @@ export class Teacher {
 
   constructor() {
     this.connection = new Connection(
-      socketUrl("/class/ws"),
+      socketUrl("class/ws"),
       () => this.connection.ask("hello", { key: runKey() ?? "" }),
       (message) => this.take(message),
     );

@@ -23,7 +23,7 @@ export class Gateway {
    * @param take Takes in a message that is not a reply.
    */
   constructor(greet: () => Promise<void>, take: (message: Message) => void) {
-    this.connection = new Connection(socketUrl("/design/ws"), greet, take);
+    this.connection = new Connection(socketUrl("design/ws"), greet, take);
   }
 
   get state() {

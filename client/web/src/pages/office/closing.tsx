@@ -55,7 +55,7 @@ export function DrawDialog({ organiser, view }: Props) {
             <li key={team}>{team}</li>
           ))}
         </ol>
-        <a href="/contest" target="_blank" rel="noreferrer">
+        <a href="contest" target="_blank" rel="noreferrer">
           {t("office.draw.table")}
         </a>
         <button

@@ -1,5 +1,6 @@
 /** The head of the office: the contest, how teams enter, what to print, and the next step. */
 
+import { short } from "../../core/address";
 import { stateOf } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
 import { language, t } from "../../i18n";
@@ -35,7 +36,7 @@ export function Head({ organiser, view, onSettings }: Props) {
           <div>
             <dt>{t("office.enterAt")}</dt>
             <dd>
-              <a href="/enter">{`${organiser.host.value}/enter`}</a>
+              <a href="enter">{`${short(organiser.pages.value)}/enter`}</a>
             </dd>
           </div>
           <div>
@@ -97,7 +98,7 @@ export function Head({ organiser, view, onSettings }: Props) {
             ))}
           </select>
         </label>
-        <a class="button" href="/contest">
+        <a class="button" href="contest">
           {t("contest.title")}
         </a>
         <IconButton name="settings" label={t("settings.title")} onClick={onSettings} />

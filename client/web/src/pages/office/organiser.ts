@@ -1,7 +1,7 @@
 /** What the organiser's page knows of the contest, and what it asks of the office. */
 
 import { computed, signal } from "@preact/signals";
-import { organiserKey } from "../../core/address";
+import { organiserKey, pagesUrl } from "../../core/address";
 import { Refused } from "../../core/connection";
 import { Feed } from "../../core/contest/feed";
 import {
@@ -14,7 +14,6 @@ import {
   type Said,
   type TeamRow,
 } from "../../core/desk";
-import { isThisMachine } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
 import { said, sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
@@ -48,8 +47,8 @@ export class Organiser {
   readonly feed = new Feed();
   readonly view = signal<OfficeView | null>(null);
   readonly links = signal<Links | null>(null);
-  /** Host and port for teams; other machines can't use the host if it means this machine. */
-  readonly host = signal(location.host);
+  /** Address of the pages for everybody: this page may have been opened at another one. */
+  readonly pages = signal(pagesUrl());
   readonly over = signal<Over | null>(null);
   /** Why the last request for the overview failed; null: it did not. */
   readonly trouble = signal<Phrase | null>(null);
@@ -111,9 +110,9 @@ export class Organiser {
     }
   }
 
-  private async getHost(): Promise<void> {
+  private async getPages(): Promise<void> {
     const { address } = await this.desk.connection.ask<{ address: string }>("address");
-    this.host.value = new URL(address).host;
+    this.pages.value = address;
   }
 
   private again(afterMs: number): void {
@@ -127,7 +126,7 @@ export class Organiser {
     try {
       const wish: AnyRequest = { do: "overview", known, secret: this.key };
       const { view } = await this.desk.ask<Overviewed>(wish);
-      if (view && !this.view.peek() && isThisMachine(location.hostname)) await this.getHost();
+      if (view && !this.view.peek()) await this.getPages();
       if (view) this.view.value = view;
       this.trouble.value = null;
     } catch (error) {

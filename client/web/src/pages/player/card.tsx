@@ -50,7 +50,7 @@ function WatchOnly({ alone }: { alone: boolean }) {
     <section class="card entrance" aria-labelledby="entrance-title">
       <h1 id="entrance-title">{t("watching.title")}</h1>
       <p>{t(alone ? "watching.practice" : "watching.text")}</p>
-      <a class="button strong" href={`/watch${location.search}`}>
+      <a class="button strong" href={`watch${location.search}`}>
         {t("watching.watch")}
       </a>
     </section>

@@ -38,14 +38,14 @@ export function TeamCard({ court, team }: Props) {
         )}
       </div>
       {isOver ? (
-        <a class="button strong" href={`/watch${location.search}`}>
+        <a class="button strong" href={`watch${location.search}`}>
           {t("watching.watch")}
         </a>
       ) : (
         <p class="muted">{t("team.byItself")}</p>
       )}
       {court.welcome.value?.desk && !isOver && (
-        <a class="button quiet small" href="/enter">
+        <a class="button quiet small" href="enter">
           {t("team.files")}
         </a>
       )}

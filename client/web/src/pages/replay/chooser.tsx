@@ -33,7 +33,7 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
     <div class="chooser">
       <header>
         <h1>{t("replay.title")}</h1>
-        {ownPage ? <a href="./">{t("home.contest")}</a> : <a href="/watch">{t("home.watch")}</a>}
+        {ownPage ? <a href="./">{t("home.contest")}</a> : <a href="watch">{t("home.watch")}</a>}
       </header>
       {trouble && (
         <p class="trouble" role="alert">

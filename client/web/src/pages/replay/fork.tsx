@@ -43,11 +43,7 @@ export function ForkNote({ recording, beside, server, onBeside }: Props) {
         </button>
       )}
       {server !== null && !ownPage && (
-        <a
-          class="button quiet"
-          href={`/recordings/${encodeURIComponent(server)}`}
-          download={server}
-        >
+        <a class="button quiet" href={`recordings/${encodeURIComponent(server)}`} download={server}>
           {t("replay.save")}
         </a>
       )}

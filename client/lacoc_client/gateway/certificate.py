@@ -1,0 +1,77 @@
+"""The certificate with which a gateway proves its name to browsers; it can be renewed meanwhile."""
+
+import ssl
+from pathlib import Path
+
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.network.public import PublicAddress
+from lacoc_shared.words import say
+
+
+class Certificate:
+    """A certificate and its key, as a TLS context that takes newer ones.
+
+    Args:
+        certificate: file of the certificate (PEM), with those between it and a known authority.
+        private_key: file of its key (PEM).
+
+    Raises:
+        UserError: if they can't be read, or do not belong together.
+    """
+
+    def __init__(self, certificate: Path, private_key: Path) -> None:
+        self._files = certificate, private_key
+        self._seen = self._versions()
+        self.context = self._loaded()
+
+    def renew(self) -> bool:
+        """Read the files again if they have changed; return whether they were read.
+
+        Connections that are open go on; the next one gets the new certificate.
+
+        Raises:
+            UserError: if the new files can't be read, or do not belong together; the certificate
+                stays as it was. This is said once, until the files change again.
+        """
+        versions = self._versions()
+        if versions == self._seen:
+            return False
+        self._seen = versions
+        self._loaded()  # half of a new pair must not replace the old one
+        self.context.load_cert_chain(*self._files, password="")
+        return True
+
+    def _loaded(self) -> ssl.SSLContext:
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        try:
+            context.load_cert_chain(*self._files, password="")  # without it, it would ask
+        except ssl.SSLError as error:
+            why = say("public.no-pair", why=error.reason or str(error))
+        except OSError as error:
+            why = say("public.unreadable", why=error.strerror or str(error))
+        else:
+            return context
+        names = [text_of(file) for file in self._files]
+        raise UserError(say("public.wrong-certificate", files=names, why=why))
+
+    def _versions(self) -> list[tuple[int, int]]:
+        """Return times and sizes of the files; zeros for one that is missing."""
+        found = []
+        for file in self._files:
+            try:
+                stat = file.stat()
+                found.append((stat.st_mtime_ns, stat.st_size))
+            except OSError:
+                found.append((0, 0))
+        return found
+
+
+def certificate_of(public: PublicAddress) -> Certificate | None:
+    """Return the certificate of a public address; None if it has none.
+
+    Raises:
+        UserError: if it can't be read.
+    """
+    if public.certificate is None or public.private_key is None:
+        return None
+    return Certificate(public.certificate, public.private_key)

@@ -1,0 +1,126 @@
+"""The address at which everybody opens the pages, and who encrypts the way to them.
+
+Pages are served at a port of this machine. Others may open them at another address: a domain name
+that leads here, or the address of a proxy (docs/online.md).
+"""
+
+import ipaddress
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Self
+from urllib.parse import SplitResult, urlsplit
+
+import msgspec
+
+from lacoc_shared.mistakes import Gathered, UserError, printable
+from lacoc_shared.words import say
+
+_STANDARD = {"http": 80, "https": 443}
+_ADDRESS = re.compile(
+    r"(?P<scheme>https?)://(?P<host>[a-z0-9.-]+|\[[0-9a-f:.]+\])(:(?P<port>[0-9]{1,5}))?"
+    r"(?P<path>(/[\w.~-]+)*/*)",
+    re.ASCII | re.IGNORECASE,
+)
+
+
+class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
+    """How others reach the pages."""
+
+    pages: str = ""
+    """Address of the pages without a slash at its end, such as "https://uni.example/lacoc"; "": the
+    address of this machine.
+    """
+    certificate: Path | None = None
+    """Certificate (PEM, with those between it and a known authority); None: the gateway does not
+    encrypt."""
+    private_key: Path | None = None
+    """The certificate's key (PEM)."""
+    proxies: tuple[str, ...] = ()
+    """Addresses or networks of proxies that say truly who asks, in `X-Forwarded-For`."""
+
+    @classmethod
+    def of(
+        cls,
+        pages: str = "",
+        certificate: Path | None = None,
+        private_key: Path | None = None,
+        proxies: Iterable[str] = (),
+    ) -> Self:
+        """Make a public address; arguments as its attributes, but not checked yet.
+
+        Raises:
+            UserError: if something is wrong; the message names everything.
+        """
+        found, address = Gathered(), ""
+        networks: tuple[str, ...] = ()
+        with found:
+            address = _address(pages)
+        with found:
+            networks = tuple(map(_network, proxies))
+        with found:
+            if (certificate is None) != (private_key is None):
+                raise UserError(say("public.half-a-pair"))
+        with found:
+            if certificate is not None and address.startswith("http:"):
+                raise UserError(say("public.not-https", pages=address))
+        found.check()
+        return cls(
+            pages=address, certificate=certificate, private_key=private_key, proxies=networks
+        )
+
+    @property
+    def host(self) -> str:
+        """The host of the pages in small letters; "" if there is no address."""
+        return self._parts.hostname or ""
+
+    @property
+    def path(self) -> str:
+        """The path below which the pages are, such as "/lacoc"; "" if they are at the top."""
+        return self._parts.path
+
+    @property
+    def origin(self) -> str:
+        """What browsers give as the origin of the pages; "" if there is no address."""
+        return f"{self._parts.scheme}://{self._parts.netloc}" if self.pages else ""
+
+    @property
+    def scheme(self) -> str:
+        """The scheme of the port's own address."""
+        return "http" if self.certificate is None else "https"
+
+    @property
+    def _parts(self) -> SplitResult:
+        return urlsplit(self.pages)
+
+
+def _address(pages: str) -> str:
+    """Return the address without a slash at its end, host and scheme in small letters."""
+    if not pages.strip():
+        return ""
+    match = _ADDRESS.fullmatch(pages.strip())
+    wrong = UserError(say("public.not-an-address", pages=printable(pages, 200)))
+    if match is None:
+        raise wrong
+    scheme, host = match["scheme"].lower(), match["host"].lower()
+    port = int(match["port"] or _STANDARD[scheme])
+    if not 0 < port < 65_536 or (host[0] == "[" and not _is_number(host[1:-1])):
+        raise wrong
+    where = host if port == _STANDARD[scheme] else f"{host}:{port}"
+    return f"{scheme}://{where}{match['path'].rstrip('/')}"
+
+
+def _is_number(host: str) -> bool:
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
+def _network(proxy: str) -> str:
+    try:
+        network = ipaddress.ip_network(proxy.strip(), strict=False)
+    except ValueError:
+        raise UserError(say("public.not-a-proxy", proxy=printable(proxy, 80))) from None
+    return str(network if network.num_addresses > 1 else network.network_address)

@@ -1,0 +1,117 @@
+"""Runs the proxies of examples/online on loopback, with an authority of the test's own."""
+
+import shutil
+import socket
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+import trustme
+from debian import install, locked
+from waiting import LIMIT_S, until
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "online"
+
+
+class Pair(NamedTuple):
+    """A certificate and its key, as files."""
+
+    certificate: Path
+    private_key: Path
+
+
+def issue(folder: Path, authority: trustme.CA, name: str) -> Pair:
+    """Write a certificate for a host name into a folder, in place of an older one."""
+    made = authority.issue_cert(name)
+    pair = Pair(folder / "fullchain.pem", folder / "privkey.pem")
+    pair.private_key.write_bytes(made.private_key_pem.bytes())
+    pair.certificate.write_bytes(b"".join(one.bytes() for one in made.cert_chain_pems))
+    return pair
+
+
+@contextmanager
+def caddy(folder: Path, pair: Pair, name: str, port: int, gateway: str) -> Iterator[None]:
+    """Run Caddy with the example's settings before a gateway.
+
+    Args:
+        folder: an empty folder.
+        pair: the certificate.
+        name: host name of the pages.
+        port: where Caddy listens.
+        gateway: where the gateway listens, "HOST:PORT".
+    """
+    text = (EXAMPLES / "Caddyfile").read_text("utf-8")
+    tls = f"\ttls {pair.certificate} {pair.private_key}\n\treverse_proxy"
+    text = text.replace("\treverse_proxy", tls)
+    settings = "{\n\tadmin off\n\tauto_https off\n}\n"
+    (folder / "Caddyfile").write_text(settings + text)
+    environment = {
+        "LACOC_NAME": f"https://{name}:{port}",
+        "LACOC_GATEWAY": gateway,
+        "HOME": str(folder),
+        "XDG_DATA_HOME": str(folder),
+        "PATH": "/usr/bin:/bin",
+    }
+    words = ["run", "--adapter", "caddyfile", "--config", str(folder / "Caddyfile")]
+    with _running(folder, [_program("caddy"), *words], port, environment):
+        yield
+
+
+@contextmanager
+def nginx(folder: Path, pair: Pair, name: str, port: int, gateway: str) -> Iterator[None]:
+    """Run nginx with the example's settings before a gateway; arguments as in `caddy`."""
+    text = (EXAMPLES / "nginx.conf").read_text("utf-8")
+    for wanted, own in (
+        ("listen 443 ssl", f"listen 127.0.0.1:{port} ssl"),
+        ("server_name uni.example", f"server_name {name}"),
+        ("/etc/letsencrypt/live/uni.example/fullchain.pem", str(pair.certificate)),
+        ("/etc/letsencrypt/live/uni.example/privkey.pem", str(pair.private_key)),
+        ("127.0.0.1:8080", gateway),
+    ):
+        assert wanted in text
+        text = text.replace(wanted, own)
+    kinds = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+    places = "".join(f"{kind}_temp_path {folder}/{kind};\n" for kind in kinds)
+    (folder / "nginx.conf").write_text(
+        f"daemon off;\npid {folder}/nginx.pid;\nerror_log {folder}/error.log;\n"
+        f"events {{}}\nhttp {{\naccess_log off;\n{places}{text}}}\n"
+    )
+    words = ["-p", str(folder), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")]
+    with _running(folder, [_program("nginx"), *words], port, None):
+        yield
+
+
+@contextmanager
+def _running(
+    folder: Path, command: list[str], port: int, environment: dict[str, str] | None
+) -> Iterator[None]:
+    with (folder / "said.log").open("wb") as log:
+        process = subprocess.Popen(command, stdout=log, stderr=log, env=environment)
+    try:
+        until(lambda: _answers(port) or process.poll() is not None)
+        assert process.poll() is None, (folder / "said.log").read_text()
+        yield
+    finally:
+        process.terminate()
+        process.wait(LIMIT_S)
+
+
+def _answers(port: int) -> bool:
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def _program(name: str) -> str:
+    """Return the path of a proxy's program; install it on Debian if it is missing."""
+    where = "/usr/local/sbin:/usr/sbin:/usr/local/bin:/usr/bin:/bin"
+    with locked(name):
+        found = shutil.which(name) or shutil.which(name, path=where)
+        if found is None:
+            install({"nginx": "nginx-light"}.get(name, name))
+            found = shutil.which(name, path=where)
+    if found is None:
+        pytest.fail(f"This test needs {name}: install it (Debian: apt-get install {name}).")
+    return found
