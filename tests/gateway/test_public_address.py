@@ -16,12 +16,12 @@ from hypothesis import strategies as st
 from proxies import Pair, issue
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
-from starlette.types import Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 from waiting import LIMIT_S, until
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 
-from lacoc_client.gateway import server
+from lacoc_client.gateway import guard, page_socket, server
 from lacoc_client.gateway.certificate import Certificate
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
@@ -46,11 +46,11 @@ async def echo(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 @contextmanager
-def served(public: PublicAddress) -> Iterator[server.Port]:
-    """Serve `echo` at a public address; give the port."""
+def served(public: PublicAddress, app: ASGIApp = echo) -> Iterator[server.Port]:
+    """Serve an application at a public address; give the port."""
     ended = threading.Event()
     with server.listen(server.LOOPBACK, public) as port:
-        thread = threading.Thread(target=server.serve, args=(echo, port, ended.is_set))
+        thread = threading.Thread(target=server.serve, args=(app, port, ended.is_set))
         thread.start()
         try:
             yield port
@@ -112,6 +112,59 @@ def test_only_a_named_proxy_says_who_asks(proxies: tuple[str, ...], seen: str) -
     with served(PublicAddress.of(PAGES, proxies=proxies)) as port:
         scheme = "https" if proxies else "http"
         assert ask(port, "/watch", **headers)[1] == f"/watch {seen} {scheme}"
+
+
+def sit_down(port: server.Port, machine: str) -> ClientConnection:
+    """Open a WebSocket as a machine behind a proxy."""
+    at = "ws://{}:{}/ws".format(*port.socket.getsockname())
+    return connect(at, additional_headers={"X-Forwarded-For": machine})
+
+
+def test_no_machine_takes_the_places_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine has its share of WebSockets; a further one is told why, and others come in."""
+    monkeypatch.setattr(guard, "SOCKETS_MOST", 3)
+
+    async def held(scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.accept"})
+            while (await receive())["type"] != "websocket.disconnect":
+                pass
+
+    public = PublicAddress.of(PAGES, proxies=["127.0.0.1"])
+    with served(public, held) as port, contextlib.ExitStack() as stack:
+        pages = [stack.enter_context(sit_down(port, "192.0.2.1")) for _ in range(3)]
+        with pytest.raises(InvalidStatus) as refused:
+            sit_down(port, "192.0.2.1")
+        assert refused.value.response.status_code == 429
+        assert ask(port, "/ws", "POST", **{"X-Forwarded-For": "192.0.2.1"})[0] == 429
+        stack.enter_context(sit_down(port, "192.0.2.2"))
+        pages[0].close()
+        until(lambda: ask(port, "/ws", "POST", **{"X-Forwarded-For": "192.0.2.1"})[0] == 426)
+        stack.enter_context(sit_down(port, "192.0.2.1"))
+        for _ in range(5):  # this machine itself, or a proxy here that nobody named
+            stack.enter_context(sit_down(port, "127.0.0.1"))
+
+
+def test_a_machine_holds_only_so_many_connections(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A further connection is closed at once, unless a proxy asks for others."""
+    monkeypatch.setattr(page_socket, "CONNECTIONS_MOST", 3)
+    monkeypatch.setattr(page_socket, "is_local", lambda _: False)
+
+    def is_taken(one: socket.socket) -> bool:
+        one.sendall(b"GET /watch HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        try:
+            return one.recv(100).startswith(b"HTTP/1.1 200")
+        except ConnectionResetError:
+            return False
+
+    for proxies, taken in (((), 3), (["127.0.0.0/8"], 5)):
+        with (
+            served(PublicAddress.of(PAGES, proxies=proxies)) as port,
+            contextlib.ExitStack() as stack,
+        ):
+            at = port.socket.getsockname()
+            many = [stack.enter_context(socket.create_connection(at, LIMIT_S)) for _ in range(5)]
+            assert sum(map(is_taken, many)) == taken
 
 
 def serial(port: server.Port, authority: trustme.CA) -> str:

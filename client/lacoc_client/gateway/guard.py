@@ -1,4 +1,4 @@
-"""Decides who may talk to a gateway: browsers that opened its page, and no other site's pages.
+"""Decides who may talk to a gateway: browsers that opened its page, and each machine its share.
 
 Any web site can make a browser send requests to 127.0.0.1. So the Host must be a name of this
 machine, the name of its public address, or an IP address: another site's name could be made to
@@ -9,6 +9,7 @@ the Host by the gateway's own address; then the origin is still that of the publ
 import ipaddress
 import re
 import socket
+from collections import Counter
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -25,6 +26,9 @@ _POLICY = (
     "frame-ancestors {ancestors}"
 )
 _HOST = re.compile(r"(\[(?P<number>[0-9A-Fa-f:.]+)\]|(?P<name>[^][:]+))(:[0-9]*)?")
+SOCKETS_MOST = 200
+"""Most WebSockets of one machine: half of the pages that may watch. A school of 35 behind one
+address has five pages for each; and no machine alone can take all places."""
 _EMBEDDABLE = ("/overlay",)
 """Pages that other sites may embed: they take no input."""
 
@@ -48,6 +52,8 @@ class Guard:
         self._app = app
         self._public = public
         self._names = machine_names() | ({public.host} - {""})
+        self._held: Counter[str] = Counter()
+        """WebSockets that are open, by the address of their machine."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Let a connection in, or refuse it."""
@@ -60,7 +66,17 @@ class Guard:
                 _add_headers(MutableHeaders(scope=message), scope["path"])
             await send(message)
 
-        await (self._instead(scope) or self._app)(scope, receive, send_safely)
+        app = self._instead(scope) or self._app
+        if scope["type"] == "http":
+            await app(scope, receive, send_safely)
+            return
+        machine = machine_of(scope)
+        self._held[machine] += 1
+        try:
+            await app(scope, receive, send_safely)
+        finally:
+            self._held[machine] -= 1
+            self._held += Counter()  # forgets those with none
 
     def _instead(self, scope: Scope) -> ASGIApp | None:
         """Return what answers in place of the application, if anything does."""
@@ -71,7 +87,11 @@ class Guard:
             return RedirectResponse(f"{below}/")  # else the page would look for its parts beside it
         if below and scope["path"].startswith(f"{below}/"):  # a proxy may have taken it away
             scope["path"] = scope["path"].removeprefix(below)
-        if scope["type"] == "http" and scope["path"].endswith("/ws"):
+        at_socket = scope["type"] == "websocket" or scope["path"].endswith("/ws")
+        machine = machine_of(scope)
+        if at_socket and self._held[machine] >= SOCKETS_MOST and not is_local(machine):
+            return answer(scope, say("gateway.machine-full", most=SOCKETS_MOST), 429)
+        if at_socket and scope["type"] == "http":
             return answer(scope, say("gateway.no-websocket"), 426)
         return None
 
@@ -89,6 +109,20 @@ class Guard:
             if len(origins) > 1 or not (same or origins[0].lower() == self._public.origin):
                 return say("gateway.other-site", origin=origins[0][:80])
         return None
+
+
+def machine_of(scope: Scope) -> str:
+    """Return the address of the machine that asks, as far as proxies are believed; else ""."""
+    client = scope.get("client")
+    return client[0] if client else ""
+
+
+def is_local(machine: str) -> bool:
+    """Return whether an address is one of this machine itself, or a proxy here that is not named.
+
+    A limit for each machine would then be one for everybody.
+    """
+    return _is_number(machine) and ipaddress.ip_address(machine).is_loopback
 
 
 def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:

@@ -13,9 +13,9 @@ Kind = Literal["venue", "player", "practice"]
 
 VIEWERS_MOST = 400
 """Most pages that only watch: 25 frames a second for 400 pages need 3 MB/s."""
-ACTING_MOST = 100
+ACTING_MOST = 250
 """Most pages with the page key, in addition: several for each seat and referee of a large
-contest.
+contest, and more than one machine may have.
 """
 
 

@@ -16,6 +16,9 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.http11 import Request
 
+from lacoc_client.gateway.guard import is_local
+from lacoc_shared.network.public import is_proxy
+
 KEPT_BYTES = 1 << 20
 """Most bytes that may wait for a page; a page with more is cut off: it has gone or is too slow."""
 _UNSENT_BYTES = 4096
@@ -27,6 +30,8 @@ buffers on the way, however large, never fill with old frames.
 _WATCHED_PING_S = 0.3
 REQUEST_S = 20.0
 """Longest time in which a request must arrive, from its first byte to its last [s]."""
+CONNECTIONS_MOST = 500
+"""Most connections of one machine: a browser opens six, beside its WebSocket."""
 
 
 class PageSocket(WebSocketsSansIOProtocol):
@@ -92,7 +97,8 @@ class PageSocket(WebSocketsSansIOProtocol):
 class PageRequests(H11Protocol):
     """A connection of a browser; it is closed if it holds half a request for too long.
 
-    Else whoever opens connections and sends half a request on each could hold them all for ever.
+    Else whoever opens connections and sends half a request on each could hold them all for ever. A
+    machine that holds very many gets no more, unless it is a proxy, which asks for others.
     """
 
     _too_late: asyncio.TimerHandle | None = None
@@ -100,6 +106,13 @@ class PageRequests(H11Protocol):
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Take over a connection; see `asyncio.Protocol`."""
         super().connection_made(transport)
+        clients = (getattr(one, "client", None) for one in self.connections)
+        machine = self.client[0] if self.client else ""
+        held = sum(client is not None and client[0] == machine for client in clients)
+        asks_for_others = is_local(machine) or is_proxy(machine, self.config.forwarded_allow_ips)
+        if held > CONNECTIONS_MOST and not asks_for_others:
+            transport.abort()
+            return
         self._wait()
 
     def connection_lost(self, exc: Exception | None) -> None:

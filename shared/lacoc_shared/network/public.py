@@ -6,7 +6,7 @@ that leads here, or the address of a proxy (docs/online.md).
 
 import ipaddress
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Self
 from urllib.parse import SplitResult, urlsplit
@@ -92,6 +92,14 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def _parts(self) -> SplitResult:
         return urlsplit(self.pages)
+
+
+def is_proxy(machine: str, proxies: Sequence[str] | str | None) -> bool:
+    """Return whether an address belongs to one of the proxies, as `PublicAddress.proxies`."""
+    if not proxies or not _is_number(machine):
+        return False
+    found = ipaddress.ip_address(machine)
+    return any(found in ipaddress.ip_network(one) for one in proxies)
 
 
 def _address(pages: str) -> str:

@@ -66,6 +66,7 @@ const DOUBTS = 3;
 const IN_THE_WAY: Readonly<Record<number, string>> = {
   403: "page.not-let-in",
   426: "page.no-websocket",
+  429: "page.machine-full",
   502: "page.no-gateway",
   503: "page.no-gateway",
   504: "page.no-gateway",
