@@ -102,6 +102,7 @@ def web_command(
         contest=plan.given_name if plan else "",
         sheet=contests.sheet_path(contest) if contest else None,
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
+        keeps_back=plan is not None and plan.replays != "at-once",
         desk=office is not None,
         viewers_most=viewers,
         exporter=exporter,

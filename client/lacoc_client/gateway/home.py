@@ -49,6 +49,8 @@ class Home:
     """Folder of the recordings that pages may fetch."""
     sheet: Path | None = None
     """The newest sheet of the contest, which its office writes."""
+    keeps_back: bool = False
+    """Whether pages may fetch only the recordings that the sheet names."""
     desk: bool = False
     """Whether there are the pages of a contest's desk: /enter and /office."""
     viewers_most: int = VIEWERS_MOST

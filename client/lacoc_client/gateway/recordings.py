@@ -6,7 +6,7 @@ just seen would be missing, so the gateway packs a copy of what is there.
 
 import contextlib
 import subprocess
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Lock
@@ -46,11 +46,18 @@ class Recordings:
     Args:
         folder: the folder; None: there are no recordings.
         over: returns the ids of the matches that are over but still open at their courts.
+        shown: returns the names of the recordings that everybody may see; None: all of them.
     """
 
-    def __init__(self, folder: Path | None, over: Callable[[], Iterable[str]]) -> None:
+    def __init__(
+        self,
+        folder: Path | None,
+        over: Callable[[], Iterable[str]],
+        shown: Callable[[], Collection[str]] | None = None,
+    ) -> None:
         self._folder = folder
         self._over = over
+        self._shown = shown
         self._copies = Scratch("recordings")
         self.own = self._copies.path
         """Folder of the gateway's own records: copies, and forks that pages ask for."""
@@ -100,18 +107,21 @@ class Recordings:
     def _paths(self) -> dict[str, Path]:
         if self._folder is None:
             return {}
-        copies = self.own.glob(f"*{_RECORDING}")
-        packed = self._folder.glob(f"*{_RECORDING}")
+        own = self.own.glob(f"*{_RECORDING}")
+        packed = list(self._folder.glob(f"*{_RECORDING}"))
+        if self._shown is not None:
+            shown = self._shown()
+            packed = [path for path in packed if path.name in shown]
         return {
             path.name: path
-            for path in (*copies, *packed)
+            for path in (*own, *packed)
             if regular.is_regular(path) and not path.name.endswith(_SEGMENT)
         }
 
     def _copy(self) -> None:
-        """Start copying the matches that are over and not packed."""
+        """Start copying the matches that are over and not packed, unless some are kept back."""
         folder = self._folder
-        for match_id in self._over() if folder is not None else ():
+        for match_id in self._over() if folder is not None and self._shown is None else ():
             assert folder is not None
             segments = files.segment_paths(folder, match_id)
             if match_id in self._copying or not segments:

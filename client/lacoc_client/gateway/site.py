@@ -31,6 +31,7 @@ from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.scores import scores_route
+from lacoc_client.gateway.shown import Shown
 from lacoc_client.gateway.wire import REQUEST_BYTES, too_long
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -68,7 +69,8 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         more: further pages.
     """
     courts = Courts(home)
-    shelf = Recordings(home.recordings, courts.over)
+    shown = Shown(home.sheet) if home.keeps_back and home.sheet is not None else None
+    shelf = Recordings(home.recordings, courts.over, shown)
     forks = Forks(shelf.own)
     if home.exporter is not None:
         home.exporter.registry.register(GatewayMetrics(courts))

@@ -22,6 +22,7 @@ from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.contest.wrong_value import convert
 from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages.desk import Replays
 from lacoc_shared.mistakes import Gathered, UserError, printable
 from lacoc_shared.network.address import (
     ANY_HOST,
@@ -153,6 +154,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Limits for robots, by name, where they differ from the defaults (rules 1)."""
     health: HealthLimits = HealthLimits()
     """Limits beyond which a match should be played again."""
+    replays: Replays = "at-once"
+    """From when everybody may see the records, which hold the gaits of both teams."""
     public: PublicAddress = PublicAddress()
     """How everybody reaches the pages."""
     keys: KeyFolder | None = None
@@ -294,6 +297,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
     keys: _PathText | None = None
+    replays: Replays = "at-once"
     pages: str = ""
     certificate: _PathText | None = None
     private_key: _PathText | None = None
@@ -352,6 +356,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         robot=robot,
         limits=limits,
         health=health,
+        replays=general.replays,
         public=public,
         keys=keys,
         office=office,

@@ -17,6 +17,10 @@ DESK_MAX_BYTES = 98_304
 REPLY_MAX_BYTES = 2 << 20
 """Longest answer that is read."""
 
+Replays = Literal["at-once", "after-stage", "after-contest"]
+"""From when everybody may see the record of a game: at once, or when its stage or the contest is
+over."""
+
 _Name = Annotated[str, msgspec.Meta(max_length=64)]
 _Text = Annotated[str, msgspec.Meta(max_length=500)]
 
@@ -202,6 +206,8 @@ class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
     """Whether teams can apply, and change their files."""
     closes_ms: int
     """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them."""
+    replays: Replays
+    """From when everybody may see the records of games."""
 
 
 class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):

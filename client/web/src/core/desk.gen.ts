@@ -116,6 +116,7 @@ export interface EventInfo {
   name: string;
   open: boolean;
   closes_ms: number;
+  replays: "at-once" | "after-stage" | "after-contest";
 }
 
 export interface OwnEntry {

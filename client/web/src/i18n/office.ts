@@ -157,6 +157,18 @@ export const office = {
   "enter.code": ["Event code", "イベントコード"],
   "enter.team": ["Name of the team", "チーム名"],
   "enter.files": ["Files of the robot", "ロボットのファイル"],
+  "enter.replays.at-once": [
+    "Everybody can see the replay of each game, and in it your robot and gait, as soon as it is over.",
+    "ゲームが終わるとすぐ、だれでもリプレイを見られます。リプレイにはあなたのロボットと歩容が含まれます。",
+  ],
+  "enter.replays.after-stage": [
+    "Everybody can see the replay of each game, and in it your robot and gait, when its stage is over.",
+    "ステージが終わると、だれでもリプレイを見られます。リプレイにはあなたのロボットと歩容が含まれます。",
+  ],
+  "enter.replays.after-contest": [
+    "Everybody can see the replay of each game, and in it your robot and gait, when the contest is over.",
+    "大会が終わると、だれでもリプレイを見られます。リプレイにはあなたのロボットと歩容が含まれます。",
+  ],
   "enter.drop": [
     "Drop your files here: Loco-data, LocoTra-data, and robot.toml if the robot is your own.",
     "ここにファイルをドロップしてください：Loco-data、LocoTra-data、自作ロボットなら robot.toml も。",

@@ -68,9 +68,12 @@ class Book:
     @property
     def event(self) -> EventInfo:
         """The contest's name, whether entries are open, and when they close; no secret."""
-        closes_ms = milliseconds(self.where.contest.entries_close)
+        plan = self.where.contest
         return EventInfo(
-            name=self.where.contest.name, open=not self.contest.closed, closes_ms=closes_ms
+            name=plan.name,
+            open=not self.contest.closed,
+            closes_ms=milliseconds(plan.entries_close),
+            replays=plan.replays,
         )
 
     def team(self, name: str) -> Team | None:

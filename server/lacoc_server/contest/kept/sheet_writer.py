@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.replays import shown
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.publish import write
 from lacoc_server.contest.sheet import ContestSheet
@@ -55,7 +56,7 @@ class SheetWriter:
             self.write()
 
     def write(self) -> ContestSheet:
-        """Write the sheet of the contest as it is now, and return it.
+        """Write the sheet of the contest as everybody may see it now; return the whole one.
 
         Raises:
             UserError: if it can't be written.
@@ -63,8 +64,9 @@ class SheetWriter:
         assert self._contest is not None
         begun_s = time.monotonic()
         made = sheets.sheet(self._where.contest.name, self._contest)
+        public = shown(made, self._where.contest.replays)
         try:
-            write(self._where.sheet, sheets.encode(made))
+            write(self._where.sheet, sheets.encode(public))
         except OSError as error:
             why, path = error.strerror or str(error), str(self._where.sheet)
             raise UserError(say("command.cannot-write", path=path, why=why)) from None

@@ -66,6 +66,7 @@ export function Form({ entrant }: Props) {
         />
       </label>
       <Files />
+      {event && <p class="muted">{t(`enter.replays.${event.replays}`)}</p>}
       <Refusal entrant={entrant} />
       <button class="button strong large" type="submit" aria-busy={entrant.isWeighing.value}>
         {t(entrant.isWeighing.value ? "enter.weighing" : "enter.go")}
