@@ -148,7 +148,7 @@ def test_no_machine_takes_the_places_of_others(monkeypatch: pytest.MonkeyPatch) 
 def test_a_machine_holds_only_so_many_connections(monkeypatch: pytest.MonkeyPatch) -> None:
     """A further connection is closed at once, unless a proxy asks for others."""
     monkeypatch.setattr(page_socket, "CONNECTIONS_MOST", 3)
-    monkeypatch.setattr(page_socket, "is_local", lambda _: False)
+    monkeypatch.setattr(page_socket, "is_loopback", lambda _: False)
 
     def is_taken(one: socket.socket) -> bool:
         one.sendall(b"GET /watch HTTP/1.1\r\nHost: localhost\r\n\r\n")

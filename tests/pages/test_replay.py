@@ -316,7 +316,7 @@ def test_a_recording_that_was_given_up_says_nothing_more(
         """const get = window.fetch;
         window.arriving = {};
         window.fetch = (path) => {
-          const name = /^\\/recordings\\/(.+)$/.exec(path)?.[1];
+          const name = /^recordings\\/(.+)$/.exec(path)?.[1];
           if (!name) return get(path);
           const body = new ReadableStream({ start: (one) => { window.arriving[name] = one; } });
           return Promise.resolve(new Response(body, { headers: { "Content-Length": "1000" } }));

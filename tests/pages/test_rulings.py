@@ -15,6 +15,11 @@ from lacoc_shared.codec import encode
 from lacoc_shared.seat import Phase as P
 
 RULINGS = Path(__file__).parents[2] / "client" / "web" / "src" / "core" / "rulings.ts"
+_AS_PAGE = (
+    "--experimental-transform-types",
+    "--disable-warning=ExperimentalWarning",
+    f"--import={Path(__file__).parent / 'core' / 'page.mjs'}",
+)
 SCRIPT = """
 import { readFileSync } from "node:fs";
 const rulings = await import("%s");
@@ -23,7 +28,7 @@ console.log(JSON.stringify({
   corrections: rulings.corrections(events).map(({ number }) => number),
   declared: rulings.declaration(events)?.data.reason ?? null,
   halted: rulings.whyHalted(events)?.data.reason ?? null,
-  played: rulings.playedBeats(events),
+  played: rulings.playedTicks(events),
 }));
 """
 
@@ -37,7 +42,7 @@ def shown(stage: Stage) -> dict[str, Any]:
 
     events = [msgpack.unpackb(encode(event)) for event in stage.events]
     done = subprocess.run(
-        [node, "--input-type=module", "-e", SCRIPT % RULINGS.as_uri()],
+        [node, *_AS_PAGE, "--input-type=module", "-e", SCRIPT % RULINGS.as_uri()],
         input=json.dumps(events),
         capture_output=True,
         text=True,

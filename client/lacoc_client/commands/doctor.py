@@ -13,6 +13,7 @@ from lacoc_client.commands import entrance
 from lacoc_client.doctor import machine as doctor
 from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Finding, Status
+from lacoc_client.doctor.pages import pages, plain_courts
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
@@ -64,9 +65,10 @@ def doctor_command(
 
     With --invitation, --connect or --contest this command also checks the connection to a court, or
     to each court of the contest: whether the court answers, how long a request takes, and how many
-    frames arrive. With --court it checks only that court. A court of the contest file that does not
-    run yet is only a note. Every finding is ok, a note or a problem;
-    notes and problems say what to do. The exit code is 0 unless there is a problem.
+    frames arrive. If the contest file says where everybody opens the pages, this command opens them
+    there as a browser does. With --court it checks only that court. A court of the contest file
+    that does not run yet is only a note. Every finding is ok, a note or a problem; notes and
+    problems say what to do. The exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
     planned = [*plan.courts] if plan and court is None else [court]
@@ -77,6 +79,8 @@ def doctor_command(
     ]
     folder = recordings or (plan.recordings if plan else Path("recordings"))
     findings = list(_look(plan, planned, web, folder, seconds))
+    if plan is not None and plan.public.pages:
+        findings += [*plain_courts(plan.public, plan.courts), *pages(plan.public, plan.given_name)]
     for way in ways:
         findings += link(way, seconds, planned=plan is not None and not (invitation or connect))
     if json:

@@ -16,7 +16,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from lacoc_shared.network.public import PublicAddress
+from lacoc_shared.network.public import PublicAddress, is_loopback
 from lacoc_shared.words import LANGUAGES, Phrase, render, say
 from lacoc_shared.words.render import Language
 
@@ -89,7 +89,8 @@ class Guard:
             scope["path"] = scope["path"].removeprefix(below)
         at_socket = scope["type"] == "websocket" or scope["path"].endswith("/ws")
         machine = machine_of(scope)
-        if at_socket and self._held[machine] >= SOCKETS_MOST and not is_local(machine):
+        # A proxy here that nobody named asks for all: a limit for one would be one for everybody.
+        if at_socket and self._held[machine] >= SOCKETS_MOST and not is_loopback(machine):
             return answer(scope, say("gateway.machine-full", most=SOCKETS_MOST), 429)
         if at_socket and scope["type"] == "http":
             return answer(scope, say("gateway.no-websocket"), 426)
@@ -115,14 +116,6 @@ def machine_of(scope: Scope) -> str:
     """Return the address of the machine that asks, as far as proxies are believed; else ""."""
     client = scope.get("client")
     return client[0] if client else ""
-
-
-def is_local(machine: str) -> bool:
-    """Return whether an address is one of this machine itself, or a proxy here that is not named.
-
-    A limit for each machine would then be one for everybody.
-    """
-    return _is_number(machine) and ipaddress.ip_address(machine).is_loopback
 
 
 def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:

@@ -16,8 +16,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.http11 import Request
 
-from lacoc_client.gateway.guard import is_local
-from lacoc_shared.network.public import is_proxy
+from lacoc_shared.network.public import is_loopback, is_proxy
 
 KEPT_BYTES = 1 << 20
 """Most bytes that may wait for a page; a page with more is cut off: it has gone or is too slow."""
@@ -109,7 +108,7 @@ class PageRequests(H11Protocol):
         clients = (getattr(one, "client", None) for one in self.connections)
         machine = self.client[0] if self.client else ""
         held = sum(client is not None and client[0] == machine for client in clients)
-        asks_for_others = is_local(machine) or is_proxy(machine, self.config.forwarded_allow_ips)
+        asks_for_others = is_loopback(machine) or is_proxy(machine, self.config.forwarded_allow_ips)
         if held > CONNECTIONS_MOST and not asks_for_others:
             transport.abort()
             return

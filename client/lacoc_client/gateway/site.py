@@ -10,7 +10,7 @@ from typing import Protocol
 import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, Response
+from starlette.responses import Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
@@ -25,7 +25,7 @@ from lacoc_client.gateway.cached import (
 from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.forks import ForkAsk, Forks, bots
-from lacoc_client.gateway.guard import answer, language_of
+from lacoc_client.gateway.guard import answer, language_of, machine_of
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
@@ -33,6 +33,7 @@ from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.scores import scores_route
 from lacoc_client.gateway.shown import Shown
 from lacoc_client.gateway.wire import REQUEST_BYTES, too_long
+from lacoc_shared import __version__
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -44,6 +45,19 @@ KEY_HEADER = "X-Lacoc-Key"
 """HTTP header with the page key."""
 
 _MCAP = "application/octet-stream"
+
+
+class Health(msgspec.Struct, frozen=True, kw_only=True):
+    """What a gateway says of itself to whoever watches over it."""
+
+    version: str
+    """Version of LACOC."""
+    contest: str
+    """Name of the contest; "" if there is none."""
+    host: str
+    """The request's `Host`, which a proxy may have replaced."""
+    unnamed_proxy: bool
+    """Whether a proxy says who asks and is not believed: all then seem to be one machine."""
 
 
 class More(Protocol):
@@ -98,7 +112,8 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         WebSocketRoute("/ws", page),
     ]
     paths = PATHS if more is None else (*PATHS, *more.paths)
-    routes = page_routes(files, paths, [*others, *(more.routes if more is not None else ())])
+    others += more.routes if more is not None else ()
+    routes = page_routes(files, paths, others, home.contest)
     return Starlette(routes=routes, lifespan=lifespan)
 
 
@@ -201,7 +216,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
 
 
 def page_routes(
-    files: PageFiles, paths: Iterable[str], others: Iterable[BaseRoute]
+    files: PageFiles, paths: Iterable[str], others: Iterable[BaseRoute], title: str = ""
 ) -> list[BaseRoute]:
     """Return the routes of a site with pages.
 
@@ -209,6 +224,7 @@ def page_routes(
         files: the built pages.
         paths: paths of the pages.
         others: routes of the site besides its pages and their parts.
+        title: name of the contest; "" if there is none.
     """
 
     async def index(request: Request) -> Response:
@@ -228,9 +244,17 @@ def page_routes(
         file = await asyncio.to_thread(files.find, _OLD_NAMES.get(name, name))
         return _not_found(request) if file is None else file_response(request, file, "max-age=3600")
 
-    async def healthz(_: Request) -> Response:
-        """Say that the gateway answers, for whoever watches over it."""
-        return PlainTextResponse("ok\n")
+    async def healthz(request: Request) -> Response:
+        """Say that the gateway answers, and how the request came here through proxies."""
+        forwarded = request.headers.get("x-forwarded-for", "")
+        asks = [one.strip() for one in forwarded.split(",") if one]
+        health = Health(
+            version=__version__,
+            contest=title,
+            host=request.headers.get("host", ""),
+            unnamed_proxy=bool(asks) and machine_of(request.scope) not in asks,
+        )
+        return Response(msgspec.json.encode(health), media_type="application/json")
 
     return [
         Route("/healthz", healthz),

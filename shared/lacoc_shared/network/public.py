@@ -94,6 +94,13 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         return urlsplit(self.pages)
 
 
+def is_loopback(host: str) -> bool:
+    """Return whether a host means the machine itself."""
+    if not _is_number(host):
+        return host.lower() == "localhost"
+    return ipaddress.ip_address(host).is_loopback
+
+
 def is_proxy(machine: str, proxies: Sequence[str] | str | None) -> bool:
     """Return whether an address belongs to one of the proxies, as `PublicAddress.proxies`."""
     if not proxies or not _is_number(machine):

@@ -1,0 +1,151 @@
+"""What `lacoc doctor` finds at the public address of a contest's pages."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import proxies
+import pytest
+import trustme
+from ports import free_port
+from starlette.applications import Starlette
+from starlette.routing import WebSocketRoute
+from starlette.websockets import WebSocket
+from waiting import LIMIT_S
+
+from lacoc_client.doctor.machine import Finding, Status
+from lacoc_client.doctor.pages import pages, plain_courts
+from lacoc_client.gateway import server
+from lacoc_client.gateway.files import PageFiles
+from lacoc_client.gateway.site import page_routes
+from lacoc_shared.contest import file as contests
+from lacoc_shared.network.public import PublicAddress
+from lacoc_shared.words import Phrase
+
+pytestmark = pytest.mark.slow
+TITLE = "Spring Cup"
+
+
+async def _page(websocket: WebSocket) -> None:
+    await websocket.accept()
+    await websocket.receive()
+
+
+@contextmanager
+def gateway(public: PublicAddress, port: int) -> Iterator[None]:
+    """Serve the pages of a contest."""
+    files, ended = PageFiles(), threading.Event()
+    app = Starlette(routes=page_routes(files, ["/"], [WebSocketRoute("/ws", _page)], TITLE))
+    with server.listen(f"127.0.0.1:{port}", public) as opened:
+        thread = threading.Thread(target=server.serve, args=(app, opened, ended.is_set))
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join(LIMIT_S)
+
+
+@pytest.fixture
+def authority(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> trustme.CA:
+    """Give an authority that this process trusts."""
+    made = trustme.CA()
+    made.cert_pem.write_to_path(str(tmp_path / "authority.pem"))
+    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "authority.pem"))
+    return made
+
+
+def found(public: PublicAddress, title: str = TITLE) -> dict[str, Status]:
+    """Return what is found, by the code of its phrase."""
+    return {code(one): one.status for one in pages(public, title)}
+
+
+def code(finding: Finding) -> str:
+    assert isinstance(finding.found, Phrase)
+    return finding.found.code.removeprefix("doctor.")
+
+
+def test_a_right_address_is_ok(tmp_path: Path, authority: trustme.CA) -> None:
+    """Name, certificate, pages and WebSocket are looked at; another contest there is a problem."""
+    port = free_port()
+    pair = proxies.issue(tmp_path, authority, "localhost")
+    public = PublicAddress.of(f"https://localhost:{port}", *pair)
+    with gateway(public, port):
+        assert found(public) == dict.fromkeys(
+            ("certificate-found", "pages-found", "websocket-found"), Status.OK
+        )
+        assert found(public, "Other Cup")["pages-another"] is Status.PROBLEM
+
+
+def test_a_certificate_of_nobody_is_a_problem(tmp_path: Path) -> None:
+    """A certificate that no browser trusts is said."""
+    port = free_port()
+    public = PublicAddress.of(
+        f"https://localhost:{port}", *proxies.issue(tmp_path, trustme.CA(), "localhost")
+    )
+    with gateway(public, port):
+        assert found(public) == {"pages-not-proven": Status.PROBLEM}
+
+
+@pytest.mark.parametrize(
+    ("address", "expected"),
+    [
+        ("https://no.such.name.invalid", "pages-unknown"),
+        (f"http://127.0.0.1:{free_port()}", "pages-silent"),
+    ],
+)
+def test_an_address_that_leads_nowhere_is_a_problem(address: str, expected: str) -> None:
+    """A name that is not known, and a port at which nobody listens, are told apart."""
+    assert found(PublicAddress.of(address)) == {expected: Status.PROBLEM}
+
+
+@pytest.mark.parametrize("wrong", ["nothing", "unnamed", "host", "upgrade", "path"])
+def test_what_is_wrong_with_a_proxy_is_said(
+    tmp_path: Path, authority: trustme.CA, monkeypatch: pytest.MonkeyPatch, wrong: str
+) -> None:
+    """Each mistake in a proxy's settings is found by itself."""
+    port, inner = free_port(), free_port()
+    pair = proxies.issue(tmp_path, authority, "localhost")
+    named = () if wrong == "unnamed" else ("127.0.0.1",)
+    public = PublicAddress.of(f"https://localhost:{port}/lacoc", proxies=named)
+    # All is on one machine here, so somebody far away is invented.
+    text = (proxies.EXAMPLES / "nginx.conf").read_text("utf-8").replace("$remote_addr", "192.0.2.7")
+    lines = {"host": "proxy_set_header Host", "upgrade": "proxy_set_header Upgrade"}
+    kept = [line for line in text.splitlines() if lines.get(wrong, "no line") not in line]
+    if wrong == "path":
+        kept = [line.replace("location /lacoc/", "location /other/") for line in kept]
+    (tmp_path / "nginx.conf").write_text("\n".join(kept))
+    monkeypatch.setattr(proxies, "EXAMPLES", tmp_path)
+    place = tmp_path / "proxy"
+    place.mkdir()
+    with (
+        gateway(public, inner),
+        proxies.nginx(place, pair, "localhost", port, f"127.0.0.1:{inner}"),
+    ):
+        seen = found(public)
+    bad = {name for name, status in seen.items() if status is not Status.OK}
+    assert (
+        bad
+        == {
+            "nothing": set(),
+            "unnamed": {"pages-proxy"},
+            "host": {"pages-host"},
+            "upgrade": {"websocket-none"},
+            "path": {"pages-other"},
+        }[wrong]
+    )
+
+
+def test_courts_in_plain_text_are_noted(tmp_path: Path) -> None:
+    """A court that others reach in plain text is noted, if the pages are encrypted."""
+    text = '[contest]\npages = "{}"\n'
+    for name, listen in (("open", "0.0.0.0:7447"), ("closed", "127.0.0.1:7448")):
+        text += f'[court.{name}]\narena = "othello"\nlisten = ["{listen}"]\n'
+        text += f'referee.token = "the whistle of {name}"\n'
+    for address, noted in (("https://x.example", ["open"]), ("http://x.example", [])):
+        plan = contests.loads(text.format(address).encode(), tmp_path / "contest.toml")
+        notes = [*plain_courts(plan.public, plan.courts)]
+        assert [
+            one.about.values["court"] for one in notes if isinstance(one.about, Phrase)
+        ] == noted
