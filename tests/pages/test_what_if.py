@@ -113,7 +113,10 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
 def test_a_page_with_the_key_goes_on_from_where_it_is(library: Venue, open_page: OpenPage) -> None:
     """The page plays a fork from the beat that it shows, and shows it beside its match."""
     page = open_page(viewport={"width": 1366, "height": 768})
-    show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=3&q=low#key={library.key}")
+    show = Show(page, library.url, f"/replay?q=low#key={library.key}", drawn=False)
+    show.sees(".recordings")
+    # The address of a recording has no key: the tab keeps it.
+    page.goto(f"{library.url}/replay?file={MATCH}.mcap&t=3&q=low")
     page.get_by_role("button", name="What if, from here").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("from beat 150")

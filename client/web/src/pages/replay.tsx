@@ -2,7 +2,7 @@
 
 import { effect, signal, useComputed } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { ownPage, setting } from "../core/address";
+import { ownPage, runKey, setting } from "../core/address";
 import { followColours } from "../core/colours";
 import { mayFork } from "../core/forks";
 import type { Note, RecordFile } from "../core/record";
@@ -35,6 +35,9 @@ import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
 import { cameraOfAddress, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 import "./replay/replay.css";
+
+// The list's link has the key in its fragment; the address of a recording has none.
+runKey();
 
 const WIDE_PX = 1280;
 /** A new fork is shown from so long before its first own beat. */
