@@ -31,7 +31,8 @@ ACTS: list[tuple[str, dict[str, Any]]] = [
     ("join", {"seat": "left", "token": TOKENS["left"], "name": "Ants"}),
     ("ready", {"ready": True}),
     ("leave", {}),
-    ("key", {"level": 1, "key": 2}),
+    ("key", {"level": 1, "key": 2, "match": 1, "beat": 2}),
+    ("saw", {"match": 1, "beat": 2}),
     ("enter", {"token": REFEREE, "by": "Kim"}),
     ("take_over", {}),
     ("decide", {"decision": {"type": "abort"}, "reason": "x"}),
@@ -196,9 +197,12 @@ def test_an_unknown_court_is_said(open_venue: Venue) -> None:
         ("watch", {"hz": "fast"}, False),
         ("watch", {"key": "k" * 201}, False),
         ("rate", {}, False),
-        ("key", {"level": 2, "key": 1}, False),
-        ("key", {"level": 0, "key": 11}, False),
-        ("key", {"level": 0, "key": True}, False),
+        ("key", {"level": 2, "key": 1, "match": 1, "beat": 2}, False),
+        ("key", {"level": 0, "key": 11, "match": 1, "beat": 2}, False),
+        ("key", {"level": 0, "key": True, "match": 1, "beat": 2}, False),
+        ("key", {"level": 0, "key": 1}, False),
+        ("key", {"level": 0, "key": 1, "match": 1, "beat": -1}, False),
+        ("saw", {"match": 2**64, "beat": 2}, False),
         ("decide", {"decision": {"type": "win"}, "reason": ""}, False),
         ("decide", {"decision": {"type": "abort"}, "reason": "x" * 5000}, True),
         ("ping", {"t": "x" * 5000}, True),
@@ -401,7 +405,7 @@ def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
     flooding = [venue.page(), venue.page(venue.key), right]
     end_s = time.monotonic() + 4
     ping = msgpack.packb({"id": 1, "do": "ping", "t": 1})
-    key = msgpack.packb({"id": 1, "do": "key", "level": 1, "key": 3})
+    key = msgpack.packb({"id": 1, "do": "key", "level": 1, "key": 3, "match": 1, "beat": 1})
 
     def flood(page: PageClient, message: bytes) -> None:
         while time.monotonic() < end_s:
@@ -418,7 +422,7 @@ def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
         for digit in (1, 2):
             assert left.frame is not None
             pressed = left.frame.beat
-            seq = left.ask("key", level=1, key=digit)["seq"]
+            seq = left.press(level=1, key=digit)
             left.wait_own(lambda own, seq=seq: own.applied_seq >= seq)  # type: ignore[misc]
             waits_beats.append(left.frame.beat - pressed)
     assert sorted(waits_beats)[len(waits_beats) // 2] < 8

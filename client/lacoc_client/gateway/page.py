@@ -87,7 +87,7 @@ class Page:
                 feed, _ = self._acting()
                 _spend(self._tokens)
                 answers.later(asked.id, self._where(asked, feed))
-            case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk():
+            case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk() | wire.SawAsk():
                 self._acting()
                 self._seat.steer(asked)
             case wire.EnterAsk():
