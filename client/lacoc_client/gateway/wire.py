@@ -95,7 +95,7 @@ class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, as a sign of life."""
+    """Ask for a reply, which says how far the court is from the gateway."""
 
     t: float | int | str | None = None
 
