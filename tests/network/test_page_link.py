@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import pytest
 from aside import run_async
 from court_stub import TOKENS, CourtStub
 from waiting import LIMIT_S, until
@@ -81,6 +82,7 @@ def test_the_court_gets_the_frame_that_the_page_showed(court: CourtStub) -> None
     assert court.refused["left"] == {}
 
 
+@pytest.mark.slow
 def test_repeats_name_no_frame_that_the_player_did_not_see(
     court: CourtStub, session: Session
 ) -> None:
