@@ -26,7 +26,6 @@ from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, render
 
-
 _SIGN_S = 0.09
 """With a frame every 20 ms, a page shows every fifth one in a sign of life."""
 

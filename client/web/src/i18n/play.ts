@@ -287,7 +287,7 @@ export const play = {
   "end.save": ["Save Pos-data.txt", "Pos-data.txt を保存"],
 
   // Footer
-  "foot.trip": ["Round trip", "往復時間"],
+  "foot.trip": ["Key to picture", "キーの反映"],
   "foot.tripHint": [
     "From your newest key to the picture that shows it",
     "キーを押してから画面に反映されるまで",
@@ -336,8 +336,8 @@ export const play = {
     "両チームの遅れをそろえるコートなら戦えます。そろえる設定かどうか、主催者に確かめてください。",
   ],
   "linktest.slow": [
-    "Too slow for a fair match: use a cable or go closer to the Wi-Fi, stop downloads and videos, and test again; if that does not help, tell the organiser.",
-    "公平な試合をするには遅すぎます。有線にするか Wi-Fi の近くに移り、ダウンロードや動画を止めて、もう一度テストしてください。それでも変わらなければ、主催者に知らせてください。",
+    "Too slow for a fair match: use a cable or go closer to the Wi-Fi, close other programs and videos, and test again; if that does not help, tell the organiser.",
+    "公平な試合をするには遅すぎます。有線にするか Wi-Fi の近くに移り、ほかのプログラムや動画を閉じて、もう一度テストしてください。それでも変わらなければ、主催者に知らせてください。",
   ],
 
   "keytest.title": ["Key test", "キーのテスト"],

@@ -165,7 +165,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
       <LeavingBar leaving={leaving} onStay={close} />
       {isIn ? (
         <>
-          <Rail {...{ court, player, alone }} {...controls} />
+          <Rail {...{ court, player, alone }} {...controls} onLinkTest={openLinkTest} />
           <Footer
             court={court}
             player={player}
@@ -175,7 +175,6 @@ export function Cockpit({ alone }: { alone: boolean }) {
             onSettings={() => {
               open.value = "settings";
             }}
-            onLinkTest={alone || phase.value >= Phase.COUNTDOWN ? null : openLinkTest}
           />
         </>
       ) : (

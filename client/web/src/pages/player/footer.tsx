@@ -12,11 +12,9 @@ interface Props {
   player: Player;
   onFiles: () => void;
   onSettings: () => void;
-  /** null: this is no time for a test of the link. */
-  onLinkTest: (() => void) | null;
 }
 
-export function Footer({ court, player, onFiles, onSettings, onLinkTest }: Props) {
+export function Footer({ court, player, onFiles, onSettings }: Props) {
   const sheet = court.sheet.value;
   const index = player.index.value;
   const seat = sheet?.seats[index];
@@ -64,11 +62,6 @@ export function Footer({ court, player, onFiles, onSettings, onLinkTest }: Props
       <p class={`link-state${isLinked ? " good" : ""}`}>
         {t(isLinked ? "foot.linked" : "foot.broken")}
       </p>
-      {onLinkTest && (
-        <button class="button quiet small" type="button" onClick={onLinkTest}>
-          {t("linktest.test")}
-        </button>
-      )}
       <button class="button quiet small" type="button" disabled={!isOpen} onClick={onFiles}>
         {t("files.change")}
       </button>
