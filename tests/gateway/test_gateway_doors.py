@@ -137,6 +137,12 @@ def test_without_the_key_a_page_only_watches(
         assert page.ask("ping", t=1.5)["t"] == 1.5
 
 
+def test_a_ping_says_how_far_the_court_is(open_venue: Venue) -> None:
+    """Whoever pings hears how long the court takes to answer the gateway."""
+    with PageClient(open_venue.url) as page:
+        until(lambda: page.ask("ping")["court_ms"])
+
+
 @pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
 def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -> None:
     """A page must ask to watch a court before it can act."""
