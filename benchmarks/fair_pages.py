@@ -3,8 +3,8 @@
 Two pages (without a browser) at one gateway press the same key in response to the same frame. One
 is behind a proxy of 10 ms each way, the other behind 100 ± 25 ms. The benchmark reads in the record
 when both keys took effect, and compares what the court measured, which pages and referee read, with
-the pages' own pings through the same proxies. The court counts in whole beats, so its figure may be
-a beat more.
+the pages' own pings through the same proxies. The medians must agree within 10 %; the court counts
+in whole beats, so its figure may be a beat more.
 """
 
 import argparse

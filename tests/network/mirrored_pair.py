@@ -69,12 +69,8 @@ class Trip(NamedTuple):
     p95_ms: float
 
     def fits(self, court: "Trip") -> bool:
-        """Say whether the court measured this, within 10 %; it counts in whole beats."""
-        beat_ms = 1000 * BEAT_S
-        return all(
-            0.9 * own <= theirs <= 1.1 * (own + beat_ms)
-            for own, theirs in zip(self, court, strict=True)
-        )
+        """Say whether the court measured this median, within 10 %; it counts in whole beats."""
+        return 0.9 * self.p50_ms <= court.p50_ms <= 1.1 * (self.p50_ms + 1000 * BEAT_S)
 
 
 class Played(NamedTuple):
