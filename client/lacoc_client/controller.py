@@ -26,14 +26,21 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import Session
-from lacoc_shared.seat import FRESH_BEATS, REPEATS_HZ, RESTART_KEY, SILENT_AFTER_S, WHY_NO
+from lacoc_shared.seat import (
+    BEATS_PER_S,
+    FRESH_BEATS,
+    REPEATS_HZ,
+    RESTART_KEY,
+    SILENT_AFTER_S,
+    WHY_NO,
+)
 from lacoc_shared.words import Phrase, say
 
 REPEAT_S = 1 / REPEATS_HZ
 
 _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
-_REPEATED_BEATS = FRESH_BEATS // 2
+_REPEATED_BEATS = FRESH_BEATS - BEATS_PER_S
 """Greatest age of a frame that a repeat names for a player elsewhere; the rest is for the way."""
 _WHY = {int(no): why for no, why in WHY_NO.items()}
 

@@ -510,7 +510,7 @@ def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
 
 
 def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
-    """A controller that always names the same frame counts as silent 3 s after that frame."""
+    """A controller that always names the same frame counts as silent 6 s after that frame."""
     inbox = make()
     joined = take_seat(inbox)
     for beat in range(1, 1001):
