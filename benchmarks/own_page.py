@@ -1,6 +1,7 @@
 """A command that serves a page to one person, and a browser for it, as the tests of pages use."""
 
 import contextlib
+import os
 import re
 import subprocess
 import sys
@@ -16,15 +17,24 @@ from chromium import FLAGS, SLOW_SCREEN, find_chromium
 
 __all__ = ["SLOW_SCREEN", "chromium", "own_page"]
 
+_ROOMS = ("arenas", "client", "robots", "server", "shared")
+
 
 @contextlib.contextmanager
-def own_page(*words: str) -> Iterator[str]:
-    """Run a `lacoc` command in an empty folder; give the address of its page, with the page key."""
+def own_page(*words: str, checkout: Path | None = None) -> Iterator[str]:
+    """Run a `lacoc` command in an empty folder; give the address of its page, with the page key.
+
+    Args:
+        words: the command.
+        checkout: root of another checkout whose code runs; None: this one's.
+    """
+    rooms = [str(checkout / room) for room in _ROOMS] if checkout else []
     with (
         tempfile.TemporaryDirectory() as folder,
         subprocess.Popen(
             [sys.executable, "-u", "-m", "lacoc_shared", *words, "--no-open"],
             cwd=folder,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(rooms)},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -1,6 +1,8 @@
 """Measures the time from a key in a real page to the frame that shows it, against a bare echo.
 
 `python -m benchmarks.page_latency`; needs what tests of the pages need (tests/pages/chromium.py).
+`python -m benchmarks.page_latency CHECKOUT` compares the keys with those of another checkout, whose
+pages are built, in turns.
 """
 
 import contextlib
@@ -10,6 +12,7 @@ import statistics
 import sys
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from playwright.sync_api import Browser, Page, TimeoutError
@@ -71,6 +74,37 @@ def page_latency(keys: int = 100) -> dict[str, float]:
     }
 
 
+def compare(other: Path, keys: int = 300) -> dict[str, dict[str, float]]:
+    """Measure keys of this checkout and of another one in turns.
+
+    Args:
+        other: root of the other checkout.
+        keys: number of keys that are pressed in each.
+
+    Returns:
+        For `this` and `other`: `key_p50_ms` and `key_p95_ms`.
+    """
+    turns = 15
+    key_ms: dict[str, list[float]] = {"this": [], "other": []}
+    with (
+        chromium() as browser,
+        own_page("practice") as this_url,
+        own_page("practice", checkout=other) as other_url,
+    ):
+        pages = {"this": _walking(browser, this_url), "other": _walking(browser, other_url)}
+        for _ in range(turns):
+            for side, page in pages.items():
+                page.bring_to_front()
+                key_ms[side] += _press(page, keys // turns)
+    return {
+        side: {
+            "key_p50_ms": statistics.median(times_ms),
+            "key_p95_ms": statistics.quantiles(times_ms, n=20)[-1],
+        }
+        for side, times_ms in key_ms.items()
+    }
+
+
 def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
     """Return the rows for the table of `make bench`."""
     return [
@@ -126,5 +160,6 @@ def _echo() -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    json.dump(page_latency(), sys.stdout, indent=2)
+    found = compare(Path(sys.argv[1])) if sys.argv[1:] else page_latency()
+    json.dump(found, sys.stdout, indent=2)
     print()

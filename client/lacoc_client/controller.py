@@ -26,13 +26,22 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import Session
-from lacoc_shared.seat import REPEATS_HZ, RESTART_KEY, SILENT_AFTER_S, WHY_NO
+from lacoc_shared.seat import (
+    BEATS_PER_S,
+    FRESH_BEATS,
+    REPEATS_HZ,
+    RESTART_KEY,
+    SILENT_AFTER_S,
+    WHY_NO,
+)
 from lacoc_shared.words import Phrase, say
 
 REPEAT_S = 1 / REPEATS_HZ
 
 _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
+_REPEATED_BEATS = FRESH_BEATS - BEATS_PER_S
+"""Greatest age of a frame that a repeat names for a player elsewhere; the rest is for the way."""
 _WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
@@ -67,6 +76,13 @@ _HOLDS = {
 }
 
 
+class Seen(NamedTuple):
+    """A frame that a player saw."""
+
+    match: int
+    beat: int
+
+
 class RefusedKey(NamedTuple):
     """A command that the match refused."""
 
@@ -93,6 +109,10 @@ class Controller:
     ten times a second: they repeat the last command, which keeps the seat alive. After a restart of
     the court they join again, with the same token and files.
 
+    Every command names the frame that the player saw: the newest one here, or, if the player is
+    elsewhere, the newest one that was told with `saw` or `press`. Then `poll` only repeats, while
+    that frame is recent: what nobody saw is never named.
+
     Args:
         session: an open client session.
         court: the court's name.
@@ -104,6 +124,7 @@ class Controller:
         locomotion: a LocoTra-data file; without either gait file: the sample gait of the contest's
             robot.
         notify: called on Zenoh's thread when a frame has come; it must return at once.
+        elsewhere: whether the player sees the frames elsewhere, such as on a page.
 
     Raises:
         UserError: if no such court answers, or it has no such seat.
@@ -121,6 +142,7 @@ class Controller:
         postures: SentFile | None = None,
         locomotion: SentFile | None = None,
         notify: Callable[[], None] | None = None,
+        elsewhere: bool = False,
     ) -> None:
         self.view = Spectator(session, court, notify)
         """Everything public about the court: frames, events, sheet, health."""
@@ -146,6 +168,9 @@ class Controller:
         """Number of ready and leave requests in this session."""
         self._standing = (0, 0, 0)
         """Sequence number, level and key of the standing command."""
+        self._elsewhere = elsewhere
+        self._seen: Seen | None = None
+        """The newest frame that a player elsewhere saw in this session."""
         self._sent_s = 0.0
         self._pressed: dict[int, _Press] = {}
         self._refused: list[RefusedKey] = []
@@ -200,6 +225,7 @@ class Controller:
         self._pressed.clear()
         self.hold, self.reason = Hold.HELD, None
         self._standing = (0, 0, 0)
+        self._seen = None  # a restarted court may have lost that frame
         self._send()
         if any(note.code == FILES_REFUSED for note in joined.notes):
             # After a restart the court would refuse them. Without files the seat keeps its own.
@@ -232,13 +258,23 @@ class Controller:
         self.hold, self._joined = Hold.LEFT, None
         return said
 
-    def press(self, level: int, key: int, upon: Frame | None = None) -> int:
+    def saw(self, frame: Seen) -> None:
+        """Send a sign of life of a player elsewhere.
+
+        Args:
+            frame: the frame that the player saw.
+        """
+        if self.hold is Hold.HELD:
+            self._note(frame)
+            self._send(self._seen)
+
+    def press(self, level: int, key: int, upon: Seen | None = None) -> int:
         """Send a new command, which is repeated until the next one.
 
         Args:
             level: a `Level`.
             key: a digit, or `RESTART_KEY`.
-            upon: the frame that the player saw; None: the newest.
+            upon: the frame that the player saw; None: the newest that is known here.
 
         Returns:
             The command's sequence number.
@@ -252,6 +288,8 @@ class Controller:
         if len(self._pressed) > _REMEMBERED:
             del self._pressed[next(iter(self._pressed))]
         self._standing = (self._seq, level, key)
+        if upon is not None:
+            self._note(upon)
         self._send(upon)
         return self._seq
 
@@ -322,11 +360,29 @@ class Controller:
         request = SeatRequest(session=joined.session, seq=self._requests, ready=ready, mac=mac)
         return ask(self._session, self._keys, key, request, Done).said
 
-    def _send(self, upon: Frame | None = None) -> None:
+    def _note(self, frame: Seen) -> None:
+        """Remember the newest frame that a player elsewhere saw."""
+        self._seen = max(self._seen or frame, frame)
+
+    def _newest(self) -> Seen | None:
+        """Return the frame that a repeated command names; None: none can be named now.
+
+        An old frame is no sign of life for the court.
+        """
+        frame, seen = self.view.frame, self._seen
+        if not self._elsewhere:
+            return Seen(frame.match, frame.beat) if frame is not None else Seen(0, 0)
+        if frame is None or seen is None:
+            return None
+        is_fresh = seen.match == frame.match and frame.beat - seen.beat < _REPEATED_BEATS
+        return seen if is_fresh else None
+
+    def _send(self, upon: Seen | None = None) -> None:
         """Send the newest command, with the frame that the player saw."""
         assert self._joined is not None
-        frame, key_expression = upon or self.view.frame, self._keys.command(self.seat)
-        seen = (frame.match, frame.beat) if frame is not None else (0, 0)
+        seen, key_expression = upon or self._newest(), self._keys.command(self.seat)
+        if seen is None:
+            return
         numbers = (self._joined.session, *self._standing, *seen)
         mac = seal.command_mac(self._joined.secret, key_expression, *numbers)
         self._commands.put(encode(Command(*numbers, mac)))

@@ -79,6 +79,9 @@ BEAT_US = 20_000
 BEATS_PER_S = 50
 REPEATS_HZ = 10
 """How often a controller repeats its last command [Hz]."""
+FRESH_BEATS = 5 * BEATS_PER_S
+"""Greatest age [beats] of a frame that a repeated command may name as a sign of life: so long may a
+page draw nothing and its seat stay alive."""
 SILENT_AFTER_S = 1.0
 """A sender that has sent nothing for longer than this is silent: a seat's controller for its
 court (rules 3), and a court for its clients."""

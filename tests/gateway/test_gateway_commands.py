@@ -171,7 +171,7 @@ def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
         page.ask("join", seat="solo", token=None, name="")
         page.ask("ready", ready=True)
         page.phase(Phase.PLAYING)
-        seq = page.ask("key", level=0, key=1)["seq"]
+        seq = page.press(level=0, key=1)
         page.wait_own(lambda own: own.applied_seq >= seq)
     assert practice.ended() == 0
     assert [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"]

@@ -14,7 +14,7 @@ import msgpack
 import pytest
 from page_client import PageClient, Refused, refusal
 from venue import REFEREE, TOKENS, Venue
-from waiting import LIMIT_S
+from waiting import LIMIT_S, until
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -31,7 +31,8 @@ ACTS: list[tuple[str, dict[str, Any]]] = [
     ("join", {"seat": "left", "token": TOKENS["left"], "name": "Ants"}),
     ("ready", {"ready": True}),
     ("leave", {}),
-    ("key", {"level": 1, "key": 2}),
+    ("key", {"level": 1, "key": 2, "match": 1, "beat": 2}),
+    ("saw", {"match": 1, "beat": 2}),
     ("enter", {"token": REFEREE, "by": "Kim"}),
     ("take_over", {}),
     ("decide", {"decision": {"type": "abort"}, "reason": "x"}),
@@ -133,7 +134,13 @@ def test_without_the_key_a_page_only_watches(
         assert page.welcome["can_act"] is False
         with refusal("gateway.only-watch"):
             page.ask(do, **fields)
-        assert page.ask("ping", t=1.5) == {"t": 1.5}
+        assert page.ask("ping", t=1.5)["t"] == 1.5
+
+
+def test_a_ping_says_how_far_the_court_is(open_venue: Venue) -> None:
+    """Whoever pings hears how long the court takes to answer the gateway."""
+    with PageClient(open_venue.url) as page:
+        until(lambda: page.ask("ping")["court_ms"])
 
 
 @pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
@@ -196,9 +203,12 @@ def test_an_unknown_court_is_said(open_venue: Venue) -> None:
         ("watch", {"hz": "fast"}, False),
         ("watch", {"key": "k" * 201}, False),
         ("rate", {}, False),
-        ("key", {"level": 2, "key": 1}, False),
-        ("key", {"level": 0, "key": 11}, False),
-        ("key", {"level": 0, "key": True}, False),
+        ("key", {"level": 2, "key": 1, "match": 1, "beat": 2}, False),
+        ("key", {"level": 0, "key": 11, "match": 1, "beat": 2}, False),
+        ("key", {"level": 0, "key": True, "match": 1, "beat": 2}, False),
+        ("key", {"level": 0, "key": 1}, False),
+        ("key", {"level": 0, "key": 1, "match": 1, "beat": -1}, False),
+        ("saw", {"match": 2**54, "beat": 2}, False),
         ("decide", {"decision": {"type": "win"}, "reason": ""}, False),
         ("decide", {"decision": {"type": "abort"}, "reason": "x" * 5000}, True),
         ("ping", {"t": "x" * 5000}, True),
@@ -407,7 +417,7 @@ def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
     flooding = [venue.page(), venue.page(venue.key), right]
     end_s = time.monotonic() + 4
     ping = msgpack.packb({"id": 1, "do": "ping", "t": 1})
-    key = msgpack.packb({"id": 1, "do": "key", "level": 1, "key": 3})
+    key = msgpack.packb({"id": 1, "do": "key", "level": 1, "key": 3, "match": 1, "beat": 1})
 
     def flood(page: PageClient, message: bytes) -> None:
         while time.monotonic() < end_s:
@@ -424,7 +434,7 @@ def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
         for digit in (1, 2):
             assert left.frame is not None
             pressed = left.frame.beat
-            seq = left.ask("key", level=1, key=digit)["seq"]
+            seq = left.press(level=1, key=digit)
             left.wait_own(lambda own, seq=seq: own.applied_seq >= seq)  # type: ignore[misc]
             waits_beats.append(left.frame.beat - pressed)
     assert sorted(waits_beats)[len(waits_beats) // 2] < 8

@@ -42,11 +42,11 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     robot_bytes = len(left.frame.poses) // 2
     began_m = x_of(left.frame, 0, robot_bytes)
     for page in (left, right):
-        seq = page.ask("key", **FORWARD)["seq"]
+        seq = page.press(**FORWARD)
         page.wait_own(lambda own, seq=seq: own.applied_seq >= seq)
     with refusal("gateway.no-seat"):
-        referee.ask("key", **FORWARD)
-    refused = left.ask("key", level=0, key=1)["seq"]
+        referee.press(**FORWARD)
+    refused = left.press(level=0, key=1)
     left.wait_own(lambda own: own.refused_seq >= refused)
 
     late = venue.page()
@@ -82,7 +82,6 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     assert left.frame is not None
     assert x_of(left.frame, 0, robot_bytes) > began_m + 0.05
     assert left.seat["hold"] == "held"
-    assert 0 < left.seat["round_trip_ms"] < 1000
     referee.ask("decide", decision={"type": "next"}, reason="")
     late.wait(lambda: late.frame is not None and late.frame.match == 2)
 
@@ -92,7 +91,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     venue.court()
     venue.web()
     left, _, referee = started(venue)
-    left.ask("key", **FORWARD)
+    left.press(**FORWARD)
     left.wait_own(lambda own: own.key == 2)
     assert left.frame is not None
     before = left.frame.beat
@@ -118,7 +117,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
 
     back = venue.page(venue.key)
     back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
-    seq = back.ask("key", **FORWARD)["seq"]
+    seq = back.press(**FORWARD)
     back.wait_own(lambda own: own.applied_seq >= seq and own.key == 2)
     assert not back.own().flags & SeatFlag.SILENT
 
@@ -129,7 +128,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
     venue.court()
     venue.web()
     left, _, referee = started(venue)
-    left.ask("key", **FORWARD)
+    left.press(**FORWARD)
     left.wait_own(lambda own: own.key == 2)
     left.socket.socket.settimeout(None)
     left.socket.protocol.receive_data = lambda data: None  # type: ignore[method-assign]
@@ -143,7 +142,7 @@ def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
     venue.web()
     page, _, referee = started(venue)
     for _ in range(10):
-        page.ask("key", **FORWARD)
+        page.press(**FORWARD)
         page.wait_own(lambda own: own.key == 2)
         assert page.frame is not None
         gone, gone_s = page.frame.beat, time.monotonic()
@@ -165,7 +164,7 @@ def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
     second = venue.contestant("left")
     first.wait(lambda: first.seat["hold"] == "replaced")
     with refusal("refused.not-yours"):
-        first.ask("key", **FORWARD)
+        first.press(**FORWARD)
     assert second.seat["hold"] == "held"
     second.ask("leave")
     second.wait(lambda: second.seat["hold"] == "left")
@@ -222,7 +221,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
     )
     referee.ask("decide", decision={"type": "resume"}, reason="the court is back")
     left.phase(Phase.PLAYING)
-    seq = left.ask("key", **FORWARD)["seq"]
+    seq = left.press(**FORWARD)
     left.wait_own(lambda own: own.applied_seq >= seq)
 
 
@@ -291,7 +290,7 @@ def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
     assert venue.key == key
     back = venue.page(key)
     back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
-    seq = back.ask("key", **FORWARD)["seq"]
+    seq = back.press(**FORWARD)
     back.wait_own(lambda own: own.applied_seq >= seq)
     assert [event.number for event in back.events] == [*range(1, len(back.events) + 1)]
 

@@ -141,7 +141,7 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     contestant.phase(Phase.READY)
     referee.ask("decide", decision={"type": "start"}, reason="")
     contestant.phase(Phase.PLAYING)
-    contestant.ask("key", level=1, key=2)
+    contestant.press(level=1, key=2)
     contestant.wait_own(lambda own: own.applied_seq)
 
     own = Controller(keyed.session("right"), "main", "right", TOKENS["right"], "Right")

@@ -106,6 +106,9 @@ class CourtStub:
         token_hashes = restored.pop("token_hashes", HASHES)
         self.scales = Scales()
         inbox = Inbox(KEYS, SEATS, token_hashes, self.scales, secrets.token_bytes, **restored)
+        self._links = inbox.links
+        self.beat = 0
+        """The newest beat; its frame may not be sent yet."""
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(
             KEYS, [listen], inbox, desk, protection, look_ahead=lambda _: lambda: SEEN
@@ -147,6 +150,10 @@ class CourtStub:
     def keys(self, seat: int = 0) -> list[tuple[int, int]]:
         return [(i.seq, i.key) for i in self.inputs if isinstance(i, KeySeat) and i.seat == seat]
 
+    def named(self, seat: int = 0) -> tuple[int, int]:
+        """Return match and beat of the newest frame that a seat's commands named."""
+        return self._links._links[seat].newest
+
     def show(self, scene: Scene, **changes: Any) -> None:
         """Publish another scene, and a sheet that names it."""
         self.scene = scene
@@ -158,12 +165,11 @@ class CourtStub:
         self._todo.append(what)
 
     def _run(self) -> None:
-        beat = 0
         while not self._stopping.wait(0.005):
             if self.trouble:
-                self._stand_still(beat)
+                self._stand_still(self.beat)
                 continue
-            beat += 1
+            self.beat = beat = self.beat + 1
             now_s = time.monotonic()
             silent = [seat in self._silent for seat in range(2)]
             self.network.hold(self.held, has_begun=True)

@@ -1,19 +1,26 @@
-"""Two controllers answer the same frame with a key; one of them has a slow link."""
+"""Two contestants answer the same frame with a key; one of them has a slow link.
+
+They are programs at the court, or pages (without a browser) at a gateway next to the court.
+"""
 
 import json
 import subprocess
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lacoc_process import Lacoc
+from page_client import PageClient
 from slow_link import SlowLink
 from waiting import LIMIT_S, until
 
-from lacoc_client.controller import Controller
+from lacoc_client.controller import Controller, Seen
+from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import KeySeat
@@ -22,7 +29,7 @@ from lacoc_shared.messages import Frame, Health
 from lacoc_shared.network.session import open_client
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
 
 COURT = "main"
 SEATS = ("left", "right")
@@ -30,9 +37,11 @@ FAST, SLOW = SEATS
 EVERY_BEATS = 17
 """Beats from one key to the next; no multiple of the 5 beats between repeats of a command."""
 _TOKENS = {who: f"the token of {who}" for who in (*SEATS, "the referee")}
+_PING_BEATS = 5
+_ANY_PORT = "tcp/127.0.0.1:0"
 _CONTEST = """
 [court.main]
-arena = "othello"
+arena = "{arena}"
 listen = ["tcp/127.0.0.1:0"]
 input_delay = "{input_delay}"
 input_delay_max_ms = {most_ms}
@@ -53,8 +62,19 @@ class Pair(NamedTuple):
     late: tuple[int, int]
 
 
+class Trip(NamedTuple):
+    """A contestant's round trip."""
+
+    p50_ms: float
+    p95_ms: float
+
+    def fits(self, court: "Trip") -> bool:
+        """Say whether the court measured this median, within 10 %; it counts in whole beats."""
+        return 0.9 * self.p50_ms <= court.p50_ms <= 1.1 * (self.p50_ms + 1000 * BEAT_S)
+
+
 class Played(NamedTuple):
-    """The keys, the last health message and the record of a match between the two controllers."""
+    """The keys, the last health message and the record of a match between the two contestants."""
 
     pairs: list[Pair]
     lost: int
@@ -62,6 +82,18 @@ class Played(NamedTuple):
     health: Health
     """The court's last health message."""
     record: Record
+    pings: tuple[Trip, ...] = ()
+    """Of pages: from the page to the gateway and back, as the pages measured it."""
+    shown: tuple[Trip, ...] = ()
+    """Of pages: what the court's health, as the slow seat's page had it, says of each seat."""
+
+
+def _answers(frame: Frame) -> bool:
+    return frame.phase == Phase.PLAYING and frame.beat % EVERY_BEATS == 0
+
+
+def _key(frame: Frame) -> dict[str, int]:
+    return {"level": 1, "key": frame.beat // EVERY_BEATS % 4}
 
 
 class _Player(threading.Thread):
@@ -84,9 +116,41 @@ class _Player(threading.Thread):
                 self._frames.wait(0.05)
                 while (mail := self._frames.take()) is not None:
                     frame = decode(mail.payload, Frame)
-                    if frame.phase == Phase.PLAYING and frame.beat % EVERY_BEATS == 0:
-                        self.controller.press(1, frame.beat // EVERY_BEATS % 4, frame)
+                    if _answers(frame):
+                        self.controller.press(**_key(frame), upon=Seen(frame.match, frame.beat))
                 self.controller.poll(time.monotonic())
+
+
+class _Page(PageClient):
+    """A page that answers the same frames as a `_Player` does, and measures its way by pings."""
+
+    def __init__(self, seat: str, url: str, key: str) -> None:
+        self._pinged_s: dict[int, float] = {}
+        self.trips_s: list[float] = []
+        super().__init__(url, key, hz=BEATS_PER_S)
+        self.ask("join", seat=seat, token=_TOKENS[seat], name=seat.title())
+        self.ask("ready", ready=True)
+
+    def ping(self) -> Trip:
+        """Return the round trips to the gateway."""
+        trips_ms = sorted(1000 * trip_s for trip_s in self.trips_s)
+        return Trip(trips_ms[len(trips_ms) // 2], trips_ms[len(trips_ms) * 95 // 100])
+
+    def _take(self, kind: Kind, payload: bytes) -> None:
+        super()._take(kind, payload)
+        if kind is not Kind.FRAME or self.frame is None:
+            return
+        if _answers(self.frame):
+            self.send("key", **_key(self.frame), **self.shown())
+        elif self.frame.beat % _PING_BEATS == 0:
+            now_s = time.monotonic()
+            self._pinged_s[self.send("ping")] = now_s
+
+    def _take_own(self, kind: Kind, body: dict[str, Any]) -> None:
+        if kind is Kind.REPLY and (sent_s := self._pinged_s.pop(body["id"], None)) is not None:
+            self.trips_s.append(time.monotonic() - sent_s)
+        else:
+            super()._take_own(kind, body)
 
 
 def play(
@@ -99,7 +163,7 @@ def play(
     warm_s: float = 12.0,
     seconds: float = 60.0,
 ) -> Played:
-    """Play a match of two controllers, one with a slow link, at a court in another process.
+    """Play a match of two programs, one with a slow link, at a court in another process.
 
     Args:
         folder: for contest file and record.
@@ -110,38 +174,101 @@ def play(
         warm_s: time before the start; links are measured over 10 s.
         seconds: length of play.
     """
-    contest = folder / "contest.toml"
-    contest.write_text(_CONTEST.format(input_delay=input_delay, most_ms=most_ms))
-    words = ("serve", "--json", "--contest", str(contest), "--recordings", str(folder))
-    stopping = threading.Event()
     with ExitStack() as stack:
-        court = stack.enter_context(Lacoc(*words, stdout=subprocess.PIPE, text=True))
-        stack.callback(court.terminate)
-        assert court.stdout is not None
-        address = json.loads(court.stdout.readline())["locators"][0]
-        threading.Thread(target=court.stdout.read, daemon=True).start()  # so the pipe never fills
+        address = _court(folder, "othello", input_delay, most_ms, stack)
         link = stack.enter_context(SlowLink(address, delay_s, jitter_s))
-        session = stack.enter_context(open_client([address]))
+        stopping = threading.Event()
         players: list[_Player] = []
         stack.callback(lambda: [player.join() for player in players])
         stack.callback(stopping.set)
         for seat, where in ((FAST, address), (SLOW, link.address)):
             players.append(_Player(seat, where, stopping))
-        view = players[0].controller.view
+        health, end = _match(address, warm_s, seconds)
+    return _played(folder, health, end)
+
+
+def play_on_pages(
+    folder: Path,
+    arena: str,
+    input_delay: str,
+    links_s: Sequence[tuple[float, float]],
+    *,
+    warm_s: float = 12.0,
+    seconds: float = 60.0,
+) -> Played:
+    """Play a match of two pages at one gateway; court and gateway have processes of their own.
+
+    Args:
+        folder: for contest file and record.
+        arena: the game.
+        input_delay: the contest's `input_delay`.
+        links_s: delay and jitter, one way, of the fast and of the slow page's link to the gateway.
+        warm_s: time before the start; links are measured over 10 s.
+        seconds: length of play.
+    """
+    with ExitStack() as stack:
+        address = _court(folder, arena, input_delay, 400, stack)
+        contest = folder / "open.toml"  # with the port that the court got
+        contest.write_text((folder / "contest.toml").read_text().replace(_ANY_PORT, address))
+        where = ("--contest", str(contest), "--listen", "127.0.0.1:0")
+        web = _started(stack, "web", "--json", *where)
+        pages: list[_Page] = []
+        for seat, (delay_s, jitter_s) in zip(SEATS, links_s, strict=True):
+            place = web["url"].removeprefix("http://")
+            link = stack.enter_context(SlowLink(f"tcp/{place}", delay_s, jitter_s))
+            url = link.address.replace("tcp/", "http://")
+            pages.append(stack.enter_context(_Page(seat, url, web["key"])))
+        health, end = _match(address, warm_s, seconds)
+        pings = tuple(page.ping() for page in pages)
+        told = pages[-1].health
+    assert told is not None
+    return _played(folder, health, end)._replace(pings=pings, shown=trips(told))
+
+
+def trips(health: Health) -> tuple[Trip, ...]:
+    """Return the seats' round trips as a court's health message has them."""
+    return tuple(
+        Trip(seat.round_trip_p50_ms or 0.0, seat.round_trip_p95_ms or 0.0) for seat in health.seats
+    )
+
+
+def _court(folder: Path, arena: str, input_delay: str, most_ms: int, stack: ExitStack) -> str:
+    """Start a court that is stopped with the stack; return its address."""
+    contest = folder / "contest.toml"
+    contest.write_text(_CONTEST.format(arena=arena, input_delay=input_delay, most_ms=most_ms))
+    words = ("--contest", str(contest), "--recordings", str(folder))
+    address: str = _started(stack, "serve", "--json", *words)["locators"][0]
+    return address
+
+
+def _started(stack: ExitStack, *words: str) -> dict[str, Any]:
+    """Start a command that is stopped with the stack; return what it says first."""
+    process = stack.enter_context(Lacoc(*words, stdout=subprocess.PIPE, text=True))
+    stack.callback(process.terminate)
+    assert process.stdout is not None
+    said: dict[str, Any] = json.loads(process.stdout.readline())
+    threading.Thread(target=process.stdout.read, daemon=True).start()  # so the pipe never fills
+    return said
+
+
+def _match(address: str, warm_s: float, seconds: float) -> tuple[Health, int]:
+    """Let a match be played; return the court's last health message, and the last beat."""
+    with open_client([address]) as session:
+        view = Spectator(session, COURT)
         time.sleep(warm_s)
         RefereeClient(session, COURT, _TOKENS["the referee"]).decide(Start(), "", "the pair")
-        until(lambda: view.frame and view.frame.phase == Phase.PLAYING)
-        end = view.frame.beat + seconds * BEATS_PER_S if view.frame else 0
-        until(lambda: view.frame and view.frame.beat > end, seconds * 4)
-        health = view.health
-        assert health is not None
+        until(lambda: view.wait_frame(1.0) and view.frame and view.frame.phase == Phase.PLAYING)
+        assert view.frame is not None
+        end = int(view.frame.beat + seconds * BEATS_PER_S)
+        until(lambda: view.wait_frame(1.0) and view.frame and view.frame.beat > end, seconds * 4)
+        assert view.health is not None
+        return view.health, end - BEATS_PER_S
+
+
+def _played(folder: Path, health: Health, end: int) -> Played:
     until(lambda: list(folder.glob("*.mcap")))
     paths = sorted(folder.glob("*.mcap"))
     record = Record.read(record_paths(paths[-1]) if ".live" in paths[-1].name else paths[-1])
-    return _played(record, health, int(end) - BEATS_PER_S)
-
-
-def _played(record: Record, health: Health, end: int) -> Played:
     keys: tuple[dict[int, tuple[int, int]], ...] = ({}, {})
     for beat, items in record.inputs.items():
         for item in items:

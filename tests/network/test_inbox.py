@@ -17,7 +17,6 @@ from lacoc_server.doors.inbox import (
     SEQ_JUMP_MAX,
     Inbox,
 )
-from lacoc_server.doors.links import FRESH_BEATS
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
@@ -41,7 +40,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.messages.office import WAITING, Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, Mistake
-from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.seat import FRESH_BEATS, RESTART_KEY
 from lacoc_shared.words import Phrase, faults, render, say
 
 LEFT, RIGHT = 0, 1
@@ -511,7 +510,7 @@ def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
 
 
 def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
-    """A controller that always names the same frame counts as silent 3 s after that frame."""
+    """A controller that always names the same frame counts as silent 6 s after that frame."""
     inbox = make()
     joined = take_seat(inbox)
     for beat in range(1, 1001):

@@ -324,6 +324,58 @@ def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
     page.misses("form")
 
 
+HIDE = """(() => {
+  const draw = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (make) => draw((ms) => window.isHidden || make(ms));
+  for (const name of ["setTimeout", "setInterval"]) {
+    const set = window[name].bind(window);
+    window[name] = (run, ms) => set(run, window.isHidden ? Math.max(1000, ms || 0) : ms);
+  }
+})()"""
+"""With `isHidden` a page gets no pictures, and new timers of a second, as in a hidden tab."""
+
+
+def test_a_hidden_tab_keeps_its_seat(venue: Venue, sit: Sit) -> None:
+    """A page that gets no pictures goes on to name frames, and is heard by the court."""
+    page = opened(venue, sit)
+    page.page.add_init_script(HIDE)
+    page.page.reload()
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    court = venue.page()
+    page.page.evaluate("window.isHidden = true")
+    court.wait(lambda: court.frame)
+    for _ in range(4):
+        before = court.health
+        court.wait(lambda before=before: court.health is not before)  # type: ignore[misc]
+    assert court.health is not None
+    seat = court.health.seats[0]
+    assert seat.refused == {}
+    assert seat.round_trip_p50_ms is not None
+    assert not any(event.kind == "silent" for event in court.events)
+
+
+@pytest.mark.long
+def test_a_contestant_tests_the_link_before_a_match(venue: Venue, sit: Sit) -> None:
+    """Before a match /play measures the way to the court, and says in a sentence what it means."""
+    page = opened(venue, sit)
+    for has_seat in (False, True):
+        if has_seat:
+            page.join(TOKENS["left"])
+            page.stands("seated")
+        page.page.get_by_role("button", name="Test my connection").click()
+        page.sees(".link-test [role=status]", "Measuring")
+        page.sees(".link-test :is(.good, .equal, .slow)")
+        figures = page.find(".link-test dd").all_inner_texts()
+        assert all(re.fullmatch(r"\d+ ms", figure) for figure in figures[:2]), figures
+        assert re.fullmatch(r"\d+: \d+ lost, \d+ late", figures[2])
+        assert violations(page.page) == []
+        page.press("Escape")
+        page.misses(".link-test")
+    playing(venue, page)
+    page.misses("button:has-text('Test my connection')")
+
+
 def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """A contestant plays by the page's keys, from the lobby to Pos-data.txt (workshop 5-4)."""
     page = seated(venue, sit, "--seconds", "120")

@@ -643,7 +643,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     step(page)
     phase(page, 4)
     for robot in (ants, bees):
-        robot.ask("key", level=1, key=2)
+        robot.press(level=1, key=2)
     strike = page.locator(".log li[data-kind=strike]").last
     expect(strike).to_be_visible()
     assert (

@@ -28,6 +28,8 @@ _SAY_S = 1.0
 _RETRY_S = 1.0
 _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
+_TRIP_S = 1.0
+"""Time between two measurements of the way to the court, however many pages want to know."""
 
 
 class CourtFeed:
@@ -60,6 +62,9 @@ class CourtFeed:
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
+        self._trip_ms: float | None = None
+        self._trip_asked_s = -_TRIP_S
+        self._measuring: asyncio.Task[None] | None = None
         self._task: asyncio.Task[None] | None = None
 
     def start(self) -> None:
@@ -69,7 +74,7 @@ class CourtFeed:
 
     async def stop(self) -> None:
         """Close the connection."""
-        started = (self._task, self._restoring, self._explaining)
+        started = (self._task, self._restoring, self._explaining, self._measuring)
         tasks = [task for task in started if task]
         for task in tasks:
             task.cancel()
@@ -81,6 +86,27 @@ class CourtFeed:
     def connected(self) -> bool:
         """True if the court sends frames."""
         return self._connected
+
+    def trip_ms(self) -> float | None:
+        """Return how long the court's newest answer took [ms], and ask it again for the next time.
+
+        None: nothing was asked yet, or the court does not answer.
+        """
+        now_s = time.monotonic()
+        idle = self._measuring is None or self._measuring.done()
+        if self.session is not None and idle and now_s - self._trip_asked_s >= _TRIP_S:
+            self._trip_asked_s = now_s
+            self._measuring = asyncio.get_running_loop().create_task(self._measure())
+        return self._trip_ms
+
+    async def _measure(self) -> None:
+        began_s = time.monotonic()
+        try:
+            await self._ask(self._keys.sheet)
+        except UserError:
+            self._trip_ms = None
+        else:
+            self._trip_ms = 1000 * (time.monotonic() - began_s)
 
     def log(self, text: str, kind: str, **particulars: object) -> None:
         """Log a line about this court."""

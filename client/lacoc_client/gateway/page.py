@@ -78,7 +78,8 @@ class Page:
                 viewer.rate(asked.hz)
                 answers.reply(asked.id, {})
             case wire.Ping():
-                answers.reply(asked.id, {"t": asked.t})
+                court_ms = self._feed.trip_ms() if self._feed is not None else None
+                answers.reply(asked.id, {"t": asked.t, "court_ms": court_ms})
             case wire.JoinAsk():
                 feed, _ = self._acting()
                 _spend(self._tokens)
@@ -87,7 +88,7 @@ class Page:
                 feed, _ = self._acting()
                 _spend(self._tokens)
                 answers.later(asked.id, self._where(asked, feed))
-            case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk():
+            case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk() | wire.SawAsk():
                 self._acting()
                 self._seat.steer(asked)
             case wire.EnterAsk():

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
+from lacoc_client.controller import Controller, Seen
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import Answers, in_loop
 from lacoc_client.gateway.home import Prefill
@@ -73,7 +74,7 @@ class PageSeat:
             self._answers.from_thread(asked.id),
         )
 
-    def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk) -> None:
+    def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk | wire.SawAsk) -> None:
         """Pass a request to the seat's controller.
 
         Raises:
@@ -87,8 +88,11 @@ class PageSeat:
                 do(lambda controller: {"said": controller.ready(ready)}, answer)
             case wire.LeaveAsk():
                 do(lambda controller: {"said": controller.leave()}, answer)
-            case wire.KeyAsk(level=level, key=key):
-                do(lambda controller: {"seq": controller.press(level, key)}, answer)
+            case wire.KeyAsk(level=level, key=key, match=number, beat=beat):
+                seen = Seen(number, beat)
+                do(lambda controller: {"seq": controller.press(level, key, seen)}, answer)
+            case wire.SawAsk(match=number, beat=beat):
+                do(lambda controller: _saw(controller, Seen(number, beat)), answer)
 
     def leave(self) -> None:
         """Stop repeating the command when the page goes; the contestant keeps the seat."""
@@ -130,3 +134,8 @@ class PageSeat:
             self._hold = hold
             because = f" ({render(seat['reason'])})" if seat["reason"] else ""
             self._log(f"Seat {hold[0]}: {hold[1]}{because}.", "seat", seat=hold[0], hold=hold[1])
+
+
+def _saw(controller: Controller, frame: Seen) -> dict[str, Any]:
+    controller.saw(frame)
+    return {}

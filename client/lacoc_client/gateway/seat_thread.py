@@ -1,8 +1,10 @@
 """A seat held for a page: a controller on a thread of its own.
 
-The thread repeats the command 10 times a second. A page could not: browsers slow the timers of
-hidden tabs. The thread stops when the page goes. Then the robot stands after a second (rules 3),
-and a page that comes back joins again.
+The thread passes on at once what the page sends: keys and signs of life, each with the frame that
+the page showed. In between it repeats the newest command with the newest of these frames, so that a
+page that stutters stays alive, and its link is measured by nothing but its own answers. The thread
+stops when the page goes. Then the robot stands after a second (rules 3), and a page that comes back
+joins again.
 """
 
 import queue
@@ -21,7 +23,6 @@ from lacoc_shared.words import Phrase, say
 
 LOST_AFTER_S = 1.0
 """Silence after which a page counts as gone, though nobody closed its connection."""
-_TELL_S = 0.5
 
 Answer = Callable[[Any, UserError | FileRefused | None], None]
 """Takes the result of a job: its value, or the error."""
@@ -66,7 +67,6 @@ class SeatThread:
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._ended = False
         self._told: dict[str, Any] = {}
-        self._told_s = 0.0
         self._thread = threading.Thread(
             target=self._run, args=(joined,), name=f"seat {access.seat}", daemon=True
         )
@@ -101,6 +101,7 @@ class SeatThread:
                     self._team,
                     **files._asdict(),
                     notify=lambda: self._jobs.put(None),
+                    elsewhere=True,
                 )
                 if self._ended:  # the page has gone: it must not take the seat from another one
                     return
@@ -114,8 +115,7 @@ class SeatThread:
                 joined(None, told)
             else:
                 reason = say("hold.files-refused") if isinstance(told, FileRefused) else told.phrase
-                lost = {"hold": Hold.REFUSED.value, "reason": reason, "round_trip_ms": None}
-                self._tell(self._told | lost)
+                self._tell(self._told | {"hold": Hold.REFUSED.value, "reason": reason})
             if told is not error:  # a bug, but the page must get an answer
                 raise
         finally:
@@ -142,20 +142,16 @@ class SeatThread:
             job.answer(value, None)
 
     def _report(self, controller: Controller) -> None:
-        """Report a change of the seat at once, and a new round trip at most twice a second."""
-        now_s = time.monotonic()
-        trip_ms = controller.round_trip_ms
+        """Report a change of the seat."""
         told: dict[str, Any] = {
             "seat": controller.seat,
             "index": controller.index,
             "hold": controller.hold.value,
             "reason": controller.reason,
         }
-        changed = any(self._told.get(name) != value for name, value in told.items())
-        moved = trip_ms != self._told.get("round_trip_ms") and now_s - self._told_s >= _TELL_S
-        if changed or moved:
-            self._told, self._told_s = told | {"round_trip_ms": trip_ms}, now_s
-            self._tell(self._told)
+        if told != self._told:
+            self._told = told
+            self._tell(told)
 
     def _refuse_rest(self) -> None:
         while True:

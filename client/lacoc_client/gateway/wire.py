@@ -66,6 +66,7 @@ _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 _Short = Annotated[str, msgspec.Meta(max_length=200)]
 _Digit = Annotated[int, msgspec.Meta(ge=0, le=9)]
 _Token = Annotated[str, msgspec.Meta(max_length=200)]
+_Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 
 
 class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
@@ -94,7 +95,7 @@ class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, as a sign of life."""
+    """Ask for a reply, which says how far the court is from the gateway."""
 
     t: float | int | str | None = None
 
@@ -132,10 +133,21 @@ class LeaveAsk(Ask, frozen=True, kw_only=True, tag="leave"):
 
 
 class KeyAsk(Ask, frozen=True, kw_only=True, tag="key"):
-    """Press a key."""
+    """Press a key, having seen a frame."""
 
     level: Annotated[int, msgspec.Meta(ge=0, le=1)]
     key: Annotated[int, msgspec.Meta(ge=0, le=10)]
+    match: _Count
+    """The match of the frame that the page showed when the key was pressed."""
+    beat: _Count
+    """Its beat."""
+
+
+class SawAsk(Ask, frozen=True, kw_only=True, tag="saw"):
+    """Show a sign of life of a page that holds a seat: it shows a new frame."""
+
+    match: _Count
+    beat: _Count
 
 
 class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
@@ -172,6 +184,7 @@ Asked = (
     | ReadyAsk
     | LeaveAsk
     | KeyAsk
+    | SawAsk
     | EnterAsk
     | TakeOver
     | DecideAsk

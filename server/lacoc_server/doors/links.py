@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import Command
-from lacoc_shared.seat import BEAT_S, BEATS_PER_S
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, FRESH_BEATS
 
 WINDOW_BEATS = 10 * BEATS_PER_S
 """A link is judged by its round trips in this many newest beats."""
@@ -26,8 +26,6 @@ CHANGE_BEATS = 3 * BEATS_PER_S
 """Beats between two changes of the common delay."""
 LOWER_BEATS = 2
 """Smallest step down of the common delay [beats]: a delay that wavers is worse than a long one."""
-FRESH_BEATS = 2 * BEATS_PER_S
-"""Greatest age [beats] of a frame that a repeat may name as a sign of life of its sender."""
 TRUST_S = 2 * BEAT_S
 """Added to the p95 of a seat's round trips: no command is believed to have taken longer than the
 sum."""

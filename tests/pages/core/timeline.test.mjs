@@ -153,6 +153,30 @@ const CASES = {
     return trouble;
   },
   empty: () => (new Timeline().sample(5) === null ? [] : ["a moment of nothing"]),
+  // A person has seen what is drawn, not what has come.
+  seen: () => {
+    const { line, trouble, last } = play({ ms: 4000 });
+    const seen = line.seen(5010);
+    if (seen.match !== 1 || seen.beat !== Math.floor(last)) trouble.push(`${seen.beat} of ${last}`);
+    if (new Timeline().seen(5) !== null) trouble.push("a frame of nothing");
+    line.push(frame(3, 2), 5011);
+    if (line.seen(5012).match !== 2 || line.seen(5012).beat !== 3) trouble.push("the old match");
+    return trouble;
+  },
+  // Frames come to a hidden tab, but nothing is drawn: it seems as near as before.
+  seenWhileHidden: () => {
+    const { line, trouble } = play({ ms: 4000, arrival: (at) => at + 15 * chance() });
+    const behind = [];
+    for (let beat = 200; beat < 3000; beat++) {
+      const now = 1000 + beat * 20 + 15 * chance();
+      line.push(frame(beat), now);
+      if (beat % 5 === 0 && beat > 220) behind.push(beat - line.seen(now).beat);
+      if (line.seen(now).beat > beat) trouble.push(`${beat} was not there`);
+    }
+    const [least, most] = [Math.min(...behind), Math.max(...behind)];
+    if (least < 1 || most > 4) trouble.push(`from ${least} to ${most} beats behind`);
+    return trouble;
+  },
 };
 
 for (const [name, troubleOf] of Object.entries(CASES)) {

@@ -18,7 +18,15 @@ import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
 import { tab } from "./storage";
-import { type Frame, type HeldSeat, Phase, SeatFlag, type SeatFrame } from "./wire";
+import {
+  BEAT_S,
+  type Frame,
+  type HeldSeat,
+  Phase,
+  REPEATS_HZ,
+  SeatFlag,
+  type SeatFrame,
+} from "./wire";
 
 /** The state of the claim to a seat, as the page shows it. */
 export type Standing = "watching" | "outside" | "joining" | "seated" | "lost" | "left";
@@ -32,6 +40,8 @@ const LOST = "lost";
 /** Seats that are not this page's any more. */
 const TAKEN: ReadonlySet<string> = new Set(["replaced", "refused"]);
 const AGAIN_MS = 1500;
+/** Frames never come in step with the clock: the one that is nearest to its time counts. */
+const SIGN_MS = 1000 / REPEATS_HZ - 500 * BEAT_S;
 const REMEMBERED = 64;
 
 /** What a claim shows while no seat is held. */
@@ -74,6 +84,7 @@ export class Player {
   private isFresh = true;
   private readonly posData = new PosDataLog();
   private readying = false;
+  private signedMs = Number.NEGATIVE_INFINITY;
 
   /**
    * @param court The court, watched at 50 Hz.
@@ -184,7 +195,8 @@ export class Player {
     if (!this.canSteer.peek()) return;
     const level = this.level.peek();
     // On its way before anything is drawn.
-    const reply = this.court.ask<{ seq: number }>("key", { level, key });
+    const seen = this.court.timeline.seen(performance.now());
+    const reply = this.court.ask<{ seq: number }>("key", { level, key, ...seen });
     batch(() => {
       this.pressed.value = [...this.pressed.peek().slice(1 - REMEMBERED), { level, key }];
       this.sentCount.value += 1;
@@ -318,7 +330,7 @@ export class Player {
     this.sent = new SentKeys();
     this.isFresh = true;
     // The gateway says so in its next message; until then nothing may ask again.
-    this.court.seat.value = { seat, index, hold: HELD, reason: null, round_trip_ms: null };
+    this.court.seat.value = { seat, index, hold: HELD, reason: null };
   }
 
   private async release(): Promise<void> {
@@ -337,6 +349,7 @@ export class Player {
     const index = this.index.peek();
     const seat = frame.seats[index];
     if (!seat) return;
+    this.sign();
     this.posData.add(frame, index, this.court.sheet.peek());
     if (this.isFresh) {
       this.isFresh = false;
@@ -346,6 +359,18 @@ export class Player {
     this.tripMs.value = this.sent.see(seat, performance.now()) ?? this.tripMs.peek();
     this.hearRefusal(seat);
     if (this.alone) this.sayReady(frame, seat);
+  }
+
+  /**
+   * Show the court that somebody is here, and which frame is shown.
+   *
+   * A frame is the reason, not a timer: a browser slows the timers of a hidden tab, never its frames.
+   */
+  private sign(): void {
+    const nowMs = performance.now();
+    if (nowMs - this.signedMs < SIGN_MS || this.court.seat.peek()?.hold !== HELD) return;
+    this.signedMs = nowMs;
+    this.court.ask("saw", { ...this.court.timeline.seen(nowMs) }).catch(() => undefined);
   }
 
   private hearRefusal(seat: SeatFrame): void {

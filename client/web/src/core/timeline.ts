@@ -48,6 +48,12 @@ interface Arrival {
   beat: number;
 }
 
+/** A frame, by its name. */
+export interface Seen {
+  match: number;
+  beat: number;
+}
+
 /** Plays frames as they come. */
 export class Timeline {
   private frames: Frame[] = [];
@@ -104,7 +110,7 @@ export class Timeline {
     const first = this.frames[0];
     const newest = this.newest;
     if (!first || !newest) return null;
-    const target = this.head(nowMs) - this.adaptiveMs * this.rate;
+    const target = this.due(nowMs);
     const passedMs = nowMs - this.sampledMs;
     this.sampledMs = nowMs;
     const behindMs = (target - this.shown) / this.rate - passedMs;
@@ -119,6 +125,22 @@ export class Timeline {
     return momentAt(this.frames, this.shown);
   }
 
+  /**
+   * The newest frame that a person has seen whole; null before the first frame.
+   *
+   * Where nothing is drawn, as in a hidden tab, it is the one that would be shown now: frames come
+   * there too, so such a page seems to be neither farther nor nearer.
+   */
+  seen(nowMs: number): Seen | null {
+    const first = this.frames[0];
+    const newest = this.newest;
+    if (!first || !newest) return null;
+    const isDrawn = nowMs - this.sampledMs < SNAP_MS && !Number.isNaN(this.shown);
+    const beat = isDrawn ? this.shown : this.due(nowMs);
+    const whole = Math.floor(Math.min(newest.beat, Math.max(first.beat, beat)));
+    return { match: newest.match, beat: whole };
+  }
+
   /** Forget everything. */
   reset(): void {
     this.frames = [];
@@ -128,6 +150,11 @@ export class Timeline {
     this.rate = NOMINAL_BEATS_PER_MS;
     this.adaptiveMs = LEAST_DELAY_MS + SPARE_MS;
     this.shown = Number.NaN;
+  }
+
+  /** The beat whose turn it is now, before small errors are evened out. */
+  private due(nowMs: number): number {
+    return this.head(nowMs) - this.adaptiveMs * this.rate;
   }
 
   /** The beat that the court is at now, as the most punctual of the arrivals have it. */

@@ -84,7 +84,6 @@ export interface HeldSeat {
   /** The name of `hold.*`. */
   hold: string;
   reason: Phrase | null;
-  round_trip_ms: number | null;
 }
 
 /** Who acts as referee through this gateway. */
@@ -223,6 +222,7 @@ export type Request =
   | "ready"
   | "leave"
   | "key"
+  | "saw"
   | "enter"
   | "take_over"
   | "outlook"

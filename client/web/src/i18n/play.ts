@@ -287,15 +287,15 @@ export const play = {
   "end.save": ["Save Pos-data.txt", "Pos-data.txt を保存"],
 
   // Footer
-  "foot.trip": ["Round trip", "往復時間"],
+  "foot.trip": ["Key to picture", "キーの反映"],
   "foot.tripHint": [
     "From your newest key to the picture that shows it",
     "キーを押してから画面に反映されるまで",
   ],
   "foot.link": ["Link", "通信"],
   "foot.linkHint": [
-    "Measured by the court: from a frame to your answer to it",
-    "コートが測った、画面を送ってから応答が届くまでの時間",
+    "Measured by the court: from sending a frame until it hears that this page shows it",
+    "コートが測った、コマを送ってから、この画面に映ったと分かるまでの時間",
   ],
   "foot.equal": ["equal for both: {count} ms", "両者同じ：{count} ms"],
   "foot.equalHint": [
@@ -308,6 +308,38 @@ export const play = {
   "foot.linked": ["connected", "接続中"],
   "foot.broken": ["no link", "切断"],
   "foot.settings": ["Settings", "設定"],
+
+  // The test of the link
+  "linktest.test": ["Test my connection", "通信をテスト"],
+  "linktest.title": ["Test of your connection", "通信のテスト"],
+  "linktest.text": [
+    "It measures for 10 seconds the whole way from this page to the court and back.",
+    "この画面からコートまでの往復を 10 秒間測ります。",
+  ],
+  "linktest.runs": ["Measuring …", "測定しています…"],
+  "linktest.again": ["Test again", "もう一度テスト"],
+  "linktest.p50": ["Round trip, median", "往復時間（中央値）"],
+  "linktest.p95": ["95 % are faster than", "95 % がこれより速い"],
+  "linktest.frames": ["Frames", "フレーム"],
+  "linktest.missed": [
+    "{frames}: {lost} lost, {late} late",
+    "{frames} 枚（欠落 {lost}、遅れ {late}）",
+  ],
+  "linktest.noFrames": ["No court sends any now.", "今はどのコートからも届いていません"],
+  "linktest.noAnswer": ["no answer", "応答なし"],
+  "linktest.good": [
+    "Good: you can play any match over this connection.",
+    "良好です。この通信なら、どの試合でも問題なく戦えます。",
+  ],
+  "linktest.equal": [
+    "Playable if the court gives both teams the same delay: ask the organiser whether it does.",
+    "両チームの遅れをそろえるコートなら戦えます。そろえる設定かどうか、主催者に確かめてください。",
+  ],
+  "linktest.slow": [
+    "Too slow for a fair match: use a cable or go closer to the Wi-Fi, close other programs and videos, and test again; if that does not help, tell the organiser.",
+    "公平な試合をするには遅すぎます。有線にするか Wi-Fi の近くに移り、ほかのプログラムや動画を閉じて、もう一度テストしてください。それでも変わらなければ、主催者に知らせてください。",
+  ],
+
   "keytest.title": ["Key test", "キーのテスト"],
   "keytest.hint": [
     "Click here and press keys. Nothing is sent.",

@@ -34,13 +34,14 @@ import { Footer } from "./footer";
 import { useKeyboard, useWindowFocus } from "./keyboard";
 import { KeyTest } from "./keytest";
 import { Leaving, LeavingBar } from "./leaving";
+import { LinkTestDialog } from "./link_test";
 import { LEVEL_LETTERS } from "./pad";
 import { Rail } from "./rail";
 import "./player.css";
 
 const POS_DATA = "Pos-data.txt";
 
-type Open = "" | "leave" | "files" | "settings";
+type Open = "" | "leave" | "files" | "settings" | "linktest";
 
 export function Cockpit({ alone }: { alone: boolean }) {
   const { court, player, team } = useMemo(() => begin(alone), [alone]);
@@ -76,6 +77,9 @@ export function Cockpit({ alone }: { alone: boolean }) {
   };
   const nextView = () => {
     view.value = VIEWS[(VIEWS.indexOf(view.peek()) + 1) % VIEWS.length]!;
+  };
+  const openLinkTest = () => {
+    open.value = "linktest";
   };
   const press = (key: number, atMs: number) => void player.press(key, atMs);
   const changeLevel = (to?: number) => {
@@ -133,8 +137,9 @@ export function Cockpit({ alone }: { alone: boolean }) {
   useFieldFocus(court, player, field);
   const phase = useMemo(() => phaseOf(court), [court]);
   useSignalEffect(() => {
-    const isBegun = phase.value === Phase.COUNTDOWN && !alone;
-    if (isBegun && (open.peek() === "leave" || open.peek() === "files")) close();
+    const isBegun =
+      phase.value === Phase.COUNTDOWN && !alone && player.standing.peek() === "seated";
+    if (isBegun && ["leave", "files", "linktest"].includes(open.peek())) close();
     if (phase.value < Phase.COUNTDOWN || phase.value > Phase.HALTED) leaving.end();
   });
 
@@ -160,7 +165,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
       <LeavingBar leaving={leaving} onStay={close} />
       {isIn ? (
         <>
-          <Rail {...{ court, player, alone }} {...controls} />
+          <Rail {...{ court, player, alone }} {...controls} onLinkTest={openLinkTest} />
           <Footer
             court={court}
             player={player}
@@ -175,15 +180,22 @@ export function Cockpit({ alone }: { alone: boolean }) {
       ) : (
         <div class="entrance-place">
           <Entrance court={court} player={player} alone={alone} team={team} />
-          <button
-            class="button quiet small corner"
-            type="button"
-            onClick={() => {
-              open.value = "settings";
-            }}
-          >
-            {t("foot.settings")}
-          </button>
+          <div class="corner">
+            {!alone && (
+              <button class="button quiet small" type="button" onClick={openLinkTest}>
+                {t("linktest.test")}
+              </button>
+            )}
+            <button
+              class="button quiet small"
+              type="button"
+              onClick={() => {
+                open.value = "settings";
+              }}
+            >
+              {t("foot.settings")}
+            </button>
+          </div>
         </div>
       )}
       {open.value === "leave" && <Leave {...{ court, player, alone }} onClose={close} />}
@@ -193,6 +205,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
           <KeyTest />
         </Settings>
       )}
+      {open.value === "linktest" && <LinkTestDialog court={court} onClose={close} />}
       <Toasts />
     </main>
   );

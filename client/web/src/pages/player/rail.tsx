@@ -21,6 +21,7 @@ interface Props {
   onLevel: (level: number) => void;
   onView: () => void;
   onLeave: () => void;
+  onLinkTest: () => void;
 }
 
 /** What the page shows elsewhere already. */
@@ -31,7 +32,7 @@ export function Rail(props: Props) {
   const progress = useLessons(court, player);
   return (
     <aside class="rail">
-      {alone ? <Coach court={court} player={player} progress={progress} /> : <Ready {...props} />}
+      {alone ? <Coach court={court} player={player} progress={progress} /> : <Before {...props} />}
       <FilesChanged court={court} player={player} alone={alone} />
       <NoKeys court={court} player={player} />
       <Pad {...props} hinted={alone ? progress.next : null} />
@@ -52,13 +53,26 @@ export function Rail(props: Props) {
   );
 }
 
-function Ready({ court, player }: Props) {
+/** What there is to do before a match. */
+function Before(props: Props) {
+  const { court, onLinkTest } = props;
   const phase = useMemo(() => phaseOf(court), [court]).value;
+  if (phase !== Phase.LOBBY && phase !== Phase.READY) return null;
+  return (
+    <>
+      <Ready {...props} />
+      <button class="button quiet small" type="button" onClick={onLinkTest}>
+        {t("linktest.test")}
+      </button>
+    </>
+  );
+}
+
+function Ready({ player }: Props) {
   const isReady = useMemo(
     () => player.part((seat) => Boolean(seat.flags & SeatFlag.READY), false),
     [player],
   ).value;
-  if (phase !== Phase.LOBBY && phase !== Phase.READY) return null;
   const canSteer = player.canSteer.value;
   if (!isReady) {
     return (

@@ -26,6 +26,9 @@ from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, render
 
+_SIGN_S = 0.09
+"""With a frame every 20 ms, a page shows every fifth one in a sign of life."""
+
 
 class Refused(Exception):
     """A request was refused by the gateway or by the court behind it."""
@@ -71,6 +74,11 @@ class PageClient:
         self.health: Health | None = None
         self.events: list[Event] = []
         self.closed = threading.Event()
+        self.signs = True
+        """Whether the page shows signs of life while it holds a seat; False: a frozen tab."""
+        self._signed_s = 0.0
+        self._signed: set[int] = set()
+        """Ids of the signs of life that were not answered yet."""
         self._replies: dict[int, dict[str, Any]] = {}
         self._changed = threading.Condition()
         self._ids = itertools.count(1)
@@ -86,6 +94,15 @@ class PageClient:
     def ask(self, do: str, **fields: Any) -> Any:
         """Send a request and return the value of its reply."""
         return self.reply(self.send(do, **fields))
+
+    def press(self, level: int, key: int) -> int:
+        """Press a key upon the newest frame; return its sequence number."""
+        return int(self.ask("key", level=level, key=key, **self.shown())["seq"])
+
+    def shown(self) -> dict[str, int]:
+        """Return the fields that name the newest frame."""
+        frame = self.frame
+        return {"match": frame.match, "beat": frame.beat} if frame else {"match": 0, "beat": 0}
 
     def send(self, do: str, **fields: Any) -> int:
         """Send a request without waiting for its reply; return its id."""
@@ -155,6 +172,7 @@ class PageClient:
             case Kind.FRAME:
                 self.frame = decode(payload, Frame)
                 self.frames.append((time.monotonic(), self.frame.beat))
+                self._sign()
             case Kind.EVENT:
                 event = decode(payload, Event)
                 if not any(event.number == known.number for known in self.events):
@@ -183,8 +201,17 @@ class PageClient:
                 self.referee = body
             case Kind.FILES:
                 self.files = body
+            case Kind.REPLY if body["id"] in self._signed:
+                self._signed.discard(body["id"])
             case Kind.REPLY:
                 self._replies[body["id"]] = body
+
+    def _sign(self) -> None:
+        """Show a sign of life with a new frame, as often as a page does."""
+        now_s = time.monotonic()
+        if self.signs and self.seat.get("hold") == "held" and now_s - self._signed_s > _SIGN_S:
+            self._signed_s = now_s
+            self._signed.add(self.send("saw", **self.shown()))
 
 
 class SleepyPage:
