@@ -92,10 +92,25 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         # It goes to the court of its first match. Only then, or its move would cut the reload off.
         expect(player.page).to_have_url(re.compile("court=south"))
         player.page.reload()
+        asks_before_it_takes_over(player, sit(there["url"]), link)
         opponents = [play_a_match(player) for _ in range(2)]
         assert len({*opponents}) == len(opponents)
         player.sees(".entrance[data-state=over]", "The contest is over: place")
         assert violations(player.page) == []
+
+
+def asks_before_it_takes_over(driver: Contestant, other: Contestant, link: str) -> None:
+    """Open the link in a second browser while the seat is driven; take the seat over, and back."""
+    driver.stands("seated")
+    other.page.goto(link)
+    other.sees("[role=alert]", f"{PERSON} is driven in another window")
+    driver.stands("seated")
+    other.page.get_by_role("button", name="Take over").click()
+    other.stands("seated")
+    driver.stands("lost")
+    other.page.context.close()
+    driver.page.get_by_role("button", name="Join again").click()
+    driver.stands("seated")
 
 
 def type_wrong_token(player: Contestant, link: str) -> None:

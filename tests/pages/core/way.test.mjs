@@ -6,12 +6,21 @@ import { nextMove } from "../../../client/web/src/core/way.ts";
 
 const called = { state: "court", court: "north", seat: "left", call: "c1" };
 const waits = { state: "waits", court: "south", seat: "", call: "" };
-const fresh = { there: waits, court: "north", call: "", seat: "", mine: "", seen: false };
+const fresh = {
+  ...{ there: waits, court: "north", call: "", seat: "", mine: "", seen: false },
+  driven: false,
+};
 const playing = { ...fresh, there: called, call: "c1", seat: "left", mine: "c1" };
 
 const TABLE = [
   ["waits without a seat", fresh, "stay"],
   ["is called to this court", { ...fresh, there: called, call: "c1" }, "join"],
+  [
+    "is called, and its seat is driven by another page",
+    { ...fresh, there: called, call: "c1", driven: true },
+    "ask",
+  ],
+  ["drives its seat itself", { ...playing, mine: "", driven: true }, "hold"],
   ["is called, and the page does not see the match yet", { ...fresh, there: called }, "stay"],
   ["is called to another court", { ...fresh, there: { ...called, court: "south" } }, "go"],
   ["has joined", { ...playing, mine: "" }, "hold"],

@@ -6,7 +6,7 @@ import type { Refused } from "./connection";
 import type { Court } from "./court";
 import type { Player } from "./player";
 import { type Move, nextMove } from "./way";
-import { Phase, type Whereabouts } from "./wire";
+import { Phase, SeatFlag, type Whereabouts } from "./wire";
 
 const ASK_MS = 2000;
 const LOOK_MS = 250;
@@ -26,7 +26,11 @@ export class Team {
   readonly there = signal<Whereabouts | null>(null);
   /** Why the token was refused. */
   readonly refusal = signal<Refused | null>(null);
+  /** Whether somebody else drives the team's seat now, and this page must not take it unasked. */
+  readonly driven = signal(false);
   private mine = "";
+  /** The call whose seat a person takes from whoever drives it. */
+  private taken = "";
   private officialMs = 0;
   private triedMs = 0;
   private isAsking = false;
@@ -68,6 +72,12 @@ export class Team {
     this.there.value = null;
   }
 
+  /** Take the seat from whoever drives it now. */
+  takeOver(): void {
+    this.taken = this.there.peek()?.call ?? "";
+    this.look();
+  }
+
   private async ask(): Promise<void> {
     if (!this.isOn.peek() || this.isAsking || !this.court.live.peek()) return;
     this.isAsking = true;
@@ -104,9 +114,18 @@ export class Team {
       seat: held || wanted,
       mine: this.mine,
       seen: now - this.officialMs > RESULT_MS,
+      driven: there.call !== this.taken && this.isDriven(there.seat),
     });
+    this.driven.value = move === "ask";
     this.player.next.value = there.call && there.call === this.mine ? null : there.said;
     this.make(move, there, now);
+  }
+
+  /** Whether somebody joined the seat and was heard within the last second. */
+  private isDriven(seat: string): boolean {
+    const index = this.court.sheet.peek()?.seats.findIndex(({ id }) => id === seat) ?? -1;
+    const flags = this.court.frame.peek()?.seats[index]?.flags ?? 0;
+    return (flags & (SeatFlag.JOINED | SeatFlag.SILENT)) === SeatFlag.JOINED;
   }
 
   private make(move: Move, there: Whereabouts, now: number): void {

@@ -15,6 +15,8 @@ export interface Situation {
   mine: string;
   /** The match has been official for long enough that its result was seen. */
   seen: boolean;
+  /** Somebody else drives the seat of the call: another page, or a program. */
+  driven: boolean;
 }
 
 /**
@@ -24,12 +26,13 @@ export interface Situation {
  * - `hold`: the seat is that of the call: the page plays it.
  * - `rest`: the match is over for this page: it gives the seat up and waits.
  * - `join`: take the seat at this court.
+ * - `ask`: ask whether to take it from who drives it now.
  * - `go`: go to another court.
  */
-export type Move = "stay" | "hold" | "rest" | "join" | "go";
+export type Move = "stay" | "hold" | "rest" | "join" | "ask" | "go";
 
 /** Decide what the page does next. */
-export function nextMove({ there, court, call, seat, mine, seen }: Situation): Move {
+export function nextMove({ there, court, call, seat, mine, seen, driven }: Situation): Move {
   const isCalled = there.state === "court";
   if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
   const isHere = isCalled && there.court === court;
@@ -37,5 +40,7 @@ export function nextMove({ there, court, call, seat, mine, seen }: Situation): M
   // The result stays for a while, unless another match has taken its place.
   if (seat && mine && call === mine && !seen) return "stay";
   if (!isCalled) return seat ? "rest" : "stay";
-  return isHere ? (call === there.call ? "join" : "stay") : "go";
+  if (!isHere) return "go";
+  if (call !== there.call) return "stay";
+  return driven ? "ask" : "join";
 }

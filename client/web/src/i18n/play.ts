@@ -71,6 +71,11 @@ export const play = {
     "Keep this page open: it goes to your court by itself.",
     "このページを開いたままにしてください。時間になると自動でコートに移ります。",
   ],
+  "team.driven": [
+    "{team} is driven in another window or on another device.",
+    "{team} は別の画面か別の端末で操縦されています。",
+  ],
+  "team.takeOver": ["Take over", "操縦を引き継ぐ"],
   "team.thanks": ["Thank you for playing", "お疲れさまでした"],
   "team.other": ["Another team", "別のチーム"],
 

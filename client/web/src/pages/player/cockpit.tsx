@@ -112,6 +112,14 @@ export function Cockpit({ alone }: { alone: boolean }) {
     }
   };
   useWindowFocus(hasFocus);
+  useEffect(() => {
+    // The back button, or a closed tab, leaves the robot standing: the browser asks first.
+    const ask = (event: BeforeUnloadEvent) => {
+      if (player.standing.peek() === "seated" && isMatchOn()) event.preventDefault();
+    };
+    addEventListener("beforeunload", ask);
+    return () => removeEventListener("beforeunload", ask);
+  }, []);
   useKeyboard(
     field,
     {

@@ -37,8 +37,16 @@ export function TeamCard({ court, team }: Props) {
           <p class="muted">{t("team.before", { count: Number(there.games_before) })}</p>
         )}
       </div>
-      {isOver ? (
-        <a class="button strong" href={`watch${location.search}`}>
+      {team.driven.value && (
+        <>
+          <p role="alert">{t("team.driven", { team: there.team })}</p>
+          <button class="button strong" type="button" onClick={() => team.takeOver()}>
+            {t("team.takeOver")}
+          </button>
+        </>
+      )}
+      {isOver || team.driven.value ? (
+        <a class={`button ${isOver ? "strong" : ""}`} href={`watch${location.search}`}>
           {t("watching.watch")}
         </a>
       ) : (
