@@ -89,6 +89,11 @@ class Office:
         """Whether nothing is left to play or to draw."""
         return self.contest.over
 
+    @property
+    def is_superseded(self) -> bool:
+        """Whether a court has heard a later office of this contest."""
+        return any(link.is_superseded for link in self._links.values() if link is not None)
+
     def connect(self, court: str, link: CourtLink, address: str) -> None:
         """Use another connection to a court from now on.
 
