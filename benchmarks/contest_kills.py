@@ -1,11 +1,16 @@
 """Kills office, courts and gateway of a contest at random moments; checks that nothing is lost.
 
     python -m benchmarks.contest_kills --teams 30 --courts 4 --kills 100
+    python -m benchmarks.contest_kills --teams 12 --courts 2 --machines 20 --seconds 40 --speed 4
 
 Bots play a Swiss stage of five rounds and a double knockout of the best eight at 20 times the
 speed. Their robots stand still, so each game has the same result whenever it is played. The contest
 is played twice, once undisturbed, and once with kills (SIGKILL). A killed office is started again
 with the same command; it starts a killed court or gateway itself.
+
+With `--machines` whole machines are lost instead: all processes of the office's machine are killed
+at a random moment in which all courts play, and its folder is moved away. The contest goes on at a
+second machine, which a third one copies, and so on.
 """
 
 import argparse
@@ -21,6 +26,7 @@ from typing import Any
 
 import psutil
 
+from benchmarks.machines_lost import Relay
 from benchmarks.processes import LACOC, free_port, read_line, started
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
@@ -29,19 +35,20 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Played, Recalled
 from lacoc_shared.contest.tokens import new_token
 
 _REST_S = 1.0
+_CALM_SPEED = 20.0
 _BOT = "def bot(sheet, seat):\n    return lambda frame: None\n"
 _STAGES = """
 [stage.swiss]
 format = "swiss"
 rounds = 5
-settings = { match = { duration_s = 4.0, countdown_s = 1.0, start = "ready" } }
+settings = {{ match = {{ duration_s = {seconds}, countdown_s = 1.0, start = "ready" }} }}
 
 [stage.finals]
 format = "double-knockout"
 after = "swiss"
 teams = 8
 extra_games = 0
-settings = { match = { duration_s = 4.0, countdown_s = 1.0, start = "ready" } }
+settings = {{ match = {{ duration_s = {seconds}, countdown_s = 1.0, start = "ready" }} }}
 """
 
 
@@ -51,29 +58,41 @@ def main() -> None:
     parser.add_argument("--teams", type=int, default=30)
     parser.add_argument("--courts", type=int, default=4)
     parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--machines", type=int, default=0, help="office's machines that are lost")
+    parser.add_argument("--seconds", type=float, default=4.0, help="length of a game")
+    parser.add_argument("--speed", type=float, default=_CALM_SPEED)
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        calm = _contest(Path(folder, "calm"), options.teams, options.courts)
+        calm = _contest(Path(folder, "calm"), options.teams, options.courts, options.seconds)
         chance = random.Random(options.seed)
         killed: Counter[str] = Counter()
-        calm_s = _play(calm, 0, chance, killed)
-        wild = _contest(Path(folder, "wild"), options.teams, options.courts)
-        wild_s = _play(wild, options.kills, chance, killed)
-        right = _report(calm, wild, killed, calm_s, wild_s)
+        calm_s = _play(calm, _CALM_SPEED, 0, chance, killed)
+        wild = _contest(Path(folder, "wild"), options.teams, options.courts, options.seconds)
+        right = True
+        if options.machines:
+            begun_s = time.monotonic()
+            relay = Relay(wild, options.speed, options.courts, chance)
+            wild = relay.run(options.machines)
+            wild_s = time.monotonic() - begun_s
+            right = relay.report(wild)
+        else:
+            wild_s = _play(wild, options.speed, options.kills, chance, killed)
+        right &= _report(calm, wild, killed, calm_s, wild_s)
     sys.exit(0 if right else 1)
 
 
-def _contest(folder: Path, teams: int, courts: int) -> Path:
+def _contest(folder: Path, teams: int, courts: int, seconds: float) -> Path:
     folder.mkdir()
     text = f'[contest]\nname = "Kills"\nleast_rest_s = {_REST_S}\n'
     text += f'\n[office]\ntoken = "{new_token()}"\n'
+    text += f'\n[standby]\noffice = "127.0.0.1:{free_port()}"\ntoken = "{new_token()}"\n'
     for number in range(1, courts + 1):
         listen = f'listen = ["127.0.0.1:{free_port()}"]'
         text += f'\n[court.court-{number}]\narena = "othello"\n{listen}\n'
         text += f'[court.court-{number}.referee]\ntoken = "{new_token()}"\n'
     file = folder / "contest.toml"
-    file.write_text(text + _STAGES)
+    file.write_text(text + _STAGES.format(seconds=seconds))
     bot = folder / "bot.py"
     bot.write_text(_BOT)
     for number in range(1, teams + 1):
@@ -81,11 +100,13 @@ def _contest(folder: Path, teams: int, courts: int) -> Path:
     return file
 
 
-def _play(file: Path, kills: int, chance: random.Random, killed: Counter[str]) -> float:
+def _play(
+    file: Path, speed: float, kills: int, chance: random.Random, killed: Counter[str]
+) -> float:
     """Play a contest to its end, with kills on the way; return how long it took [s]."""
     begun_s = time.monotonic()
     while True:
-        words = ("contest", "run", str(file), "--until-over", "--speed", "20", "--json")
+        words = ("contest", "run", str(file), "--until-over", "--speed", str(speed), "--json")
         with started(LACOC, *words) as process:
             read_line(process)
             while process.poll() is None:

@@ -118,7 +118,7 @@ class _Trial:
         desk.answer(Apply(secret=self._code, team=_WAITS, files=self._files))
         self._mine = self._tokens.of(_MINE)
         self._others = {team: self._tokens.of(team) for team in (*_IN, _WAITS)}
-        service = stack.enter_context(DeskService(desk))
+        service = stack.enter_context(DeskService(desk.judge))
         self._honest = stack.enter_context(open_client([service.address]))
         self._hostile = [
             stack.enter_context(open_client([service.address])) for _ in range(_SESSIONS)

@@ -100,6 +100,8 @@ def test_a_court_that_is_gone_loses_a_game_that_has_not_begun(
     north = {} if seen is None else {"north": seen._replace(call=call.id if seen.call else "")}
     assert list(taken_back(cup.contest, north, NOW_MS + LOST_MS)) == []
     assert bool(list(taken_back(cup.contest, north, NOW_MS + LOST_MS + 1))) == is_lost
+    started_ms = NOW_MS + 1  # an office that has just started has not listened long enough
+    assert list(taken_back(cup.contest, north, NOW_MS + LOST_MS + 1, started_ms)) == []
 
 
 def test_a_game_that_is_not_needed_comes_back() -> None:

@@ -12,7 +12,16 @@ from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Done, Refusal, SentFile
-from lacoc_shared.messages.office import Assign, AssignedSeat, Copied, Copy, Retire, Withdraw
+from lacoc_shared.messages.office import (
+    EARLIER_OFFICE,
+    Assign,
+    AssignedSeat,
+    Copied,
+    Copy,
+    Retire,
+    Tell,
+    Withdraw,
+)
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
 
@@ -205,6 +214,31 @@ def test_only_the_office_copies_and_retires() -> None:
     assert desk.later("copy", encode(Copy(token=OFFICE, match_id="m")))() == Copied(file="m")
     assert desk.judge("retire", encode(Retire(token=OFFICE))) == Done()
     assert desk.retired
+
+
+def test_an_earlier_office_is_refused() -> None:
+    """From the first request of a later office on, the earlier one can't do anything.
+
+    Whoever has no token changes nothing with a later generation.
+    """
+    desk = Desk()
+    stranger = encode(Withdraw(token="a guess", call="c1", generation=9))
+    assert desk.refusal("withdraw", stranger) == say("refused.no-office-token")
+    answer = desk.later("assign", assign())
+    later = encode(Withdraw(token=OFFICE, call="c9", generation=1))
+    assert desk.judge("withdraw", later) == Done()
+    requests = {
+        "assign": assign("c2"),
+        "withdraw": withdraw(),
+        "tell": encode(Tell(token=OFFICE, teams={})),
+        "copy": encode(Copy(token=OFFICE, match_id="m")),
+        "retire": encode(Retire(token=OFFICE)),
+    }
+    for what, request in requests.items():
+        assert desk.judge(what, request) == Refusal(EARLIER_OFFICE, again=True)
+    assert not desk.retired
+    assert desk.prepared == ["c1"]
+    assert answer() is None
 
 
 @given(st.sampled_from(["assign", "withdraw", "copy", "retire", "x"]), st.binary(max_size=300))

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from assigned import (
     FIXTURE,
+    OFFICE,
     QUICK,
     WHISTLE,
     Office,
@@ -31,7 +32,7 @@ from lacoc_shared.command.child import NOT_AGAIN
 from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, Keys
 from lacoc_shared.messages import Done, Refusal, SentFile
-from lacoc_shared.messages.office import WAITING, Whereabouts
+from lacoc_shared.messages.office import EARLIER_OFFICE, WAITING, Whereabouts
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NoReply, open_client
 from lacoc_shared.record.files import segment_paths
@@ -295,12 +296,20 @@ def test_a_record_is_copied_while_it_is_written(
 
 
 def test_a_court_that_is_told_to_retire_ends_for_good(tmp_path: Path) -> None:
-    """The court ends with the exit code after which nobody starts it again; its match stays."""
+    """The court ends with the exit code after which nobody starts it again; its match stays.
+
+    An earlier office can't tell it to, and notices that there is a later one.
+    """
     contest = write_office_contest(tmp_path / "contest.toml")
     with office_of(contest, tmp_path / "recordings") as office:
         office.assign("Ants", "Bees")
+        later = CourtLink(office.session, "main", OFFICE, generation=1)
+        assert later.withdraw(new_call()).wait() == Done()
+        assert not later.is_superseded
+        assert office.link.retire().wait() == Refusal(EARLIER_OFFICE, again=True)
+        assert office.link.is_superseded
         with suppress(NoReply):
-            office.link.retire().wait()
+            later.retire().wait()
         assert office.process.wait(LIMIT_S) == NOT_AGAIN
     assert [*(tmp_path / "recordings").glob("*.live.mcap")]
 

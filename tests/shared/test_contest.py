@@ -133,7 +133,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         (
             "[contest]",
             "[contst]",
-            r"no entry \"contst\".*contest, limits, health, office, court",
+            r"no entry \"contst\".*contest, limits, health, office, standby, court",
         ),
         ('arena = "othello"', 'arena = "a\\u0000/b"', "is not a path"),
         ('robot = "robots/own.toml"', 'robot = "~nobody-here/b"', "is not a path"),
@@ -322,6 +322,43 @@ def test_mistakes_with_courts_elsewhere_are_told(file: Path) -> None:
     same = ELSEWHERE.replace("10.0.0.8:7450", "10.0.0.7")
     file.write_text('[office]\ntoken = "token-of-the-office"\n' + same)
     with pytest.raises(UserError, match=r'court\.second.*"main" is elsewhere at .*:7447 too'):
+        contests.load(file)
+
+
+STANDBY = """
+[office]
+token = "token-of-the-office"
+[standby]
+office = "{office}"
+token = "{token}"
+"""
+
+
+def test_a_second_machine_has_an_address_and_a_token(file: Path) -> None:
+    """The office lets it copy at the same port of every address of its own machine."""
+    text = STANDBY.format(office="10.0.0.7:7440", token="token-of-the-standby")
+    file.write_text(text + TWO.format(main="", second='listen = ["127.0.0.1:7448"]'))
+    found = contests.load(file).standby
+    assert found is not None
+    assert (found.office, found.listen) == ("tcp/10.0.0.7:7440", "tcp/0.0.0.0:7440")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[standby]\noffice = '10.0.0.7:1'\ntoken = 'token-of-standby'\n", "only an office can be"),
+        (STANDBY.format(office="10.0.0.7:7448", token="token-of-standby"), '"second" listens at'),
+        (STANDBY.format(office="10.0.0.7:1", token="token-of-the-office"), "own token"),
+        (STANDBY.format(office="10.0.0.7:1", token="referee-token-of-main"), "own token"),
+        (STANDBY.format(office="x y", token="token-of-standby"), r"\[standby\]"),
+        (STANDBY.format(office="tls/10.0.0.7:1", token="token-of-standby"), r"\[standby\]"),
+        (STANDBY.format(office="10.0.0.7:1", token="short"), r"standby\.token"),
+    ],
+)
+def test_mistakes_with_a_second_machine_are_told(file: Path, text: str, said: str) -> None:
+    """It needs an office, a port that no court has, and a token that is sent nowhere else."""
+    file.write_text(text + TWO.format(main="", second='listen = ["127.0.0.1:7448"]'))
+    with pytest.raises(UserError, match=said):
         contests.load(file)
 
 

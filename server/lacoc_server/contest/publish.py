@@ -1,13 +1,13 @@
 """A contest as a folder that anybody can read, serve as a website, and check."""
 
-import os
 import shutil
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.replacing import replace, write
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Played
@@ -71,25 +71,6 @@ def tables(sheet: ContestSheet) -> dict[str, bytes]:
     return {STANDINGS: csv_text(_standings(sheet)), GAMES: csv_text(_games(sheet))}
 
 
-def write(path: Path, content: bytes) -> None:
-    """Write a file; whoever reads it meanwhile finds the old one or the new one, whole.
-
-    Raises:
-        OSError: if it can't be written.
-    """
-    _replace(path, lambda part: part.write_bytes(content))
-
-
-def _replace(path: Path, write_part: Callable[[Path], object]) -> None:
-    """Write a file beside a path with `write_part`; it gets the path when it is whole."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        write_part(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
 def records_of(facts: Iterable[AnyFact]) -> dict[str, str]:
     """Return the hashes of all records by file name; "": it is not known."""
     played = (fact for fact in facts if isinstance(fact, Played) and fact.record)
@@ -110,7 +91,7 @@ def _save_record(source: Path, to: Path, wanted: str) -> None:
     segments = segment_paths(source.parent, source.stem)
     try:
         if segments and not regular.is_regular(source):
-            _replace(to, lambda part: pack.write(pack.read(segments), part))
+            replace(to, lambda part: pack.write(pack.read(segments), part))
             return
     except UserError:
         if not regular.is_regular(source):  # else the court has packed it meanwhile
@@ -131,7 +112,7 @@ def _copy(source: Path, to: Path, wanted: str) -> None:
         raise UserError(say("contest.record-changed", file=str(source)))
     if regular.is_regular(to) and file_hash(to) == found:
         return
-    _replace(to, lambda part: shutil.copyfile(source, part))
+    replace(to, lambda part: shutil.copyfile(source, part))
 
 
 def _standings(sheet: ContestSheet) -> list[Sequence[object]]:

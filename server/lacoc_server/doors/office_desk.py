@@ -8,7 +8,7 @@ again whenever an answer did not arrive: the same call is accepted once.
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Generic, NamedTuple, TypeVar
+from typing import Annotated, Generic, NamedTuple, TypeVar
 
 import msgspec
 
@@ -20,6 +20,7 @@ from lacoc_shared.codec import encode
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import (
+    EARLIER_OFFICE,
     Assign,
     AssignedSeat,
     Copied,
@@ -65,6 +66,7 @@ class Wanted(NamedTuple, Generic[T]):
 
 class _Token(msgspec.Struct):
     token: str
+    generation: Annotated[int, msgspec.Meta(ge=0)] = 0
 
 
 class OfficeDesk(Generic[T]):
@@ -92,6 +94,8 @@ class OfficeDesk(Generic[T]):
         """Answers teams with what the office tells."""
         self.refused: Counter[str] = Counter()
         """Number of refusals by `Why`."""
+        self._generation = 0
+        """Generation of the latest office that was heard."""
         self._call = ""
         self._phase = Phase.CREATED
         self._past: deque[str] = deque(maxlen=_REMEMBERED)
@@ -119,9 +123,13 @@ class OfficeDesk(Generic[T]):
             payload: should be an `Assign`, a `Withdraw`, a `Tell`, a `Copy` or a `Retire`.
         """
         try:
-            token = codec.decode(payload, _Token, ASSIGN_MAX_BYTES).token
-            if not seal.verify_token(token, self._token_hash):
+            asking = codec.decode(payload, _Token, ASSIGN_MAX_BYTES)
+            if not seal.verify_token(asking.token, self._token_hash):
                 return self._refuse(Why.WRONG_TOKEN, say("refused.no-office-token"))
+            if asking.generation < self._generation:
+                self.refused[Why.OLD.value] += 1
+                return Refusal(EARLIER_OFFICE, again=True)
+            self._generation = asking.generation
             match what:
                 case "assign":
                     return self._assign(codec.decode(payload, Assign, ASSIGN_MAX_BYTES))

@@ -105,10 +105,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     @property
     def own_listen(self) -> tuple[str, ...]:
         """Addresses at which the court listens on its own machine, which may be elsewhere."""
-        if not self.elsewhere:
-            return self.listen
-        protocol, port = self.elsewhere.partition("/")[0], self.elsewhere.rpartition(":")[2]
-        return (f"{protocol}/{ANY_HOST[0]}:{port}",)
+        return (_any_host(self.elsewhere),) if self.elsewhere else self.listen
 
     @property
     def looks(self) -> dict[str, dict[str, str]]:
@@ -142,6 +139,21 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return f"{protocol}/{any_host}:{port}"
 
 
+class Standby(Holder, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A second machine keeps a copy of all that the office keeps, and the contest can go on there.
+
+    All copies are encrypted with a key that is made from the token. The token itself is never sent.
+    """
+
+    office: str
+    """Address of the office's machine, where the second one copies."""
+
+    @property
+    def listen(self) -> str:
+        """Address at which the office lets the second machine copy."""
+        return _any_host(self.office)
+
+
 class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """A contest file, checked."""
 
@@ -162,6 +174,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Certificates for encryption and access; None: tokens alone, and no encryption."""
     office: Holder | None = None
     """Whoever assigns matches to the courts; None: each court opens its matches itself."""
+    standby: Standby | None = None
+    """The second machine; None: there is none."""
     courts: dict[str, Court]
     stages: dict[str, dict[str, Any]] = {}
     """The stages in their order, as they stand in the file (docs/contest.md)."""
@@ -311,6 +325,7 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     limits: dict[str, Any] = {}
     health: dict[str, Any] = {}
     office: dict[str, Any] | None = None
+    standby: dict[str, Any] | None = None
     court: Annotated[dict[str, Any], msgspec.Meta(min_length=1)]
     stage: dict[str, dict[str, Any]] = {}
 
@@ -344,6 +359,9 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     office = None
     with found:
         office = None if file.office is None else convert(file.office, Holder, "office")
+    standby = None
+    with found:
+        standby = None if file.standby is None else _standby(file.standby, office, courts)
     found.check()
     _check_ports(courts)
     if office is not None:
@@ -360,6 +378,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         public=public,
         keys=keys,
         office=office,
+        standby=standby,
         courts=courts,
         stages=file.stage,
         least_rest_s=general.least_rest_s,
@@ -429,15 +448,38 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
 
 
 def _check_office(office: Holder, courts: dict[str, Court], keys: KeyFolder | None) -> None:
-    tokens = {
-        holder.token
-        for court in courts.values()
-        for holder in (court.referee, *court.seat.values())
-    }
-    if office.token in tokens:
+    if office.token in _tokens(courts):
         raise UserError(say("contest.same-tokens", where="office"))
     if keys is not None:
         raise UserError(say("contest.office-with-keys"))
+
+
+def _standby(table: dict[str, Any], office: Holder | None, courts: dict[str, Court]) -> Standby:
+    found = convert(table, Standby, "standby")
+    try:
+        found = msgspec.structs.replace(found, office=endpoint(found.office))
+        check_protocols([found.office], keys=False)
+    except UserError as error:
+        raise wrong_in("standby", error) from None
+    if office is None:
+        raise UserError(say("contest.standby-without-office"))
+    if found.token in {office.token, *_tokens(courts)}:  # those are sent, and can be overheard
+        raise UserError(say("contest.same-tokens", where="standby"))
+    for name, court in courts.items():
+        for at in collisions([found.listen], court.listen):
+            raise UserError(say("contest.standby-port", court=name, at=at))
+    return found
+
+
+def _tokens(courts: dict[str, Court]) -> set[str]:
+    holders = (one for court in courts.values() for one in (court.referee, *court.seat.values()))
+    return {holder.token for holder in holders}
+
+
+def _any_host(address: str) -> str:
+    """Return an address at all addresses of a machine, with the port of another address."""
+    protocol, port = address.partition("/")[0], address.rpartition(":")[2]
+    return f"{protocol}/{ANY_HOST[0]}:{port}"
 
 
 def _check_ports(courts: dict[str, Court]) -> None:

@@ -76,11 +76,23 @@ WAITING = Assigned(call="", fixture=say("fixture.waiting"), seats=())
 """What a court has from the office while no match is assigned."""
 
 
-class Assign(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: play this match next."""
+EARLIER_OFFICE = say("refused.earlier-office")
+"""Why a court refuses an office that went on at another machine."""
+
+
+class OfficeRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What all requests of an office have."""
 
     token: str
     """The office's token."""
+    generation: Annotated[int, msgspec.Meta(ge=0)] = 0
+    """How often the office has gone to another machine. A court that has heard a later office
+    refuses an earlier one."""
+
+
+class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A request of the office: play this match next."""
+
     call: Call
     fixture: Phrase
     seats: tuple[AssignedSeat, ...]
@@ -97,23 +109,20 @@ class Assign(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         return Assigned(call=self.call, fixture=self.fixture, seats=self.seats)
 
 
-class Withdraw(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A request of the office: close this match, if it has not begun."""
 
-    token: str
     call: Call
     official: bool = False
     """Whether to close it also when its result is official, so that its record ends."""
 
 
-class Copy(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Copy(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A request of the office: send the next part of a match's record.
 
     The office asks again and again, and so keeps a copy of what a court on another machine records.
     """
 
-    token: str
-    """The office's token."""
     match_id: str
     have: dict[str, int] = {}
     """What the office has: bytes of each file, by the file's name."""
@@ -131,11 +140,8 @@ class Copied(msgspec.Struct, frozen=True, kw_only=True):
     """True: the match is over, and the office has all of its record."""
 
 
-class Retire(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Retire(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A request of the office: end your process. Your court goes on at another machine."""
-
-    token: str
-    """The office's token."""
 
 
 class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
@@ -167,11 +173,9 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
     """Rank in the newest stage that is over and has the team; 0: none."""
 
 
-class Tell(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A request of the office: this is where all teams are. It replaces what was told before."""
 
-    token: str
-    """The office's token."""
     teams: dict[TokenHash, Whereabouts]
     """By the salted hash of the team's token. All have one salt, so that a court hashes a token
     once, however many teams there are."""

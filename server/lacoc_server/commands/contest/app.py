@@ -9,6 +9,7 @@ from lacoc_server.commands.contest import (
     inviting,
     playing,
     setting_up,
+    standby,
 )
 
 app = typer.Typer(
@@ -25,6 +26,7 @@ for command in (
     deciding.withdraw,
     playing.run,
     elsewhere.courts,
+    standby.standby,
     playing.standings,
     deciding.draw,
     deciding.decide,

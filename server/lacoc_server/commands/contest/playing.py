@@ -1,5 +1,7 @@
 """Enter teams, play the matches of a contest, and print its standings."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -7,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lacoc_server.commands.contest.setting_up import FILE, FileToRead
-from lacoc_shared.command import options, screen
+from lacoc_shared.command import child, options, screen
 from lacoc_shared.words import render, say
 
 if TYPE_CHECKING:
@@ -119,6 +121,14 @@ def run(
             "Ctrl-C. Not with --headless.",
         ),
     ] = False,
+    take_over: Annotated[
+        bool,
+        typer.Option(
+            "--take-over",
+            help="Go on here, from this machine's copy of an office whose machine is gone "
+            "('lacoc contest standby'). Not with --headless.",
+        ),
+    ] = False,
     json: options.Json = False,
 ) -> None:
     """Play the contest: draw each stage when its teams are known, and play its games.
@@ -138,7 +148,7 @@ def run(
 
     for doubt in organiser.doubts_of(file):
         screen.warn(doubt)
-    with interrupted_by_signals(), screen.progress() as progress:
+    with _retiring(), interrupted_by_signals(), screen.progress() as progress:
         task = progress.add_task(render(say("simulate.matches")), total=None)
 
         def changed(done: int, there: int) -> None:
@@ -150,6 +160,8 @@ def run(
             engine = Pool(jobs) if cluster is None else Cluster(cluster, screen.warn)
             sheet, played = organiser.play_headless(file, steer, engine, changed, screen.warn)
         else:
+            if take_over:
+                _take_over(file)
             sheet, played = (
                 _live(file, changed, speed, listen, browser, entries, until_over, json),
                 None,
@@ -161,6 +173,27 @@ def run(
     _show(sheet)
     if played is not None:
         screen.note(say("contest.played-now", played=played, games=games))
+
+
+@contextmanager
+def _retiring() -> Iterator[None]:
+    """End with `NOT_AGAIN` if the contest's office is at another machine now."""
+    from lacoc_server.contest.kept.machine import Retired
+
+    try:
+        yield
+    except Retired as retired:
+        screen.error(retired.phrase)
+        raise typer.Exit(child.NOT_AGAIN) from None
+
+
+def _take_over(file: Path) -> None:
+    """Make this machine the office, unless it is that already."""
+    from lacoc_server.contest.standby.taking_over import take_over
+
+    said = take_over(file)
+    if said is not None:
+        screen.note(said)
 
 
 def _live(

@@ -94,6 +94,11 @@ least_rest_s = 60          # shortest time between two matches of a team
 [office]                   # gives the courts their matches
 token = "{office}"
 
+# A second machine can copy everything, and go on if this one is lost ('lacoc docs contest-day').
+# [standby]
+# office = "192.168.1.20:7446"   # this machine, where the second one copies
+# token = "{standby}"            # encrypts what is copied
+
 # A stage after another one; 'lacoc docs contest' has all formats and settings. Without
 # start = "ready" a referee starts each game.
 [stage.groups]
@@ -218,7 +223,13 @@ def _event(arena: str, courts: list[str], public: PublicAddress | None) -> str:
     head = _HALL
     if public is not None:
         head = _ONLINE.format(pages=f"{public.pages}/", proxy=public.proxies[0])
-    return _EVENT.format(arena=arena, office=new_token(), courts="".join(tables), public=head)
+    return _EVENT.format(
+        arena=arena,
+        office=new_token(),
+        standby=new_token(),
+        courts="".join(tables),
+        public=head,
+    )
 
 
 def check(file: FileToRead = FILE) -> None:

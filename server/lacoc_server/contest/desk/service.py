@@ -1,10 +1,12 @@
-"""Connects a desk to the network: the gateway sends requests, and threads answer them."""
+"""Connects a desk to the network: others send requests, and threads answer them."""
 
 import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Self
 
-from lacoc_server.contest.desk.desk import Desk
+import msgspec
+
 from lacoc_shared.codec import encode
 from lacoc_shared.command import log
 from lacoc_shared.keyspace import DESK
@@ -16,28 +18,31 @@ _THREADS = 4
 _MOST_AT_ONCE = 64
 """Most requests at a time, with those that are being answered; more are refused, and may be sent
 again."""
-_HERE = "tcp/127.0.0.1:0"
-"""The gateway runs on the machine of the office; no other machine reaches the desk directly."""
+HERE = "tcp/127.0.0.1:0"
+"""The gateway runs on the machine of the office; no other machine reaches its desk directly."""
 
 
 class DeskService:
     """Answers requests to a desk until it is closed; used as a context manager.
 
     Args:
-        desk: the desk.
+        judge: answers an encoded request, or refuses it; any thread may call it.
+        listen: address at which to listen.
 
     Raises:
         UserError: if it can't listen.
     """
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(
+        self, judge: Callable[[bytes], msgspec.Struct | bytes], listen: str = HERE
+    ) -> None:
+        self._judge = judge
         self._threads = ThreadPoolExecutor(_THREADS, thread_name_prefix="desk")
         self._room = threading.Semaphore(_MOST_AT_ONCE)
-        self._session = open_desk([_HERE])
+        self._session = open_desk([listen])
         self._session.answer(DESK, self._arrived)
         self.address = self._session.locators()[0]
-        """Where the gateway finds the desk."""
+        """Where the desk is found."""
 
     def __enter__(self) -> Self:
         return self
@@ -55,7 +60,7 @@ class DeskService:
 
     def _answer(self, request: Request) -> None:
         try:
-            answer = self._desk.judge(request.payload)
+            answer = self._judge(request.payload)
         except Exception as error:  # a bug, but the page must get an answer
             log.get().exception("The desk failed.", error=repr(error))
             answer = Refusal(say("gateway.fault"))

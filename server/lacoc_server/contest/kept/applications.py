@@ -63,13 +63,18 @@ class Applications:
         """The applications by team, the oldest first."""
         return dict(sorted(self._known.items(), key=lambda one: one[1].at_ms))
 
-    def put(self, team: str, entry: Entry) -> None:
+    def put(self, team: str, entry: Entry, at_ms: int | None = None) -> None:
         """Keep the files of a team in place of its earlier ones.
+
+        Args:
+            team: the team.
+            entry: its files.
+            at_ms: when they were handed in, in milliseconds since 1970, UTC; None: now.
 
         Raises:
             UserError: if they can't be written.
         """
-        at_ms = time.time_ns() // 1_000_000
+        at_ms = time.time_ns() // 1_000_000 if at_ms is None else at_ms
         row = (team, at_ms, msgspec.msgpack.encode(entry))
         self._write("INSERT OR REPLACE INTO applications VALUES (?, ?, ?)", row)
         self._known[team] = Application(team, at_ms, entry)

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from lacoc_arenas.arena import Arena
+from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.plans import game, plans
 from lacoc_shared.command.holding import hold
@@ -43,6 +44,8 @@ class ContestFolder:
         """The event code, if it was changed."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"
         """Names of the courts that have left their machine, and are run here since; one a line."""
+        self.machine = machine.path_of(self.facts)
+        """What this machine is to the contest, if it is not simply its office."""
         self._lock = folder / f"{file.stem}.lock"
         self.entries = EntryFolder(
             (folder / "entries").resolve()

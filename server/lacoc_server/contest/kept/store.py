@@ -2,13 +2,14 @@
 
 import sqlite3
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Self
 
 import msgspec
 
-from lacoc_server.contest.league.facts import AnyFact
+from lacoc_server.contest.kept import machine
+from lacoc_server.contest.league.facts import AnyFact, TakenOver, generation, new
 from lacoc_shared.command import database
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import UserError, text_of
@@ -16,6 +17,7 @@ from lacoc_shared.words import say
 
 _APPLICATION, _VERSION = 0x4C434654, 1
 """Numbers in the file's header that mark facts: "LCFT" in ASCII, and the version of `_TABLES`."""
+_INSERT = "INSERT INTO facts VALUES (?, ?, ?)"
 _TABLES = (
     "CREATE TABLE facts (number INTEGER PRIMARY KEY, at_ms INTEGER NOT NULL, body TEXT NOT NULL)",
     "CREATE TRIGGER unchanged BEFORE UPDATE ON facts BEGIN SELECT RAISE(ABORT, 'facts stay'); END",
@@ -68,20 +70,77 @@ class FactStore:
                 nothing is appended.
 
         Raises:
+            UserError: if the file can't be read or written, or the contest's office is not on this
+                machine; nothing is appended then.
+        """
+        self._decide(decision, machine.check_office)
+
+    def take_over(self) -> None:
+        """Append that the office goes on at this machine, which has a copy of its facts.
+
+        Raises:
             UserError: if the file can't be read or written; nothing is appended then.
         """
+        self._decide(lambda _: [new(TakenOver)], lambda _: None)
+
+    def _decide(
+        self,
+        decision: Callable[[tuple[AnyFact, ...]], Iterable[AnyFact]],
+        check: Callable[[machine.Machine], None],
+    ) -> None:
         now_ms = time.time_ns() // 1_000_000
         try:
             with self._db:
                 self._db.execute("BEGIN IMMEDIATE")
+                check(machine.read(machine.path_of(self._path)))
                 known = self.facts()
-                last = known[-1].number if known else 0
+                last, moves = known[-1].number if known else 0, generation(known)
                 for number, fact in enumerate(decision(known), last + 1):
+                    moves += isinstance(fact, TakenOver)
                     placed = msgspec.structs.replace(
-                        fact, id=f"f{number}", number=number, at_ms=now_ms
+                        fact, id=_id(number, moves), number=number, at_ms=now_ms
                     )
                     row = (number, now_ms, msgspec.json.encode(placed).decode())
-                    self._db.execute("INSERT INTO facts VALUES (?, ?, ?)", row)
+                    self._db.execute(_INSERT, row)
+        except sqlite3.Error as error:
+            raise self._problem(error) from None
+
+    def bodies(self, after: int, most_bytes: int) -> list[str]:
+        """Read facts as they are stored, in their order: at least one if there is one.
+
+        Args:
+            after: number of the last fact before them.
+            most_bytes: how long all of them may be.
+
+        Raises:
+            UserError: if the file can't be read.
+        """
+        found: list[str] = []
+        try:
+            select = "SELECT body FROM facts WHERE number > ? ORDER BY number"
+            for (body,) in self._db.execute(select, (after,)):
+                most_bytes -= len(body)
+                if found and most_bytes < 0:
+                    break
+                found.append(body)
+        except sqlite3.Error as error:
+            raise self._problem(error) from None
+        return found
+
+    def copy(self, facts: Sequence[AnyFact], bodies: Sequence[str]) -> None:
+        """Store facts of another machine as they are there.
+
+        Args:
+            facts: the facts, which follow those that are here.
+            bodies: how they are stored there.
+
+        Raises:
+            UserError: if the file can't be written; nothing is stored then.
+        """
+        rows = [(one.number, one.at_ms, body) for one, body in zip(facts, bodies, strict=True)]
+        try:
+            with self._db:
+                self._db.executemany(_INSERT, rows)
         except sqlite3.Error as error:
             raise self._problem(error) from None
 
@@ -108,3 +167,13 @@ class FactStore:
         if isinstance(found, UserError):
             return found
         return UserError(say("contest.facts-damaged", file=text_of(self._path), why=str(found)))
+
+
+def _id(number: int, moves: int) -> str:
+    """Return the id of a fact; two machines give no two facts the same one.
+
+    Args:
+        number: the fact's place among all facts.
+        moves: how often the office has gone to another machine.
+    """
+    return f"f{number}.{moves}" if moves else f"f{number}"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from lacoc_server.contest.publish import write
+from lacoc_server.contest.kept.replacing import write
 from lacoc_shared import seal
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.mistakes import UserError

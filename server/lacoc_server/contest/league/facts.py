@@ -219,12 +219,19 @@ class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
     """It is not called before this time, in milliseconds since 1970, UTC."""
 
 
+class TakenOver(Fact, frozen=True, kw_only=True, tag="taken-over"):
+    """The office goes on at another machine, from a copy of the facts before this one.
+
+    The machine before may have appended other facts since; those do not count.
+    """
+
+
 OfDecision = Withdrawn | Disqualified | FilesChanged | NoShow | Replaced | Replay | Voided
 """What people decide, with a reason; no record can prove it."""
 OfTeam = Entered | Closed | Withdrawn | Disqualified | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Drawn | RoundDrawn
-AnyFact = OfTeam | OfMatch | OfStage
+AnyFact = OfTeam | OfMatch | OfStage | TakenOver
 
 
 _Kind = TypeVar("_Kind", bound=Fact)
@@ -233,6 +240,11 @@ _Kind = TypeVar("_Kind", bound=Fact)
 def new(kind: type[_Kind], **values: Any) -> _Kind:
     """Make a fact that has no place among the facts yet; a store gives it one."""
     return kind(id="new", number=0, **values)
+
+
+def generation(facts: Iterable[AnyFact]) -> int:
+    """Return how often the office has gone to another machine."""
+    return sum(isinstance(fact, TakenOver) for fact in facts)
 
 
 def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:

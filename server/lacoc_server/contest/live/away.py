@@ -21,7 +21,7 @@ from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import is_open
-from lacoc_shared.network.session import NotConnected, open_client
+from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.words import Phrase, say
 
 T = TypeVar("T")
@@ -88,6 +88,7 @@ class AwayCourt:
     Args:
         where: the contest.
         name: the court's name.
+        link_to: makes the office's connection to a court, from a session and the court's name.
         open_here: returns a context manager that runs the court on this machine, and gives its
             address.
         tell: told what becomes of the court.
@@ -97,14 +98,14 @@ class AwayCourt:
         self,
         where: ContestFolder,
         name: str,
+        link_to: Callable[[Session, str], CourtLink],
         open_here: Callable[[str], AbstractContextManager[str]],
         tell: Callable[[Phrase], None],
     ) -> None:
-        assert where.contest.office is not None, "only a contest with an office has such courts"
         self.name = name
         self._where = where
         self._entry = where.contest.courts[name]
-        self._token = where.contest.office.token
+        self._link_to = link_to
         self._open_here = open_here
         self._tell = tell
         self._copy = RecordCopy(where.records, name)
@@ -178,7 +179,7 @@ class AwayCourt:
             session = self._opened.enter_context(open_client([self._entry.elsewhere]))
         except NotConnected:  # it has gone again
             return None
-        return CourtLink(session, self.name, self._token)
+        return self._link_to(session, self.name)
 
     def _look(self, link: CourtLink, closing: bool) -> None:
         """Have the record of the court's match copied."""
@@ -209,7 +210,7 @@ class AwayCourt:
         except UserError as error:
             self._tell(say("away.can-not-open", court=self.name, why=error.phrase))
             return None
-        return address, CourtLink(session, self.name, self._token)
+        return address, self._link_to(session, self.name)
 
     def _end_elsewhere(self) -> None:
         """End the court on the other machine, if it comes back."""

@@ -52,12 +52,20 @@ def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
             )
 
 
-def taken_back(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Iterator[AnyFact]:
+def taken_back(
+    contest: Contest, seen: Mapping[str, Seen], now_ms: int, since_ms: int = 0
+) -> Iterator[AnyFact]:
     """Yield the games that are taken back from their courts.
 
     These are games that are not needed any more, because a team has left; games that were moved to
     another court or a later time; and games of courts that were not heard for `LOST_MS`. A game
     that has begun stays with a court that is heard: a court that was killed goes on with it.
+
+    Args:
+        contest: the contest.
+        seen: the courts.
+        now_ms: the time, in milliseconds since 1970, UTC.
+        since_ms: since when the office listens to its courts.
     """
     needed = {
         (match.pairing.id, match.next_game, match.next_seats)
@@ -77,7 +85,7 @@ def taken_back(contest: Contest, seen: Mapping[str, Seen], now_ms: int) -> Itera
             move.court not in ("", call.court) or move.not_before_ms > now_ms
         ):
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="moved")
-        elif now_ms - max(court.heard_ms, call.at_ms) > LOST_MS:
+        elif now_ms - max(court.heard_ms, call.at_ms, since_ms) > LOST_MS:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="court lost")
 
 

@@ -5,21 +5,21 @@ lost message, a restart of the court or of the office costs half a second, and n
 """
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Generic, NamedTuple, TypeVar
-
-import msgspec
 
 from lacoc_shared import codec
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Done, Event, Frame, Health, Refusal, Sheet
 from lacoc_shared.messages.office import (
+    EARLIER_OFFICE,
     Assign,
     AssignedSeat,
     Copied,
     Copy,
+    OfficeRequest,
     Retire,
     Tell,
     Whereabouts,
@@ -51,11 +51,15 @@ class Asked(Generic[T]):
     Args:
         question: the request.
         kind: the kind of message that the court answers.
+        refused: called with a refusal.
     """
 
-    def __init__(self, question: Question, kind: type[T]) -> None:
+    def __init__(
+        self, question: Question, kind: type[T], refused: Callable[[Refusal], None]
+    ) -> None:
         self._question = question
         self._kind = kind
+        self._refused = refused
 
     def take(self) -> T | Refusal | NoAnswer | None:
         """Return the court's answer, or None if it has not come yet; never blocks."""
@@ -73,9 +77,11 @@ class Asked(Generic[T]):
             return None if answer is None else codec.decode(answer, self._kind, _MAX_BYTES)
         except Refused as refused:
             try:
-                return codec.decode(refused.payload, Refusal, _MAX_BYTES)
+                refusal = codec.decode(refused.payload, Refusal, _MAX_BYTES)
             except codec.BadMessage:
                 return NoAnswer.NO_ANSWER
+            self._refused(refusal)
+            return refusal
         except (NoReply, codec.BadMessage):
             return NoAnswer.NO_ANSWER
 
@@ -100,12 +106,16 @@ class CourtLink:
         session: an open client session at the court's address.
         court: the court's name.
         token: the office's token.
+        generation: how often the office has gone to another machine.
     """
 
-    def __init__(self, session: Session, court: str, token: str) -> None:
+    def __init__(self, session: Session, court: str, token: str, generation: int = 0) -> None:
         self.court = court
+        self.is_superseded = False
+        """Whether the court has heard a later office."""
         self._session = session
         self._token = token
+        self._generation = generation
         self._keys = Keys(court)
         self._frames = session.mailbox(self._keys.frame, 1)
         self._healths = session.mailbox(self._keys.health, 1)
@@ -141,6 +151,7 @@ class CourtLink:
         """
         request = Assign(
             token=self._token,
+            generation=self._generation,
             call=call,
             fixture=fixture,
             seats=tuple(seats),
@@ -157,7 +168,9 @@ class CourtLink:
             call: id of its call.
             official: whether to close it also if its result is official; else this is refused.
         """
-        request = Withdraw(token=self._token, call=call, official=official)
+        request = Withdraw(
+            token=self._token, generation=self._generation, call=call, official=official
+        )
         return self._ask("withdraw", request, Done)
 
     def copy(self, match_id: str, have: Mapping[str, int]) -> Asked[Copied]:
@@ -167,12 +180,15 @@ class CourtLink:
             match_id: the match.
             have: bytes that are here already, by the file's name.
         """
-        request = Copy(token=self._token, match_id=match_id, have=dict(have))
+        request = Copy(
+            token=self._token, generation=self._generation, match_id=match_id, have=dict(have)
+        )
         return self._ask("copy", request, Copied)
 
     def retire(self) -> Asked[Done]:
         """Have the court's process end, because the court goes on elsewhere."""
-        return self._ask("retire", Retire(token=self._token), Done)
+        request = Retire(token=self._token, generation=self._generation)
+        return self._ask("retire", request, Done)
 
     def tell(self, teams: Mapping[str, Whereabouts]) -> Asked[Done]:
         """Tell the court where all teams are.
@@ -180,7 +196,8 @@ class CourtLink:
         Args:
             teams: by the salted hash of the team's token.
         """
-        return self._ask("tell", Tell(token=self._token, teams=dict(teams)), Done)
+        request = Tell(token=self._token, generation=self._generation, teams=dict(teams))
+        return self._ask("tell", request, Done)
 
     def poll(self) -> None:
         """Take in what arrived."""
@@ -262,9 +279,12 @@ class CourtLink:
             newest is not None and newest.match == health.match and newest.number >= health.events
         )
 
-    def _ask(self, what: str, request: msgspec.Struct, kind: type[T]) -> Asked[T]:
-        key = self._keys.office(what)
-        return Asked(self._session.question(key, encode(request), ANSWER_S), kind)
+    def _ask(self, what: str, request: OfficeRequest, kind: type[T]) -> Asked[T]:
+        question = self._session.question(self._keys.office(what), encode(request), ANSWER_S)
+        return Asked(question, kind, self._note)
+
+    def _note(self, refusal: Refusal) -> None:
+        self.is_superseded |= refusal.why == EARLIER_OFFICE
 
 
 def result_of(sheet: Sheet, events: Sequence[Event]) -> CourtResult | None:

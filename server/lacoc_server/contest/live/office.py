@@ -67,6 +67,8 @@ class Office:
         self._least_rest_ms = least_rest_ms
         self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)
+        self._since_ms = _now_ms()
+        """From then on silent courts lose their games: before, nobody listened."""
         self._asked: dict[str, Asked[Done]] = {}
         """Assignments that are not answered yet, by the id of the call."""
         self._asked_ms: dict[str, int] = {}
@@ -86,6 +88,11 @@ class Office:
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
         return self.contest.over
+
+    @property
+    def is_superseded(self) -> bool:
+        """Whether a court has heard a later office of this contest."""
+        return any(link.is_superseded for link in self._links.values() if link is not None)
 
     def connect(self, court: str, link: CourtLink, address: str) -> None:
         """Use another connection to a court from now on.
@@ -115,7 +122,7 @@ class Office:
         self._append(lambda contest: [*refused, *results(contest, seen)])
         while self._may_draw(now_ms) and _draws(self.contest):
             self._append(_draws)
-        self._append(lambda contest: taken_back(contest, seen, now_ms))
+        self._append(lambda contest: taken_back(contest, seen, now_ms, self._since_ms))
         now_ms = _now_ms()  # a result of this step ended before it, and its teams rest
         self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
         for call in wanted(self.contest, seen):

@@ -7,6 +7,7 @@ leaves one, so any court can go on from it.
 import os
 import time
 from collections.abc import Mapping
+from enum import Enum
 from pathlib import Path
 
 from lacoc_server.contest.live.court_link import Asked, CourtLink
@@ -67,48 +68,83 @@ class RecordCopy:
         if self._wanted and link.is_there and now_s >= self._next_s:
             self._next_s = now_s + _AGAIN_S
             match_id = self._wanted[0]
-            self._asked = match_id, link.copy(match_id, self._have(match_id))
-
-    def _have(self, match_id: str) -> dict[str, int]:
-        packed = files.packed_path(self._folder, match_id)
-        paths = [*files.segment_paths(self._folder, match_id), _unfinished(packed)]
-        sizes = {path.name: path.stat().st_size for path in paths if path.exists()}
-        if (size := sizes.pop(_unfinished(packed).name, None)) is not None:
-            sizes[packed.name] = size
-        return sizes
+            self._asked = match_id, link.copy(match_id, have(self._folder, match_id))
 
     def _take(self, match_id: str, part: Copied) -> None:
-        packed = files.packed_path(self._folder, match_id)
+        match take(self._folder, match_id, part):
+            case Taken.WHOLE:
+                self._wanted.remove(match_id)
+            case Taken.NOTHING:
+                self._wanted.append(self._wanted.pop(0))  # the other matches, then this one again
+            case Taken.MORE:
+                self._next_s = 0.0
+
+
+class Taken(Enum):
+    """What came of an answer to a question for more of a record."""
+
+    MORE = "more"
+    """The copy has grown."""
+    NOTHING = "nothing"
+    """There is nothing new, as far as the other machine knows."""
+    WHOLE = "whole"
+    """The whole packed record is here."""
+
+
+def have(folder: Path, match_id: str) -> dict[str, int]:
+    """Return how many bytes of each file of a match's record are here, by the file's name.
+
+    Args:
+        folder: folder of the records.
+        match_id: the match.
+    """
+    packed = files.packed_path(folder, match_id)
+    paths = [*files.segment_paths(folder, match_id), _unfinished(packed)]
+    sizes = {path.name: path.stat().st_size for path in paths if path.exists()}
+    if (size := sizes.pop(_unfinished(packed).name, None)) is not None:
+        sizes[packed.name] = size
+    return sizes
+
+
+def take(folder: Path, match_id: str, part: Copied) -> Taken:
+    """Add a part to the copy of a match's record; anything else is not written.
+
+    Args:
+        folder: folder of the records; it is made.
+        match_id: the match.
+        part: the answer to a question with what is here (`have`).
+
+    Raises:
+        UserError: if it can't be written.
+    """
+    packed = files.packed_path(folder, match_id)
+    try:
         if part.is_whole:
-            self._finish(match_id, packed)
-        elif not part.file:
-            self._wanted.append(self._wanted.pop(0))  # the other matches, then this one again
-        elif continues(match_id, self._have(match_id), part):
-            path = self._folder / part.file
-            self._append(_unfinished(packed) if path == packed else path, part)
-            self._next_s = 0.0
+            _finish(folder, match_id, packed)
+            return Taken.WHOLE
+        if not continues(match_id, have(folder, match_id), part):
+            return Taken.NOTHING
+        path = folder / part.file
+        folder.mkdir(parents=True, exist_ok=True)
+        with (_unfinished(packed) if path == packed else path).open("ab") as file:
+            file.write(part.data)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=str(folder), why=why)) from None
+    return Taken.MORE
 
-    def _append(self, path: Path, part: Copied) -> None:
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            with path.open("ab") as file:
-                file.write(part.data)
-        except OSError as error:
-            why = error.strerror or str(error)
-            raise UserError(say("command.cannot-write", path=str(path), why=why)) from None
 
-    def _finish(self, match_id: str, packed: Path) -> None:
-        """Give the whole packed record its name; its segments are not needed any more."""
-        self._wanted.remove(match_id)
-        unfinished = _unfinished(packed)
-        if not unfinished.exists():
-            return
-        with unfinished.open("rb+") as file:
-            os.fsync(file.fileno())
-        unfinished.rename(packed)
-        for segment in files.segment_paths(self._folder, match_id):
-            segment.unlink(missing_ok=True)
-        files.sync_folder(self._folder)
+def _finish(folder: Path, match_id: str, packed: Path) -> None:
+    """Give the whole packed record its name; its segments are not needed any more."""
+    unfinished = _unfinished(packed)
+    if not unfinished.exists():
+        return
+    with unfinished.open("rb+") as file:
+        os.fsync(file.fileno())
+    unfinished.rename(packed)
+    for segment in files.segment_paths(folder, match_id):
+        segment.unlink(missing_ok=True)
+    files.sync_folder(folder)
 
 
 def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:

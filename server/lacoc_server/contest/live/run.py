@@ -2,7 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, ExitStack
 from functools import partial
 from pathlib import Path
@@ -11,12 +12,14 @@ from typing import NamedTuple
 from lacoc_server.contest.desk.book import Book, milliseconds
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
+from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.kept.tokens import TeamTokens
+from lacoc_server.contest.league.facts import generation
 from lacoc_server.contest.live import venue
 from lacoc_server.contest.live.away import AwayCourt
 from lacoc_server.contest.live.court_link import CourtLink
@@ -24,6 +27,10 @@ from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.ticker import Ticker
 from lacoc_server.contest.organiser import prepare
 from lacoc_server.contest.sheet import ContestSheet
+from lacoc_server.contest.standby.door import StandbyDoor
+from lacoc_server.contest.standby.lookout import Lookout
+from lacoc_server.contest.standby.sealing import Sealing
+from lacoc_server.contest.standby.tenure import Tenure
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest.entrances import event_code, organiser_key
 from lacoc_shared.mistakes import UserError
@@ -95,6 +102,7 @@ def play_live(
 
     Raises:
         KeyboardInterrupt: if it is interrupted before the contest is over.
+        Retired: if the contest's office went on at another machine.
         UserError: if the contest runs already, has no stage, no office or too few teams, or
             something goes wrong.
     """
@@ -103,23 +111,31 @@ def play_live(
         raise UserError(say("contest.no-office", file=str(file)))
     with ExitStack() as stack:
         stack.enter_context(where.alone())
+        machine.check_office(machine.read(where.machine))
         store = stack.enter_context(FactStore(where.facts))
+        standby = where.contest.standby
+        tenure = Tenure(where, generation(store.facts()))
+        if standby is not None:
+            sealing = Sealing(standby.token)
+            stack.enter_context(Lookout(tenure, sealing))
+            tenure.check()
         prepare(where, store, entering=entering)
         logs = stack.enter_context(Scratch("contest"))
         run_here = partial(_run_here, where, logs, speed, tell)
-        addresses: dict[str, str] = {}
-        told: dict[str, str] = {}
+        addresses = {name: court.elsewhere for name, court in where.contest.courts.items()}
+        told = dict(addresses)
+        link_to = partial(CourtLink, token=where.contest.office.token, generation=tenure.generation)
         links: dict[str, CourtLink | None] = dict.fromkeys(where.contest.courts)
-        away: list[AwayCourt] = []
-        for name, court in where.contest.courts.items():
-            if court.elsewhere:
-                addresses[name] = told[name] = court.elsewhere
-                away.append(stack.enter_context(AwayCourt(where, name, run_here, tell)))
-                continue
-            addresses[name] = address = stack.enter_context(run_here(name))
-            told[name] = venue.told_address(court, address)
+        away = [
+            stack.enter_context(AwayCourt(where, name, link_to, run_here, tell))
+            for name in filter(addresses.get, addresses)
+        ]
+        here = [name for name, elsewhere in addresses.items() if not elsewhere]
+        for name, address in _opened(stack, {name: run_here(name) for name in here}).items():
+            addresses[name] = address
+            told[name] = venue.told_address(where.contest.courts[name], address)
             session = stack.enter_context(open_client([address]))
-            links[name] = CourtLink(session, name, where.contest.office.token)
+            links[name] = link_to(session, name)
         tokens = TeamTokens(where.tokens)
         rest_ms = round(1000 * where.contest.least_rest_s)
         draw_from_ms = (milliseconds(where.contest.entries_close) or None) if entering else 0
@@ -130,7 +146,11 @@ def play_live(
         code = EventCode(where.event_code, event_code(where.contest))
         book = Book(where, own_store, applications, tokens, code)
         desk = Desk(book, key, lambda: office.known)
-        service = stack.enter_context(DeskService(desk))
+        service = stack.enter_context(DeskService(desk.judge))
+        door = None
+        if standby is not None:
+            door = stack.enter_context(StandbyDoor(where, tenure, applications, sealing))
+            stack.enter_context(DeskService(door.judge, standby.listen))
         bots = stack.enter_context(venue.Bots(where, tokens))
         writer = SheetWriter(where, progress)
         writer(office.contest)
@@ -144,6 +164,9 @@ def play_live(
         try:
             while not (until_over and _is_done(time.monotonic() - over_s - farewell_s, away)):
                 office.step()
+                if office.is_superseded:
+                    tenure.end()
+                tenure.check()
                 now_s = time.monotonic()
                 if office.over and over_s == math.inf:
                     if not until_over:
@@ -157,6 +180,8 @@ def play_live(
                 bots.follow(office.contest)
                 for line in ticker.newest(office.contest, office.facts, office.known):
                     news(line)
+                for line in door.news() if door is not None else ():
+                    tell(line)
                 time.sleep(_STEP_S)
         except KeyboardInterrupt:
             if not office.over:
@@ -169,6 +194,29 @@ def _run_here(
 ) -> AbstractContextManager[str]:
     """Return a context manager that runs a court on this machine, and gives its address."""
     return venue.court(where, name, logs / name, speed, tell, here=True)
+
+
+def _opened(stack: ExitStack, courts: Mapping[str, AbstractContextManager[str]]) -> dict[str, str]:
+    """Open courts, all at the same time, until the stack is closed; return their addresses.
+
+    Raises:
+        UserError: if one can't be opened.
+    """
+
+    def open_one(court: AbstractContextManager[str]) -> tuple[ExitStack, str]:
+        with ExitStack() as own:
+            address = own.enter_context(court)
+            return own.pop_all(), address
+
+    with ThreadPoolExecutor(max(1, len(courts)), "opens courts") as aside:
+        opening = {name: aside.submit(open_one, court) for name, court in courts.items()}
+        try:
+            wait(opening.values())
+        finally:  # Ctrl-C must close them, too
+            for one in opening.values():
+                if one.exception() is None:
+                    stack.push(one.result()[0])
+    return {name: one.result()[1] for name, one in opening.items()}
 
 
 def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:

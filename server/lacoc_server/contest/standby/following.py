@@ -1,0 +1,284 @@
+"""The copy of an office's folder, kept in step.
+
+A step asks what the office has, and copies what is missing: first what facts can name (entries,
+tokens, records), then the facts themselves. The facts of a step were read before its records. So
+whenever copying stops, every record of a result that is here was copied up to its end at least.
+"""
+
+import os
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import NamedTuple, Self
+
+import msgspec
+
+from lacoc_server.contest.kept import machine
+from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.folder import ContestFolder, hash_of
+from lacoc_server.contest.kept.machine import Machine
+from lacoc_server.contest.kept.plans import plans
+from lacoc_server.contest.kept.replacing import write
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.league.facts import AnyFact, Played, generation
+from lacoc_server.contest.live.record_copy import Taken, have, take
+from lacoc_server.contest.publish import entries_of
+from lacoc_server.contest.standby.door import hashes, small_files, unpacked, version_of
+from lacoc_server.contest.standby.messages import Got, Kind, Part, Record, Step, There
+from lacoc_server.contest.standby.other import LacksIt, Other
+from lacoc_shared import codec
+from lacoc_shared.contest import file as contests
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import own_address
+from lacoc_shared.record.files import packed_path
+from lacoc_shared.words import Phrase, say
+
+_ENTRY_MAX_BYTES = 1 << 26
+_TRIES = 5
+"""How often a step is done again at once if something has changed meanwhile."""
+
+
+class _Changed(Exception):
+    """Something has changed at the office while it was copied: the step is done again."""
+
+
+class Ended(Exception):
+    """The office goes on here, or this folder is no copy any more: nothing is copied."""
+
+
+class Copy(NamedTuple):
+    """How far a copy is."""
+
+    at_ms: int
+    """When all of it was as it was at the office, in milliseconds since 1970, UTC; 0: never."""
+    facts: int
+    records: int
+    """Whole records."""
+    open: int
+    """Records that are still written."""
+
+
+class Follower:
+    """Keeps a folder in step with the office of another machine; used as a context manager.
+
+    Args:
+        where: the contest in this machine's folder.
+        other: the office.
+        tell: told what somebody must know.
+
+    Raises:
+        UserError: if something of the folder can't be read.
+    """
+
+    def __init__(self, where: ContestFolder, other: Other, tell: Callable[[Phrase], None]) -> None:
+        assert where.contest.standby is not None, "the contest file names a second machine"
+        port = where.contest.standby.office.rpartition(":")[2]
+        self._address = f"tcp/{own_address()}:{port}"
+        self._where = where
+        self._other = other
+        self._tell = tell
+        self._store = FactStore(where.facts)
+        self._applications = Applications(where.applications)
+        self._facts = self._store.facts()
+        self._generation = generation(self._facts)
+        self._open: set[str] = {*unpacked(where.records), *_missing(where.records, self._facts)}
+        """Ids of the matches whose records are not whole here."""
+        self._wrong_contest: str | None = None
+        """Hash of a contest file that can't be used here."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._store.__exit__()
+        self._applications.__exit__()
+
+    def step(self) -> Copy:
+        """Copy all that has changed; return how far the copy is.
+
+        Raises:
+            NotThere: if the office does not answer. What came before is kept; call this again.
+            Ended: if nothing is to be copied any more.
+            UserError: if the office is not the right one, or something can't be read or written.
+        """
+        for _ in range(_TRIES):
+            with suppress(_Changed):
+                return self._step()
+        raise UserError(say("standby.changes"))
+
+    def _step(self) -> Copy:
+        self._ask_ended()
+        at_ms = time.time_ns() // 1_000_000
+        there = self._ask_step()
+        self._mark()
+        facts = _following(self._facts, there.facts)
+        self._copy_entries(entries_of(facts))
+        self._copy_files(there)
+        self._copy_records(there, facts)
+        if facts:
+            self._store.copy(facts, there.facts)
+            self._facts = (*self._facts, *facts)
+            self._generation = generation(self._facts)
+        self._copy_applications(there)
+        found = self._ask_ended()
+        if not there.has_more:
+            found = msgspec.structs.replace(found, copied_ms=at_ms)
+            machine.save(self._where.machine, found)
+        names = {fact.record for fact in self._facts if isinstance(fact, Played) and fact.record}
+        whole = sum(name.removesuffix(".mcap") not in self._open for name in names)
+        return Copy(found.copied_ms, len(self._facts), whole, len(self._open))
+
+    def _mark(self) -> None:
+        """Mark this folder as a copy, before anything of another machine is written into it."""
+        found = self._ask_ended()
+        if (found.role, found.office) != ("copy", self._other.address):
+            machine.save(self._where.machine, Machine(role="copy", office=self._other.address))
+
+    def _ask_ended(self) -> Machine:
+        found = machine.read(self._where.machine)
+        if found.ends:
+            raise Ended
+        return found
+
+    def _ask_step(self) -> There:
+        last = self._store.bodies(max(0, len(self._facts) - 1), 0)
+        step = Step(
+            generation=self._generation,
+            address=self._address,
+            facts=len(self._facts),
+            last=hash_of(last[0].encode()) if last else "",
+            applications=version_of(self._applications.waiting),
+        )
+        try:
+            return self._other.ask(step, There)
+        except LacksIt as error:
+            raise UserError(error.why) from None
+
+    def _copy_entries(self, wanted: Collection[str]) -> None:
+        for one in sorted(wanted):
+            if not (self._where.entries.path / one).exists():
+                entry = codec.decode(self._fetch("entry", one), Entry, _ENTRY_MAX_BYTES)
+                if entry.hash != one:
+                    raise UserError(say("contest.entry-changed", folder=one))
+                self._where.entries.save(entry)
+
+    def _copy_files(self, there: There) -> None:
+        paths = small_files(self._where)
+        here = hashes(paths)
+        for name, path in paths.items():
+            wanted = there.files.get(name, "")
+            if wanted in (here.get(name, ""), self._wrong_contest):
+                continue
+            if not wanted:
+                path.unlink(missing_ok=True)
+                continue
+            data = self._fetch("file", name)
+            if hash_of(data) != wanted:
+                raise _Changed
+            if name == "contest" and not self._can_use(data):
+                self._wrong_contest = wanted
+                continue
+            with _for_its_owner(path):
+                write(path, data)
+            if name == "contest":
+                self._where = ContestFolder(self._where.file)
+
+    def _can_use(self, data: bytes) -> bool:
+        """Return whether a contest file can be used on this machine; if not, tell why."""
+        path = self._where.file
+        try:
+            found = contests.loads(data, path)
+            plans(found, path)
+        except UserError as error:
+            self._tell(say("standby.bad-contest", why=error.phrase))
+            return False
+        return True
+
+    def _copy_records(self, there: There, facts: Sequence[AnyFact]) -> None:
+        records = self._where.records
+        self._open.update(there.records, _missing(records, facts))
+        for match_id in sorted(self._open):
+            while True:
+                self._ask_ended()
+                asked = Record(
+                    generation=self._generation, match_id=match_id, have=have(records, match_id)
+                )
+                try:
+                    part = self._other.ask(asked, Got).part
+                except LacksIt:  # it is packed just now
+                    raise _Changed from None
+                taken = take(records, match_id, part)
+                if taken is Taken.WHOLE:
+                    self._open.discard(match_id)
+                if taken is not Taken.MORE:
+                    break
+
+    def _copy_applications(self, there: There) -> None:
+        if there.waiting is None:
+            return
+        here = self._applications.waiting
+        if gone := here.keys() - there.waiting.keys():
+            self._applications.drop(*gone)
+        for team, at_ms in there.waiting.items():
+            if team in here and here[team].at_ms == at_ms:
+                continue
+            data = self._fetch("application", team)
+            handed_ms, entry = codec.decode(data, tuple[int, Entry], _ENTRY_MAX_BYTES)
+            self._applications.put(team, entry, handed_ms)
+
+    def _fetch(self, kind: Kind, name: str) -> bytes:
+        data = b""
+        while True:
+            self._ask_ended()
+            asked = Part(generation=self._generation, kind=kind, name=name, offset=len(data))
+            try:
+                part = self._other.ask(asked, Got).part
+            except LacksIt:
+                raise _Changed from None
+            data += part.data
+            if part.is_whole:
+                return data
+
+
+def _following(known: Sequence[AnyFact], bodies: Sequence[str]) -> tuple[AnyFact, ...]:
+    """Read facts that follow known ones.
+
+    Raises:
+        UserError: if they are no facts, or do not follow.
+    """
+    try:
+        facts = tuple(msgspec.json.decode(body, type=AnyFact) for body in bodies)
+    except msgspec.MsgspecError as error:
+        raise UserError(say("league.wrong-facts", error=str(error))) from None
+    first = known[-1].number + 1 if known else 1
+    if [fact.number for fact in facts] != [*range(first, first + len(facts))]:
+        raise UserError(say("standby.other-facts"))
+    return facts
+
+
+def _missing(records: Path, facts: Sequence[AnyFact]) -> Iterator[str]:
+    """Yield the ids of the matches with a result whose packed records are not here."""
+    for fact in facts:
+        if isinstance(fact, Played) and fact.record:
+            match_id = fact.record.removesuffix(".mcap")
+            if not packed_path(records, match_id).exists():
+                yield match_id
+
+
+@contextmanager
+def _for_its_owner(path: Path) -> Iterator[None]:
+    """In the block, only the owner can read new files.
+
+    Raises:
+        UserError: if the file at `path` can't be written in the block.
+    """
+    before = os.umask(0o077)
+    try:
+        yield
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=str(path), why=why)) from None
+    finally:
+        os.umask(before)

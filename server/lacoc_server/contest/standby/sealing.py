@@ -1,0 +1,61 @@
+"""Encrypts what the two machines of an office send each other.
+
+The key is made from a token that stands in the contest file of both machines and is never sent.
+Whoever listens, or answers in place of a machine, learns nothing and is noticed.
+"""
+
+import hashlib
+import os
+
+from cryptography.exceptions import InvalidTag
+from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
+
+_NONCE_BYTES = 12
+
+
+class BadSeal(Exception):
+    """The bytes were not encrypted with this key, or for another purpose, or were changed."""
+
+
+class Sealing:
+    """Encrypts and proves messages with a key that is made from a token.
+
+    Args:
+        token: the token. A short word that a person chose can be guessed with time: the key is
+            made slowly (scrypt).
+    """
+
+    def __init__(self, token: str) -> None:
+        key = hashlib.scrypt(token.encode(), salt=b"lacoc standby", n=1 << 14, r=8, p=1, dklen=32)
+        self._cipher = ChaCha20Poly1305(key)
+
+    def seal(self, message: bytes, purpose: bytes) -> bytes:
+        """Encrypt a message.
+
+        Args:
+            message: the message.
+            purpose: what it is; it opens for this purpose alone.
+        """
+        nonce = os.urandom(_NONCE_BYTES)
+        return nonce + self._cipher.encrypt(nonce, message, purpose)
+
+    def open(self, sealed: bytes, purpose: bytes) -> bytes:
+        """Decrypt a message.
+
+        Args:
+            sealed: the encrypted message.
+            purpose: what it must be.
+
+        Raises:
+            BadSeal: if it was not sealed with this key for this purpose.
+        """
+        nonce, hidden = sealed[:_NONCE_BYTES], sealed[_NONCE_BYTES:]
+        try:
+            return self._cipher.decrypt(nonce, hidden, purpose)
+        except (InvalidTag, ValueError):  # ValueError: too short
+            raise BadSeal from None
+
+
+REQUEST = b"request"
+"""Purpose of a request. The purpose of its answer is the sealed request itself, so that no earlier
+answer can be sent again."""
