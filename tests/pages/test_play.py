@@ -454,6 +454,12 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.page.click("text=Join again")
     page.stands("seated")
     page.phase(Phase.PLAYING)
+    # Whoever leaves the page in a match is asked first.
+    page.page.on("dialog", lambda dialog: dialog.dismiss())
+    with page.page.expect_event("dialog") as asked:
+        page.page.evaluate("setTimeout(() => location.assign('watch'))")
+    assert asked.value.type == "beforeunload"
+    page.stands("seated")
     other.close()
 
 
