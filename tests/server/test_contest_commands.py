@@ -1,10 +1,13 @@
 """Tests of `lacoc contest`: its file is private and valid, and `check` finds wrong settings."""
 
 import json
+import re
 import stat
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
+import trustme
 from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
@@ -178,3 +181,34 @@ def test_a_court_without_a_contest_file_may_have_any_name() -> None:
     assert made_here
     assert contest.court("bar")[0] == "bar"
     assert list(contest.courts) == ["bar"]
+
+
+@pytest.mark.parametrize(
+    ("name", "days", "said"),
+    [
+        ("lacoc.example.org", 90, ""),
+        ("*.example.org", 90, ""),
+        ("lacoc.example.org", 7, "ends on"),
+        ("other.example.org", 90, "browsers will not trust it"),
+    ],
+)
+def test_the_certificate_of_the_pages_is_looked_at(
+    tmp_path: Path, name: str, days: int, said: str
+) -> None:
+    """A check warns of a certificate that ends soon, or that is of another name."""
+    file = tmp_path / "contest.toml"
+    made = trustme.CA().issue_cert(name, not_after=datetime.now(UTC) + timedelta(days=days))
+    (tmp_path / "a.pem").write_bytes(made.cert_chain_pems[0].bytes())
+    (tmp_path / "b.pem").write_bytes(made.private_key_pem.bytes())
+    run("init", str(file), "--event", "--pages", "https://lacoc.example.org")
+    text = file.read_text("utf-8")
+    for entry, pem in (("certificate", "a.pem"), ("private_key", "b.pem")):
+        text = re.sub(rf"# {entry} = .*", f'{entry} = "{pem}"', text)
+    file.write_text(text, "utf-8")
+    told = CliRunner().invoke(app, ["check", str(file)]).output
+    assert "has no mistakes" in told
+    assert said in told
+    assert said or "The certificate" not in told
+    (tmp_path / "a.pem").write_text("nothing")
+    with pytest.raises(UserError, match="can't be used"):
+        run("check", str(file))

@@ -249,6 +249,11 @@ def check(file: FileToRead = FILE) -> None:
     close = contest.entries_close
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
         screen.warn(say("contest.close-is-over", time=close.isoformat()))
+    if contest.public.certificate is not None:
+        from lacoc_server.commands.contest import certificate  # as `keys`
+
+        for doubt in certificate.doubts(contest.public, close, datetime.now(UTC)):
+            screen.warn(doubt)
     if contests.facts_path(file).exists():  # else no team has entered, and reading makes no file
         from lacoc_server.contest import organiser  # needs packages that the base install lacks
 
