@@ -56,12 +56,16 @@ def own_page(*words: str, checkout: Path | None = None) -> Iterator[str]:
 
 
 @contextlib.contextmanager
-def chromium() -> Iterator[Browser]:
-    """Run a browser that draws without a graphics card."""
+def chromium(*flags: str) -> Iterator[Browser]:
+    """Run a browser that draws without a graphics card.
+
+    Args:
+        flags: further flags of Chromium.
+    """
     with (
         sync_playwright() as playwright,
         contextlib.closing(
-            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+            playwright.chromium.launch(executable_path=find_chromium(), args=[*FLAGS, *flags])
         ) as browser,
     ):
         yield browser
