@@ -6,7 +6,6 @@ point here, an IP address can't. And a page of another origin gets no WebSocket.
 the Host by the gateway's own address; then the origin is still that of the public address.
 """
 
-import ipaddress
 import re
 import socket
 from collections import Counter
@@ -16,7 +15,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from lacoc_shared.network.public import PublicAddress, is_loopback
+from lacoc_shared.network.public import PublicAddress, is_loopback, is_number
 from lacoc_shared.words import LANGUAGES, Phrase, render, say
 from lacoc_shared.words.render import Language
 
@@ -99,7 +98,7 @@ class Guard:
     def _why_not(self, scope: Scope) -> Phrase | None:
         hosts = _all(scope, b"host")
         name = _name_of(hosts[0]) if len(hosts) == 1 else ""
-        if not (_is_number(name) or name in self._names):
+        if not (is_number(name) or name in self._names):
             name = name[:80] or "NAME"
             return say("gateway.unknown-name", name=name, pages=f"{scope['scheme']}://{name}")
         origins = _all(scope, b"origin")
@@ -150,11 +149,3 @@ def _name_of(host: str) -> str:
     """Return the host without its port; "" if this is no host."""
     match = _HOST.fullmatch(host)
     return (match["number"] or match["name"]).lower().rstrip(".") if match else ""
-
-
-def _is_number(name: str) -> bool:
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True

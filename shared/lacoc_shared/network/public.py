@@ -96,14 +96,14 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
 
 def is_loopback(host: str) -> bool:
     """Return whether a host means the machine itself."""
-    if not _is_number(host):
+    if not is_number(host):
         return host.lower() == "localhost"
     return ipaddress.ip_address(host).is_loopback
 
 
 def is_proxy(machine: str, proxies: Sequence[str] | str | None) -> bool:
     """Return whether an address belongs to one of the proxies, as `PublicAddress.proxies`."""
-    if not proxies or not _is_number(machine):
+    if not proxies or not is_number(machine):
         return False
     found = ipaddress.ip_address(machine)
     return any(found in ipaddress.ip_network(one) for one in proxies)
@@ -119,13 +119,14 @@ def _address(pages: str) -> str:
         raise wrong
     scheme, host = match["scheme"].lower(), match["host"].lower()
     port = int(match["port"] or _STANDARD[scheme])
-    if not 0 < port < 65_536 or (host[0] == "[" and not _is_number(host[1:-1])):
+    if not 0 < port < 65_536 or (host[0] == "[" and not is_number(host[1:-1])):
         raise wrong
     where = host if port == _STANDARD[scheme] else f"{host}:{port}"
     return f"{scheme}://{where}{match['path'].rstrip('/')}"
 
 
-def _is_number(host: str) -> bool:
+def is_number(host: str) -> bool:
+    """Return whether a host is an IP address."""
     try:
         ipaddress.ip_address(host)
     except ValueError:
