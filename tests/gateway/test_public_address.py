@@ -81,6 +81,8 @@ def test_all_is_served_below_the_path_of_the_pages() -> None:
         status, said, _ = ask(port, "/watch", Host="other.example")
         assert status == 403
         assert 'pages = "http://other.example"' in said
+        seen = {"Host": "other.example:8443", "X-Forwarded-Proto": "https"}
+        assert 'pages = "https://other.example:8443"' in ask(port, "/watch", **seen)[1]
 
 
 def test_only_the_own_pages_open_a_websocket() -> None:

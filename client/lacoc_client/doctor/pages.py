@@ -54,16 +54,17 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
         return
     except (OSError, http.client.HTTPException) as error:
         found = say("doctor.pages-silent", why=str(error))
-        yield Finding(about, Status.PROBLEM, found, say("doctor.pages-silent-todo"))
+        yield Finding(about, Status.NOTE, found, say("doctor.pages-silent-todo"))
         return
     try:
         health = msgspec.json.decode(answer.body, type=Health)
     except msgspec.MsgspecError:
         found = say("doctor.pages-other", status=answer.status)
-        todo = "doctor.pages-behind-todo" if answer.status >= 500 else "doctor.pages-other-todo"
-        if answer.status == 403:
-            todo = "doctor.pages-name-todo"
-        yield Finding(about, Status.PROBLEM, found, say(todo))
+        if answer.status >= 500:
+            yield Finding(about, Status.NOTE, found, say("doctor.pages-behind-todo"))
+            return
+        other, name = say("doctor.pages-other-todo"), say("doctor.pages-name-todo")
+        yield Finding(about, Status.PROBLEM, found, name if answer.status == 403 else other)
         return
     yield from _reached(public, title, health)
     yield _websocket(public)
@@ -92,7 +93,8 @@ def _reached(public: PublicAddress, title: str, health: Health) -> Iterator[Find
         found = say("doctor.pages-another", contest=health.contest)
         yield Finding(about, Status.PROBLEM, found, say("doctor.pages-unknown-todo"))
         return
-    found = say("doctor.pages-found", contest=health.contest, version=health.version)
+    name = health.contest or None
+    found = say("doctor.pages-found", contest=name, version=health.version)
     yield Finding(about, Status.OK, found)
     if health.unnamed_proxy:
         found = say("doctor.pages-proxy")

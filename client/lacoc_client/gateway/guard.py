@@ -99,8 +99,10 @@ class Guard:
         hosts = _all(scope, b"host")
         name = _name_of(hosts[0]) if len(hosts) == 1 else ""
         if not (is_number(name) or name in self._names):
-            name = name[:80] or "NAME"
-            return say("gateway.unknown-name", name=name, pages=f"{scope['scheme']}://{name}")
+            forwarded = _all(scope, b"x-forwarded-proto")  # only for what is advised
+            scheme = forwarded[0] if forwarded in (["http"], ["https"]) else scope["scheme"]
+            pages = f"{scheme}://{hosts[0][:80] if name else 'NAME'}"
+            return say("gateway.unknown-name", name=name[:80] or "NAME", pages=pages)
         origins = _all(scope, b"origin")
         asks = scope["type"] == "websocket" or scope.get("method") == "POST"
         if asks and origins:

@@ -6,13 +6,15 @@ import type { Refused } from "./connection";
 import type { Court } from "./court";
 import type { Player } from "./player";
 import { type Move, nextMove } from "./way";
-import { Phase, SeatFlag, type Whereabouts } from "./wire";
+import { Phase, type Whereabouts } from "./wire";
 
 const ASK_MS = 2000;
 const LOOK_MS = 250;
 /** So long a result stays before the page goes on. */
 const RESULT_MS = 8000;
 const AGAIN_MS = 2500;
+/** Whoever was heard so lately drives the seat: a robot stands after a second (rules 3). */
+const HEARD_MS = 1500;
 const NO_TEAM = "refused.no-team-token";
 
 export class Team {
@@ -117,15 +119,16 @@ export class Team {
       driven: there.call !== this.taken && this.isDriven(there.seat),
     });
     this.driven.value = move === "ask";
+    // Only the court's health says who holds the seat; it comes twice a second.
+    if (move === "join" && !this.court.health.peek()) return;
     this.player.next.value = there.call && there.call === this.mine ? null : there.said;
     this.make(move, there, now);
   }
 
-  /** Whether somebody joined the seat and was heard within the last second. */
+  /** Whether somebody holds the seat, and was heard lately. */
   private isDriven(seat: string): boolean {
-    const index = this.court.sheet.peek()?.seats.findIndex(({ id }) => id === seat) ?? -1;
-    const flags = this.court.frame.peek()?.seats[index]?.flags ?? 0;
-    return (flags & (SeatFlag.JOINED | SeatFlag.SILENT)) === SeatFlag.JOINED;
+    const link = this.court.health.peek()?.seats.find(({ id }) => id === seat);
+    return Boolean(link?.session) && (link?.heard_ms ?? Number.POSITIVE_INFINITY) < HEARD_MS;
   }
 
   private make(move: Move, there: Whereabouts, now: number): void {

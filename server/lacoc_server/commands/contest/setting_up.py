@@ -199,7 +199,9 @@ def init(
         os.umask(before)
     if kept is not None:
         screen.note(say("command.kept", path=str(file), kept=str(kept)))
-    if event:
+    if event and pages is not None:
+        screen.note(say("contest.written-online", file=str(file)))
+    elif event:
         screen.note(say("contest.written-event", file=str(file)))
     else:
         screen.note(say("contest.written", file=str(file)))
