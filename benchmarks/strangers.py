@@ -4,10 +4,11 @@
 
 An office with open entries, its pages, and a court on the same machine with a match of two bots.
 Strangers hand in mutated files and bombs, send any bytes to the pages and the court, hold half
-requests, and ask for any path. Meanwhile the organiser looks at the office twice a second, honest
-teams enter, and the match goes on. It prints how long the office took to answer, whom it refused,
-the slow beats of the match, and the most memory that each process took. It exits with 1 if an
-answer took a second or more, an honest team was refused, or a process grew without a bound.
+requests, and ask for any path. Meanwhile the organiser looks at the office twice a second and turns
+strangers down once a minute, honest teams enter, and the match goes on. It prints how long the
+office took to answer, whom it refused, the slow beats of the match, and the most memory that each
+process took. It exits with 1 if an answer took a second or more, an honest team was refused, or a
+process grew without a bound.
 """
 
 import argparse
@@ -35,7 +36,7 @@ from workbook_bombs import with_formats, with_formulas, with_sheets, with_text
 from lacoc_robots.library import find_robot, robot_folder, sample_gait_files
 
 _COMMAND = (sys.executable, "-m", LACOC)
-_LOOK_S, _ENTER_S = 0.5, 5.0
+_LOOK_S, _ENTER_S, _DECLINE_S = 0.5, 5.0, 60.0
 _SLOW_S = 1.0
 _GROWN_BYTES = 1 << 30
 _PATHS = ("/", "/watch", "/recordings", "/contest.json", "/assets/x.js", "/../etc/passwd", "/ws")
@@ -100,10 +101,23 @@ class Attack:
                     return body
 
     def _organiser(self) -> None:
+        """Look at the office as its page does, and turn strangers down now and then."""
+        known, declined_s = "", time.monotonic()
         while self._goes_on():
             began_s = time.monotonic()
-            self._asked({"do": "overview", "secret": self._key}, "127.0.0.1")
+            asked = {"do": "overview", "secret": self._key, "known": known}
+            reply = self._asked(asked, "127.0.0.1")
             self.answers_s.append(time.monotonic() - began_s)
+            assert isinstance(reply, dict)
+            view = reply["value"]["view"]
+            known = known if view is None else view["version"]
+            if view is not None and began_s - declined_s > _DECLINE_S:
+                declined_s = began_s
+                waiting = [one["team"] for one in view["teams"] if one["state"] == "waits"]
+                strangers = [name for name in waiting if name.startswith("Stranger")]
+                if strangers:
+                    turned = {"do": "decline", "secret": self._key, "teams": strangers}
+                    self._asked(turned, "127.0.0.1")
             time.sleep(_LOOK_S)
 
     def _teams(self) -> None:
