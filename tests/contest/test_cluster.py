@@ -57,16 +57,19 @@ def test_a_cluster_without_workers_is_told_and_its_loss_ends_the_run(
     command = ["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0"]
     command += ["--no-dashboard", "--scheduler-file", str(where)]
     with subprocess.Popen([sys.executable, *command], stderr=subprocess.DEVNULL) as scheduler:
-        until(where.exists)
-        address = json.loads(where.read_text())["address"]
         told: list[str] = []
 
         def tell(what: Phrase) -> None:
             told.append(what.code)
             scheduler.kill()
 
-        with pytest.raises(UserError, match="does not answer any more"):
-            organiser.play_headless(file, "planner", Cluster(address, tell), lambda *_: None)
+        try:
+            until(where.exists)
+            address = json.loads(where.read_text())["address"]
+            with pytest.raises(UserError, match="does not answer any more"):
+                organiser.play_headless(file, "planner", Cluster(address, tell), lambda *_: None)
+        finally:
+            scheduler.kill()  # else a failure would wait for it for ever
     assert told == ["cluster.no-worker"]
     played = organiser.play_headless(file, "planner", Pool(2), lambda *_: None)[1]
     assert played == 4
