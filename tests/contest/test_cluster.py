@@ -64,7 +64,7 @@ def test_a_cluster_without_workers_is_told_and_its_loss_ends_the_run(
             scheduler.kill()
 
         try:
-            until(where.exists)
+            until(lambda: where.exists() and where.read_text().rstrip().endswith("}"))
             address = json.loads(where.read_text())["address"]
             with pytest.raises(UserError, match="does not answer any more"):
                 organiser.play_headless(file, "planner", Cluster(address, tell), lambda *_: None)
