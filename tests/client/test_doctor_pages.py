@@ -15,10 +15,10 @@ from starlette.websockets import WebSocket
 from waiting import LIMIT_S
 
 from lacoc_client.doctor.machine import Finding, Status
-from lacoc_client.doctor.pages import pages, plain_courts
+from lacoc_client.doctor.pages import _reached, pages, plain_courts
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import PageFiles
-from lacoc_client.gateway.site import page_routes
+from lacoc_client.gateway.site import Health, page_routes
 from lacoc_shared.contest import file as contests
 from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import Phrase
@@ -136,6 +136,21 @@ def test_what_is_wrong_with_a_proxy_is_said(
             "path": {"pages-other"},
         }[wrong]
     )
+
+
+@pytest.mark.parametrize(
+    ("pages_at", "host", "replaced"),
+    [
+        ("https://[::1]:8443", "[::1]:8443", False),
+        ("https://lacoc.example:8443", "LACOC.example.:8443", False),
+        ("https://lacoc.example", "127.0.0.1:8080", True),
+    ],
+)
+def test_a_replaced_host_is_known(pages_at: str, host: str, replaced: bool) -> None:
+    """The host counts, however it is written; its port does not."""
+    health = Health(version="", contest="", host=host, unnamed_proxy=False)
+    codes = [code(one) for one in _reached(PublicAddress.of(pages_at), "", health)]
+    assert ("pages-host" in codes) == replaced
 
 
 def test_courts_in_plain_text_are_noted(tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def test_a_contest_at_a_public_address(
 ) -> None:
     """Two contestants, a referee and watchers play a match; all links have the public address.
 
-    No page's console has an error, and no page, paper or command names another address.
+    No page's console has an error, and no page or paper names another address.
     """
     with online(tmp_path, how) as place:
         assert {one["link"].partition("#")[0] for one in place.links.values()} == {

@@ -24,7 +24,6 @@ from lacoc_client.gateway.files import PageFiles
 from lacoc_client.phases.class_file import forget
 from lacoc_shared.command import keep, options, screen
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import render, say
 
 
@@ -94,7 +93,7 @@ def open_command(
     folder again: code, students and tables are still there.
     """
     pages.check_pages(terminal=False)
-    public = PublicAddress.of(public_pages or "", certificate, private_key, proxy or ())
+    public = pages.public_address(public_pages, certificate, private_key, proxy)
     with ExitStack() as stack:
         opened = stack.enter_context(server.listen(listen, public))
         own = stack.enter_context(own_studio())

@@ -19,7 +19,6 @@ from lacoc_client.gateway.files import PageFiles
 from lacoc_shared.command import options
 from lacoc_shared.command.child import kept_child
 from lacoc_shared.command.scratch import Scratch
-from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
 app = typer.Typer()
@@ -79,7 +78,7 @@ def design_command(
     starts a studio, which lets the robot walk, unless --connect names another studio.
     """
     pages.check_pages(terminal=False)
-    public = PublicAddress.of(public_pages or "", certificate, private_key, proxy or ())
+    public = pages.public_address(public_pages, certificate, private_key, proxy)
     files = Folder(folder)
     with nullcontext(connect) if connect else own_studio() as address:
         designer = Designer(files, Studios([Asker(address)]), robot, invitation)

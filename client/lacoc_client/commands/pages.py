@@ -1,6 +1,8 @@
 """A page for one person: a gateway on this machine only, and a browser."""
 
+from collections.abc import Sequence
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -27,6 +29,34 @@ Terminal = Annotated[
     bool,
     typer.Option("--terminal", help="Use this terminal instead of a page in the browser."),
 ]
+
+
+def public_address(
+    pages: str | None,
+    certificate: Path | None,
+    private_key: Path | None,
+    proxy: Sequence[str] | None,
+    own: PublicAddress | None = None,
+) -> PublicAddress:
+    """Return how others reach the pages, from the options of a command.
+
+    Args:
+        pages: `options.Pages`.
+        certificate: `options.Certificate`.
+        private_key: `options.PrivateKey`.
+        proxy: `options.Proxy`.
+        own: what holds for an option that is not given; None: nothing.
+
+    Raises:
+        UserError: if something is wrong.
+    """
+    own = own or PublicAddress()
+    return PublicAddress.of(
+        pages or own.pages,
+        certificate or own.certificate,
+        private_key or own.private_key,
+        proxy or own.proxies,
+    )
 
 
 def check_pages(*, terminal: bool = True) -> None:

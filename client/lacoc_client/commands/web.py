@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from lacoc_client.commands import entrance
+from lacoc_client.commands.pages import public_address
 from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
@@ -21,7 +22,6 @@ from lacoc_shared.contest.entrances import page_key
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
@@ -108,13 +108,8 @@ def web_command(
         exporter=exporter,
         key=_key(plan, key),
     )
-    own = PublicAddress() if plan is None else plan.public
-    public = PublicAddress.of(
-        pages or own.pages,
-        certificate or own.certificate,
-        private_key or own.private_key,
-        proxy or own.proxies,
-    )
+    own = None if plan is None else plan.public
+    public = public_address(pages, certificate, private_key, proxy, own)
     port = server.listen(listen, public)
     address = port.url
 

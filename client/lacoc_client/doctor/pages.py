@@ -14,6 +14,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from lacoc_client.doctor.machine import Finding, Status
+from lacoc_client.gateway.guard import name_of
 from lacoc_client.gateway.site import Health
 from lacoc_shared.contest.file import Court
 from lacoc_shared.network.address import host as address_host
@@ -99,7 +100,7 @@ def _reached(public: PublicAddress, title: str, health: Health) -> Iterator[Find
     if health.unnamed_proxy:
         found = say("doctor.pages-proxy")
         yield Finding(about, Status.PROBLEM, found, say("doctor.pages-proxy-todo"))
-    if health.host.partition(":")[0].lower() not in (public.host, f"[{public.host}]"):
+    if name_of(health.host) != public.host:
         found = say("doctor.pages-host", host=health.host)
         yield Finding(about, Status.NOTE, found, say("doctor.pages-host-todo"))
 

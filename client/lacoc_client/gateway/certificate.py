@@ -22,7 +22,8 @@ class Certificate:
     def __init__(self, certificate: Path, private_key: Path) -> None:
         self._files = certificate, private_key
         self._seen = self._versions()
-        self.context = self._loaded()
+        self.context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        self._load(self.context)
 
     def renew(self) -> bool:
         """Read the files again if they have changed; return whether they were read.
@@ -37,20 +38,18 @@ class Certificate:
         if versions == self._seen:
             return False
         self._seen = versions
-        self._loaded()  # half of a new pair must not replace the old one
-        self.context.load_cert_chain(*self._files, password="")
+        self._load(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER))  # half of a new pair replaces nothing
+        self._load(self.context)
         return True
 
-    def _loaded(self) -> ssl.SSLContext:
-        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    def _load(self, context: ssl.SSLContext) -> None:
         try:
             context.load_cert_chain(*self._files, password="")  # without it, it would ask
+            return
         except ssl.SSLError as error:
             why = say("public.no-pair", why=error.reason or str(error))
         except OSError as error:
             why = say("public.unreadable", why=error.strerror or str(error))
-        else:
-            return context
         names = [text_of(file) for file in self._files]
         raise UserError(say("public.wrong-certificate", files=names, why=why))
 

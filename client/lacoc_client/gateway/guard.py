@@ -97,7 +97,7 @@ class Guard:
 
     def _why_not(self, scope: Scope) -> Phrase | None:
         hosts = _all(scope, b"host")
-        name = _name_of(hosts[0]) if len(hosts) == 1 else ""
+        name = name_of(hosts[0]) if len(hosts) == 1 else ""
         if not (is_number(name) or name in self._names):
             forwarded = _all(scope, b"x-forwarded-proto")  # only for what is advised
             scheme = forwarded[0] if forwarded in (["http"], ["https"]) else scope["scheme"]
@@ -147,7 +147,7 @@ def _all(scope: Scope, name: bytes) -> list[str]:
     return [value.decode("latin-1") for key, value in scope["headers"] if key.lower() == name]
 
 
-def _name_of(host: str) -> str:
+def name_of(host: str) -> str:
     """Return the host without its port; "" if this is no host."""
     match = _HOST.fullmatch(host)
     return (match["number"] or match["name"]).lower().rstrip(".") if match else ""

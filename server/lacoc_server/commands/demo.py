@@ -91,16 +91,8 @@ def demo_command(
                 bot_process = _process("bot", bot, *join, token=court.tokens[seat])
                 needed.append(processes.enter_context(bot_process))
             for decision, wait_s in (("start", _READY_S), ("official", _DAY_S)):
-                words = (
-                    "referee",
-                    decision,
-                    "--yes",
-                    "--by",
-                    "demo",
-                    "--wait",
-                    str(wait_s),
-                    *where,
-                )
+                waits = ("--wait", str(wait_s), *where)
+                words = ("referee", decision, "--yes", "--by", "demo", *waits)
                 needed.append(processes.enter_context(_process(*words, token=court.referee)))
             if show_live:
                 watch = _process("watch", "--terminal", "--board", *where, output=None)

@@ -162,10 +162,8 @@ def run(
         else:
             if take_over:
                 _take_over(file)
-            sheet, played = (
-                _live(file, changed, speed, listen, browser, entries, until_over, json),
-                None,
-            )
+            played = None
+            sheet = _live(file, changed, speed, listen, browser, entries, until_over, json)
     games = sum(len(match.games) for view in sheet.stages for match in view.matches)
     if json:
         screen.print_json({"kind": "end", "played": played, "games": games})

@@ -48,8 +48,8 @@ end 20 s later, and then the result.
 _COPY_S = 60.0
 """Longest further wait for the newest records of courts on other machines."""
 _SHOWN_S = 60.0
-"""The last match is shown for so long on a court of another machine. Then the
-court closes it, so that its record can be copied whole."""
+"""The last match is shown for so long on a court of another machine. Then the court closes it, so
+that its record can be copied whole."""
 
 
 class Opened(NamedTuple):
