@@ -48,7 +48,7 @@ class Attack:
     def __init__(self, opened: dict[str, str], court: str, until_s: float) -> None:
         self._url = opened["url"]
         self._code = opened["code"]
-        self._key = opened["office"].partition("organiser=")[2]
+        self._key = opened["office"].partition("token=")[2]
         self._court = court
         self._until_s = until_s
         self.answers_s: list[float] = []

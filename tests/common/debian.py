@@ -10,6 +10,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+_LOCKED_S = 300
+"""Longest wait for a program of this machine that installs something [s]."""
 _updated = False
 
 
@@ -21,15 +23,17 @@ def install(package: str) -> None:
     global _updated
     if os.name != "posix" or os.geteuid() != 0 or not shutil.which("apt-get"):
         return
+    # Another test may be installing another package, and `update` has a lock without a timeout.
     words = [("install", "--yes", "--no-install-recommends", package)]
-    for one in words if _updated else [("update",), *words]:
-        subprocess.run(
-            ["apt-get", "-qq", *one],
-            check=False,
-            timeout=600,
-            stdout=subprocess.DEVNULL,
-            env={**os.environ, "DEBIAN_FRONTEND": "noninteractive"},
-        )
+    with locked("apt"):
+        for one in words if _updated else [("update",), *words]:
+            subprocess.run(
+                ["apt-get", "-qq", "-o", f"DPkg::Lock::Timeout={_LOCKED_S}", *one],
+                check=False,
+                timeout=600,
+                stdout=subprocess.DEVNULL,
+                env={**os.environ, "DEBIAN_FRONTEND": "noninteractive"},
+            )
     _updated = True
 
 

@@ -53,7 +53,7 @@ class PageClient:
     def __init__(
         self, url: str, key: str | None = None, *, watch: bool = True, **options: Any
     ) -> None:
-        fields = {name: options.pop(name, None) for name in ("court", "hz")}
+        fields = {name: options.pop(name, None) for name in ("court", "hz", "token")}
         self._stack = ExitStack()
         address = f"{url.replace('http', 'ws')}/ws"
         self.socket: ClientConnection = self._stack.enter_context(

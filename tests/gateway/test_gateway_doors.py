@@ -124,17 +124,25 @@ def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
         assert page.welcome["court"] == "main"
 
 
-@pytest.mark.parametrize("key", [None, "", "wrong", "\u00e4" * 20])
-@pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
-def test_without_the_key_a_page_only_watches(
-    open_venue: Venue, key: str | None, do: str, fields: dict[str, Any]
-) -> None:
-    """Without the page key a page only watches, even with the right token of seat or referee."""
-    with PageClient(open_venue.url, key) as page:
-        assert page.welcome["can_act"] is False
-        with refusal("gateway.only-watch"):
-            page.ask(do, **fields)
+def test_without_a_token_a_page_only_watches(open_venue: Venue) -> None:
+    """A page that shows no token can neither steer nor decide."""
+    with PageClient(open_venue.url) as page:
+        for do, fields in ACTS:
+            if do not in ("join", "enter"):
+                seated = do not in ("take_over", "decide")
+                with refusal("gateway.no-seat" if seated else "gateway.enter-first"):
+                    page.ask(do, **fields)
         assert page.ask("ping", t=1.5)["t"] == 1.5
+
+
+@pytest.mark.parametrize("token", ["", "wrong", "\u00e4" * 20, TOKENS["right"]])
+def test_only_a_token_that_the_court_accepts_opens_a_seat(open_venue: Venue, token: str) -> None:
+    """Whatever a page says of itself, the court decides about its token."""
+    with PageClient(open_venue.url, key="x" * 22, token=token) as page:
+        with pytest.raises(Refused):
+            page.ask("join", seat="left", token=token, name="Ants")
+        with pytest.raises(Refused):
+            page.ask("enter", token=token, by="Kim")
 
 
 def test_a_ping_says_how_far_the_court_is(open_venue: Venue) -> None:
@@ -361,20 +369,34 @@ def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
     referee = venue.referee()
     with refusal("gateway.full"):
         referee.ask("watch")
-    contestant.ask("watch", key=venue.key)  # the page keeps its own place
+    contestant.ask("watch", token=TOKENS["left"])  # the page keeps its own place
 
 
-def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
-    """Pages with the page key have a limit of their own, and take no spectator's place."""
+def test_pages_of_contestants_have_a_bound_too(venue: Venue) -> None:
+    """Pages whose token is right have a limit of their own, and take no spectator's place."""
+    venue.court()
     venue.web()
-    for _ in range(ACTING_MOST):
-        venue.page(venue.key, hz=1)
+    venue.contestant("left")
+    for _ in range(ACTING_MOST - 1):
+        venue.page(token=TOKENS["left"], hz=1)
     one_more = venue.page(watch=False)
-    with refusal("gateway.full-with-key"):
-        one_more.ask("watch", key=venue.key)
+    with refusal("gateway.full-acting"):
+        one_more.ask("watch", token=TOKENS["left"])
     one_more.wait(one_more.closed.is_set)
     assert one_more.code() == TRY_LATER
     venue.page()
+
+
+def test_a_token_that_is_shown_to_no_court_keeps_no_place(venue: Venue) -> None:
+    """In a full hall a page with a token is let in, and goes if it does not show it in time."""
+    venue.court()
+    venue.web("--viewers", "1")
+    venue.page()
+    idle = venue.page(token="guess")
+    with refusal("gateway.full"):
+        venue.page()
+    idle.wait(idle.closed.is_set)
+    assert idle.code() == TRY_LATER
 
 
 def why_not(page: PageClient, number: int) -> str:

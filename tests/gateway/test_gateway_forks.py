@@ -88,13 +88,13 @@ def test_a_fork_becomes_a_recording_of_the_gateway(library: Venue) -> None:
     assert ask(library, {"beat": 90, "restart": ["left"]}, name=name[:-5]).status == 200
 
 
-def test_only_the_page_key_opens_it(library: Venue) -> None:
-    """Without the page key nobody learns anything, and nothing is played."""
+def test_only_a_key_or_an_accepted_token_opens_it(library: Venue) -> None:
+    """Without a secret nobody learns anything, and nothing is played."""
     for body in (None, {"beat": 80, "restart": ["left"]}):
         for key in ("", "x" * 22, "schlüssel"):
             found = ask(library, body, key)
             assert found.status == 403
-            assert "needs the page key" in found.text
+            assert "Open your link first" in found.text
 
 
 def test_the_bots_of_the_game_are_listed(library: Venue) -> None:

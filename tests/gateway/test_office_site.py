@@ -14,7 +14,7 @@ from lacoc_client.office.site import DeskSite
 def test_a_page_learns_the_address_of_the_network() -> None:
     """A page that was opened at 127.0.0.1 can show the address that other machines can open."""
     address = "http://192.168.1.20:8080"
-    site = DeskSite("tcp/127.0.0.1:1", "key", address)
+    site = DeskSite("tcp/127.0.0.1:1", address)
     opened, ended = server.listen(server.LOOPBACK), threading.Event()
     serving = threading.Thread(
         target=server.serve, args=(Starlette(routes=site.routes), opened, ended.is_set)

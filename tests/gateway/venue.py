@@ -90,14 +90,14 @@ class Venue:
 
     def contestant(self, seat: str, name: str = "") -> PageClient:
         """Open a page that takes a seat and says ready."""
-        page = self.page(self.key, hz=50)
+        page = self.page(token=TOKENS[seat], hz=50)
         page.ask("join", seat=seat, token=TOKENS[seat], name=name or seat.title())
         page.ask("ready", ready=True)
         return page
 
     def referee(self, by: str = "Kim") -> PageClient:
         """Open a page that enters as a referee."""
-        page = self.page(self.key)
+        page = self.page(token=REFEREE)
         page.ask("enter", token=REFEREE, by=by)
         return page
 

@@ -295,8 +295,8 @@ def papers(office: Page) -> None:
         ("schedule", "main-1"),
         ("results", "3:9"),
         ("certificates", "No team has its final place"),
-        ("links", "/play#key="),
-        ("links", "/referee?court=main-2#key="),
+        ("links", "/play#token="),
+        ("links", "/referee?court=main-2#token="),
     ):
         office.get_by_label("Print …").select_option(paper)
         expect(office.locator(".papers")).to_contain_text(content)
@@ -363,6 +363,6 @@ def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> N
 def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:
     """With a wrong key the page shows no entries, and says why."""
     page = open_page(viewport=LAPTOP)
-    page.goto(f"{event.url}/office#organiser=guess")
+    page.goto(f"{event.url}/office#token=guess")
     expect(page.get_by_role("alert")).to_contain_text("does not open")
     assert page.locator(".entries").count() == 0

@@ -313,11 +313,9 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
     page.stands("seated")
 
 
-def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
-    """Without the page key, /play only watches and says how to get a link with the key."""
-    venue.court()
-    venue.web()
-    page = sit(venue.url)
+def test_only_its_owner_plays_on_an_own_page(own: tuple[str, str], sit: Sit) -> None:
+    """Without the page key, the page of `lacoc play` only watches and says what to open."""
+    page = sit(own[0])
     page.open()
     page.stands("watching")
     page.sees(".entrance", "#key=")

@@ -38,10 +38,9 @@ def court(venue: Venue) -> Venue:
 def referee(venue: Venue, open_page: OpenPage) -> Referee:
     """Give a function that opens the referee's page, each time in a fresh browser context."""
 
-    def opened(key: bool = True, size: tuple[int, int] = (1366, 768), query: str = "") -> Page:
+    def opened(size: tuple[int, int] = (1366, 768), query: str = "") -> Page:
         page = open_page(viewport={"width": size[0], "height": size[1]})
-        fragment = f"#key={venue.key}" if key else ""
-        page.goto(f"{venue.url}/referee{query}{fragment}")
+        page.goto(f"{venue.url}/referee{query}")
         expect(page.locator(".score-bug")).to_be_visible()
         return page
 
@@ -140,7 +139,7 @@ def to_playing(page: Page, venue: Venue) -> None:
 def test_a_referees_link_has_the_token(court: Venue, open_page: OpenPage) -> None:
     """With the link that the organiser prints, a referee types only their name."""
     page = open_page()
-    page.goto(f"{court.url}/referee#key={court.key}&token={REFEREE}")
+    page.goto(f"{court.url}/referee#token={REFEREE}")
     page.locator("input[name=by]").fill("Kim")
     page.locator(".enter button[type=submit]").click()
     expect(page.locator(".acting.mine")).to_be_visible()
@@ -320,16 +319,6 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
     page.wait_for_timeout(5000)
     assert len(shown) == 1
     at_the_desk(page)
-
-
-def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
-    """Without the page key the page shows everything, and says how to get a link with the key."""
-    page = referee(key=False)
-    expect(page.locator(".enter")).to_contain_text("#key=")
-    expect(page.locator("input[name=token]")).to_have_count(0)
-    expect(page.locator(".health .verdict")).to_be_visible()
-    log_has(page, "The match is waiting for the teams.")
-    expect(big(page)).to_have_attribute("aria-disabled", "true")
 
 
 def test_the_file_that_a_browser_is_given_leads_to_the_page(

@@ -11,22 +11,18 @@ from lacoc_client.commands.pages import public_address
 from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.home import VIEWERS_MOST, Home, new_key
+from lacoc_client.gateway.home import VIEWERS_MOST, Home
 from lacoc_client.gateway.site import site
 from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_client.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.entrances import page_key
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
-from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
-
-_KEY_LEAST = 12
 
 
 @app.command(name="web")
@@ -47,15 +43,6 @@ def web_command(
     certificate: options.Certificate = None,
     private_key: options.PrivateKey = None,
     proxy: options.Proxy = None,
-    key: Annotated[
-        str | None,
-        typer.Option(
-            envvar="LACOC_WEB_KEY",
-            metavar="KEY",
-            help="The page key, which lets a page act; by default made from the contest file, "
-            "or new each time.",
-        ),
-    ] = None,
     recordings: Annotated[
         Path | None,
         typer.Option(
@@ -91,9 +78,8 @@ def web_command(
 ) -> None:
     """Serve the pages: spectators, broadcast, contestants, referee, replays.
 
-    Everybody who can reach this machine may watch. To play or to referee, open the address with the
-    key, and enter the token of the seat or of the referee. The pages wait for a court that is not
-    running yet.
+    Everybody who can reach this machine may watch. Who has the token of a seat or of a referee can
+    play or referee. The pages wait for a court that is not running yet.
     """
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
@@ -106,7 +92,6 @@ def web_command(
         desk=office is not None,
         viewers_most=viewers,
         exporter=exporter,
-        key=_key(plan, key),
     )
     own = None if plan is None else plan.public
     public = public_address(pages, certificate, private_key, proxy, own)
@@ -130,7 +115,7 @@ def web_command(
         log.start(json)
 
     with exporter or nullcontext():
-        desk = None if office is None else DeskSite(office, home.key, address)
+        desk = None if office is None else DeskSite(office, address)
         server.run(site(home, PageFiles(), desk), port, ready, DESK_BYTES if desk else JOIN_BYTES)
 
 
@@ -144,14 +129,6 @@ def _courts(
     return {name: entrance.gateway(invitation, plan, name, None) for name in plan.courts}
 
 
-def _key(plan: Contest | None, key: str | None) -> str:
-    if key is not None:
-        if len(key) < _KEY_LEAST:
-            raise UserError(say("web.short-key", least=_KEY_LEAST))
-        return key
-    return new_key() if plan is None else page_key(plan)
-
-
 def _tell(home: Home, address: str, *, office: bool) -> None:
     screen.show(say("web.pages", courts=[*home.courts]))
     if office:
@@ -160,5 +137,5 @@ def _tell(home: Home, address: str, *, office: bool) -> None:
     screen.show(say("web.broadcast", url=f"{address}/overlay"))
     screen.show(say("web.recordings", url=f"{address}/replay"))
     screen.show(say("web.forks", url=f"{address}/replay#key={home.key}"))
-    screen.show(say("web.contestants", url=f"{address}/play#key={home.key}"))
-    screen.show(say("web.referee", url=f"{address}/referee#key={home.key}"))
+    screen.show(say("web.contestants", url=f"{address}/play"))
+    screen.show(say("web.referee", url=f"{address}/referee"))

@@ -82,6 +82,22 @@ class Answers:
             task.cancel()
 
 
+def in_future(
+    future: "asyncio.Future[Any]", value: Any, error: UserError | FileRefused | None
+) -> None:
+    """Give a future its result; any thread may call it."""
+
+    def settle() -> None:
+        if future.done():
+            return
+        if error is None:
+            future.set_result(value)
+        else:
+            future.set_exception(error)
+
+    in_loop(future.get_loop(), settle)
+
+
 def in_loop(loop: asyncio.AbstractEventLoop, do: Callable[[], None]) -> None:
     """Call a function on the event loop's thread, unless the loop has ended."""
     try:

@@ -60,10 +60,10 @@ class Audience:
             for framed in messages:
                 one.send(framed)
 
-    def send_acting(self, framed: bytes) -> None:
-        """Send a message that must arrive, to the pages that may act."""
+    def send_own(self, framed: bytes) -> None:
+        """Send a message that must arrive, to the pages of whoever started the gateway."""
         for viewer in self._viewers:
-            if viewer.can_act:
+            if viewer.is_own:
                 viewer.send(framed)
 
     def send_if_fast(self, framed: bytes) -> None:

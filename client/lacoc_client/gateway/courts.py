@@ -1,11 +1,13 @@
 """The courts of a gateway, and how many pages it lets in."""
 
 import asyncio
+import hashlib
+import hmac
 
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.audience import Audience
 from lacoc_client.gateway.feed import CourtFeed
-from lacoc_client.gateway.home import ACTING_MOST, Home
+from lacoc_client.gateway.home import ACTING_MOST, CLAIMING_MOST, Home
 from lacoc_client.gateway.programme import Programme
 from lacoc_client.gateway.referees import Referees
 from lacoc_client.gateway.threads import Threads
@@ -17,9 +19,7 @@ from lacoc_shared.words import Phrase, say
 _THREADS = 16
 _FILES_S = 0.5
 _STRANGERS = 4
-"""Threads for unproven tokens: at a court with keys a wrong token takes 2 s. Decisions and fetches
-use other threads, so they never wait for these.
-"""
+"""Threads for unproven tokens. Decisions and fetches use others, so they never wait for these."""
 
 
 class Courts:
@@ -38,6 +38,11 @@ class Courts:
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
         self.programme = Programme(self._all)
         """What the director puts on air."""
+        self.claiming: set[Viewer] = set()
+        """Pages that were let in only because they have a token, which no court has accepted yet.
+        """
+        self._accepted: set[bytes] = set()
+        """Digests of the tokens that a court has accepted."""
         self.sent_away = 0
         """Number of pages that were refused because there were too many."""
 
@@ -77,11 +82,34 @@ class Courts:
         ended = (Phase.OFFICIAL, Phase.VOID)
         return [picture.view.match_id for picture in pictures if picture.phase in ended]
 
-    def why_full(self, viewer: Viewer) -> Phrase | None:
+    def accept(self, token: str) -> None:
+        """Remember that a court has accepted a token."""
+        self._accepted.add(_digest(token))
+
+    def has_accepted(self, token: str | None) -> bool:
+        """Return whether a court has accepted a token."""
+        return token is not None and _digest(token) in self._accepted
+
+    def owns(self, key: str | None) -> bool:
+        """Return whether a page key is the one of this gateway."""
+        return key is not None and hmac.compare_digest(
+            key.encode("utf-8", "surrogatepass"), self.home.key.encode()
+        )
+
+    def lets_act(self, secret: str) -> bool:
+        """Return whether a secret is the page key, or a token that a court has accepted."""
+        return self.owns(secret) or self.has_accepted(secret)
+
+    def why_full(self, viewer: Viewer, claims: bool = False) -> Phrase | None:
         """Say why there is no room for a page; None if there is room.
 
-        Pages that may act have the page key, and a limit of their own. So no crowd of spectators,
-        and nobody who opens many pages without the page key, can take their places.
+        Pages whose token a court has accepted have a limit of their own. So no crowd of spectators
+        can take their places. A page with another token has a place beside the spectators too,
+        until it has shown its token to a court.
+
+        Args:
+            viewer: the page.
+            claims: whether it has a token that no court has accepted yet.
         """
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
@@ -89,17 +117,20 @@ class Courts:
         if others + self.programme.others(viewer) < most:
             return None
         if acts:
-            return say("gateway.full-with-key", most=most)
+            return say("gateway.full-acting", most=most)
+        if claims and len(self.claiming - {viewer}) < CLAIMING_MOST:
+            self.claiming.add(viewer)
+            return None
         return say("gateway.full", most=most)
 
     async def watch_files(self) -> None:
-        """Watch the files on this machine; when they change, tell all pages that may act."""
+        """Watch the files on this machine; when they change, tell the pages of their owner."""
         own = self.home.prefill.files if self.home.prefill is not None else None
         while own is not None:
             await asyncio.sleep(_FILES_S)
             if await asyncio.to_thread(own.look):
                 for feed in self.feeds:
-                    feed.audience.send_acting(wire.files_message(own))
+                    feed.audience.send_own(wire.files_message(own))
 
     async def close(self) -> None:
         """Close all connections."""
@@ -107,3 +138,7 @@ class Courts:
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
         self.threads.close()
         self.strangers.close()
+
+
+def _digest(token: str) -> bytes:
+    return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -29,6 +29,8 @@ _RETRY_S = 1.0
 _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
 _TRIP_S = 1.0
+_JOINED_S = 3.0
+"""Longest wait for a court that is not connected yet."""
 """Time between two measurements of the way to the court, however many pages want to know."""
 
 
@@ -86,6 +88,19 @@ class CourtFeed:
     def connected(self) -> bool:
         """True if the court sends frames."""
         return self._connected
+
+    async def joined(self) -> Session:
+        """Wait a moment until the court is connected; return the connection to it.
+
+        Raises:
+            UserError: if it is not connected by then.
+        """
+        end_s = time.monotonic() + _JOINED_S
+        while not self._connected and time.monotonic() < end_s:
+            await asyncio.sleep(_LOOK_S)
+        if self.session is None or not self._connected:
+            raise UserError(self._why or say("gateway.court-not-there", court=self.court))
+        return self.session
 
     def trip_ms(self) -> float | None:
         """Return how long the court's newest answer took [ms], and ask it again for the next time.

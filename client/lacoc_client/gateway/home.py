@@ -1,6 +1,7 @@
 """The settings of a gateway: its kind, its courts, and what its pages have filled in."""
 
 import secrets
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -14,9 +15,11 @@ Kind = Literal["venue", "player", "practice"]
 VIEWERS_MOST = 400
 """Most pages that only watch: 25 frames a second for 400 pages need 3 MB/s."""
 ACTING_MOST = 250
-"""Most pages with the page key, in addition: several for each seat and referee of a large
-contest, and more than one machine may have.
+"""Most pages whose token a court has accepted, in addition: several for each seat and referee of a
+large contest, and more than one machine may have.
 """
+CLAIMING_MOST = 100
+"""Most pages, in addition, with a token that no court has accepted yet: a school, and more."""
 
 
 def new_key() -> str:
@@ -56,8 +59,10 @@ class Home:
     viewers_most: int = VIEWERS_MOST
     exporter: Exporter | None = None
     """Serves the gateway's metrics."""
+    told: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """For each court the addresses that commands are told; none: it plays with pages only."""
     key: str = field(default_factory=new_key)
-    """The page key: with it a page may act; without it a page only watches."""
+    """The page key: a page with it belongs to the person who started the gateway."""
 
 
 def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:

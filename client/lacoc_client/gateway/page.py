@@ -1,15 +1,15 @@
 """One page's connection: the requests that it may make, and who answers them."""
 
 import asyncio
-import hmac
 import time
+from functools import partial
 from typing import Any
 
 from starlette.websockets import WebSocket
 
 from lacoc_client.asking import NoCourt
 from lacoc_client.gateway import wire
-from lacoc_client.gateway.answers import TOO_MUCH, Answers
+from lacoc_client.gateway.answers import TOO_MUCH, Answers, in_future
 from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.page_requests import serve_requests
@@ -23,6 +23,7 @@ from lacoc_client.team_way import where
 from lacoc_shared import __version__
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages import PROTOCOL
+from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
@@ -33,6 +34,8 @@ TRY_LATER = 1013
 _ASKS_HZ, _ASKS_BURST = 100.0, 200
 _TOKENS_HZ, _TOKENS_BURST = 1.0, 10
 _COURTS_HZ, _COURTS_BURST = 1.0, 5
+_CLAIM_S = 15.0
+"""Time in which a page that has a place only because of its token must show it to a court [s]."""
 _LOOKS_S = 10.0
 """How long play goes on in the outlook that a referee sees [s]."""
 
@@ -59,6 +62,8 @@ class Page:
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
         self._greetings = Allowance(_COURTS_HZ, _COURTS_BURST)
         self._entering = asyncio.Lock()
+        self._leaving: asyncio.TimerHandle | None = None
+        """Ends a claim that nothing came of."""
 
     async def serve(self) -> None:
         """Answer the page's requests until the page goes."""
@@ -83,7 +88,10 @@ class Page:
             case wire.JoinAsk():
                 feed, _ = self._acting()
                 _spend(self._tokens)
-                self._seat.join(asked, feed.access)
+                if viewer.is_own or self._courts.has_accepted(asked.token):
+                    self._join(asked, feed)
+                else:
+                    answers.later(asked.id, self._proven_join(asked, feed))
             case wire.WhereAsk():
                 feed, _ = self._acting()
                 _spend(self._tokens)
@@ -107,20 +115,20 @@ class Page:
     async def _watch(self, asked: wire.Watch) -> bool:
         _spend(self._greetings)  # a few bytes ask for a whole match
         viewer = self._viewer
-        viewer.can_act = (
-            not asked.director
-            and asked.key is not None
-            and hmac.compare_digest(
-                asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
-            )
-        )
+        viewer.is_own = not asked.director and self._courts.owns(asked.key)
+        accepted = self._courts.has_accepted(asked.token)
+        viewer.can_act = not asked.director and (viewer.is_own or accepted)
         viewer.rate(USUAL_HZ if asked.hz is None else asked.hz)
-        if (why := self._courts.why_full(viewer)) is not None:
+        claims = self._may_act and asked.token is not None and not asked.director
+        if (why := self._courts.why_full(viewer, claims)) is not None:
             self._courts.sent_away += 1
             self._answers.refuse(asked.id, UserError(why))
             await self._websocket.close(TRY_LATER, "full")
             return False
         self._leave_court()
+        if viewer in self._courts.claiming and self._leaving is None:
+            loop = asyncio.get_running_loop()
+            self._leaving = loop.call_later(_CLAIM_S, self._give_up)
         if asked.director:
             self._follows = programme = self._courts.programme
             viewer.send(self._welcome(None))
@@ -134,10 +142,10 @@ class Page:
             raise
         viewer.send(self._welcome(self._feed.court))
         prefill = self._home.prefill
-        if viewer.can_act and prefill is not None and prefill.files is not None:
+        if viewer.is_own and prefill is not None and prefill.files is not None:
             viewer.send(wire.files_message(prefill.files))
         self._feed.add(viewer)
-        if viewer.can_act:
+        if self._may_act:
             viewer.send(self._referees.state(viewer))
         self._answers.reply(asked.id, {})
         return True
@@ -145,7 +153,7 @@ class Page:
     def _welcome(self, court: str | None) -> bytes:
         home, prefill = self._home, self._home.prefill
         filled = None
-        if prefill is not None and self._viewer.can_act:
+        if prefill is not None and self._viewer.is_own:
             filled = {
                 "seat": prefill.seat,
                 "name": prefill.name,
@@ -156,7 +164,7 @@ class Page:
             "version": __version__,
             "courts": list(home.courts),
             "court": court,
-            "can_act": self._viewer.can_act,
+            "can_act": self._may_act,
             "home": home.kind,
             "contest": home.contest,
             "desk": home.desk,
@@ -164,26 +172,71 @@ class Page:
         }
         return wire.map_message(Kind.WELCOME, body)
 
+    @property
+    def _may_act(self) -> bool:
+        """Whether the page may act, if a court accepts its token."""
+        return self._home.kind == "venue" or self._viewer.is_own
+
     def _acting(self) -> tuple[CourtFeed, Referees]:
         if self._feed is None or self._referees is None:
             raise UserError(say("gateway.which-court"))
-        if not self._viewer.can_act:
+        if not self._may_act:
             raise UserError(say("gateway.only-watch"))
         return self._feed, self._referees
 
+    def _join(self, asked: wire.JoinAsk, feed: CourtFeed) -> None:
+        self._seat.join(asked, feed.access, self._answers.from_thread(asked.id))
+
+    async def _proven_join(self, asked: wire.JoinAsk, feed: CourtFeed) -> Any:
+        """Join with a token that no court has accepted yet: a seat of its own is dear."""
+        await feed.joined()
+        played = feed.picture.played()
+        if played is None or played.fixture is not None:
+            await self._ask_where(asked.token or "", feed)
+        joined = asyncio.get_running_loop().create_future()
+        self._seat.join(asked, feed.access, partial(in_future, joined))
+        found = await joined
+        self._accepted(asked.token or "")
+        return found
+
     async def _where(self, asked: wire.WhereAsk, feed: CourtFeed) -> Any:
-        prefill = self._home.prefill
-        token = asked.token or (prefill.token if prefill is not None else "")
-        session = feed.session
-        if not token:
-            raise UserError(say("gateway.no-token"))
-        if session is None or not feed.connected:
-            raise UserError(say("gateway.court-not-there", court=feed.court))
-        found = await self._courts.strangers.run(lambda: where(session, feed.court, token))
+        own = self._home.prefill if self._viewer.is_own else None
+        found = await self._ask_where(asked.token or (own.token if own else ""), feed)
         if self._home.kind == "player" and found.address:
             # Only the court of the command line was known; the office names the others.
             self._home.courts[found.court] = Access(court=found.court, connect=found.address)
         return found
+
+    async def _ask_where(self, token: str, feed: CourtFeed) -> Whereabouts:
+        """Ask a court where a token plays: the court accepts it, or refuses it."""
+        if not token:
+            raise UserError(say("gateway.no-token"))
+        session = await feed.joined()
+        found = await self._courts.strangers.run(lambda: where(session, feed.court, token))
+        self._accepted(token)
+        return found
+
+    def _accepted(self, token: str) -> None:
+        """Give the page a place among those that act.
+
+        Raises:
+            UserError: if there is no room.
+        """
+        courts, viewer = self._courts, self._viewer
+        courts.accept(token)
+        if viewer.can_act:
+            return
+        viewer.can_act = True
+        if (why := courts.why_full(viewer)) is not None:
+            viewer.can_act = False
+            raise UserError(why)
+        courts.claiming.discard(viewer)
+
+    def _give_up(self) -> None:
+        """Close a page that came with a token only, and has not shown it to a court."""
+        if self._viewer in self._courts.claiming:
+            self._courts.sent_away += 1
+            asyncio.get_running_loop().create_task(self._websocket.close(TRY_LATER, "full"))
 
     async def _enter(self, asked: wire.EnterAsk, feed: CourtFeed, referees: Referees) -> Any:
         by = asked.by.strip()
@@ -197,6 +250,7 @@ class Page:
             raise UserError(TOO_MUCH)
         async with self._entering:
             await self._show_token(access, feed, referees)
+        self._accepted(asked.token)
         if referees is self._referees:  # the page may have gone to another court
             referees.enter(self._viewer, access, by)
             self._log(f"{by} sits down as a referee.", "referee", by=by)
@@ -246,6 +300,9 @@ class Page:
 
     def _gone(self) -> None:
         self._leave_court()
+        self._courts.claiming.discard(self._viewer)
+        if self._leaving is not None:
+            self._leaving.cancel()
         self._answers.stop()
 
 

@@ -8,7 +8,7 @@ from lacoc_client.controller import Controller, Seen
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import Answers, in_loop
 from lacoc_client.gateway.home import Prefill
-from lacoc_client.gateway.seat_thread import SeatThread
+from lacoc_client.gateway.seat_thread import Answer, SeatThread
 from lacoc_client.gateway.viewer import MOST_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_robots.seat_files import SeatFiles, to_send
@@ -43,18 +43,20 @@ class PageSeat:
         self._hold = ("", "")
         """The seat and its hold, as last logged."""
 
-    def join(self, asked: wire.JoinAsk, watching: Access) -> None:
+    def join(self, asked: wire.JoinAsk, watching: Access, joined: Answer) -> None:
         """Take a seat, in place of the page's earlier seat if it had one.
 
         Args:
             asked: the page's request.
             watching: the way to the court, as a spectator.
+            joined: receives the result, on another thread.
 
         Raises:
             UserError: if there is no token.
         """
         access, name, files = self._entry(asked, watching)
-        own = self._prefill.files if self._prefill is not None else None
+        prefill = self._prefill if self._viewer.is_own else None
+        own = prefill.files if prefill is not None else None
         self._end()
         loop, viewer, joins = asyncio.get_running_loop(), self._viewer, self._joins
         viewer.watch_closely()
@@ -71,7 +73,7 @@ class PageSeat:
             lambda notes: to_send(files, asked.sequences, notes),
             viewer.unheard_s,
             tell,
-            self._answers.from_thread(asked.id),
+            joined,
         )
 
     def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk | wire.SawAsk) -> None:
@@ -111,7 +113,7 @@ class PageSeat:
         """Return seat access, team name and files; the prefill has what the page left out."""
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
-        prefill = self._prefill
+        prefill = self._prefill if self._viewer.is_own else None
         if prefill is not None and (not token or not prefill.token):
             own, theirs = files, prefill.files.files if prefill.files else SeatFiles()
             if own.postures is None and own.locomotion is None:

@@ -1,8 +1,7 @@
 """The gateway's paths: of pages (all are one HTML file), files, recordings and the WebSocket."""
 
 import asyncio
-import hmac
-from collections.abc import AsyncIterator, Iterable, Sequence
+from collections.abc import AsyncIterator, Callable, Iterable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Protocol
@@ -33,7 +32,10 @@ from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.scores import scores_route
 from lacoc_client.gateway.shown import Shown
 from lacoc_client.gateway.wire import REQUEST_BYTES, too_long
+from lacoc_client.link.event import PATH as EVENT_PATH
+from lacoc_client.link.event import Event
 from lacoc_shared import __version__
+from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -42,7 +44,7 @@ PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay",
 
 _OLD_NAMES = {"favicon.ico": "icon.svg"}
 KEY_HEADER = "X-Lacoc-Key"
-"""HTTP header with the page key."""
+"""HTTP header with the page key, or with a token that a court has accepted."""
 
 _MCAP = "application/octet-stream"
 
@@ -106,7 +108,8 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
 
     others = [
         *recording_routes(shelf),
-        *fork_routes(shelf, forks, home.key),
+        *fork_routes(shelf, forks, courts.lets_act),
+        event_route(home),
         sheet_route(home.sheet),
         scores_route(courts),
         WebSocketRoute("/ws", page),
@@ -148,20 +151,21 @@ def recording_routes(shelf: Recordings) -> list[BaseRoute]:
     ]
 
 
-def fork_routes(shelf: Recordings, forks: Forks, key: str) -> list[BaseRoute]:
+def fork_routes(
+    shelf: Recordings, forks: Forks, lets_act: Callable[[str], bool]
+) -> list[BaseRoute]:
     """Return the route on which a page asks for forks of a recording.
 
-    A request needs the page key in a header, which no page of another site can send.
+    A request needs a secret in a header, which no page of another site can send.
 
     Args:
         shelf: the recordings.
         forks: plays the forks.
-        key: the page key.
+        lets_act: returns whether a secret is the page key, or a token that a court has accepted.
     """
 
     async def fork(request: Request) -> Response:
-        given = request.headers.get(KEY_HEADER, "").encode("utf-8", "surrogatepass")
-        if not hmac.compare_digest(given, key.encode()):
+        if not lets_act(request.headers.get(KEY_HEADER, "")):
             return answer(request.scope, say("gateway.fork-key"), 403)
         record = await asyncio.to_thread(shelf.find, request.path_params["name"])
         if record is None:
@@ -194,6 +198,16 @@ async def _body(request: Request) -> bytes:
         if len(data) > REQUEST_BYTES:
             raise too_long(len(data), REQUEST_BYTES)
     return data
+
+
+def event_route(home: Home) -> BaseRoute:
+    """Return the route on which commands ask for the courts that a link leads to."""
+    event = Event(protocol=PROTOCOL, name=home.contest, courts=home.told)
+
+    async def answer_event(request: Request) -> Response:
+        return json_response(request, event)
+
+    return Route(f"/{EVENT_PATH}", answer_event)
 
 
 def sheet_route(path: Path | None) -> BaseRoute:

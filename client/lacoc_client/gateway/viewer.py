@@ -37,8 +37,10 @@ class Viewer:
         self._interval_s = 1 / USUAL_HZ
         self._next_s = 0.0
         self.frames = Frames()
+        self.is_own = False
+        """Whether it is a page of the person who started the gateway: it showed the page key."""
         self.can_act = False
-        """Whether the page showed the gateway's page key."""
+        """Whether it may act: it is such a page, or a court has accepted its token."""
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:

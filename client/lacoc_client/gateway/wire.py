@@ -77,7 +77,7 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
 
 
 class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
-    """The first message: which court, how many frames a second, and the page key."""
+    """The first message: which court, how many frames a second, and who the page is."""
 
     court: _Short | None = None
     director: bool = False
@@ -86,6 +86,9 @@ class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
     """Whether it follows the director's second picture, not the first one."""
     hz: float | None = None
     key: _Token | None = None
+    """The gateway's page key, if it is a page of the person who started the gateway."""
+    token: _Token | None = None
+    """The token of its team or referee, with which it will act; None: it only watches."""
 
 
 class Rate(Ask, frozen=True, kw_only=True, tag="rate"):

@@ -81,7 +81,6 @@ class DeskPage:
         desk: the connection to the desk.
         guesses: slows down whoever shows wrong secrets.
         hand_ins: counts how often files are handed in.
-        key: the gateway's page key.
         address: address of the pages, as other machines can open it.
     """
 
@@ -91,7 +90,6 @@ class DeskPage:
         desk: DeskLine,
         guesses: Guesses,
         hand_ins: HandIns,
-        key: str,
         address: str,
     ) -> None:
         self._websocket = websocket
@@ -99,7 +97,6 @@ class DeskPage:
         self._guesses = guesses
         self._hand_ins = hand_ins
         self._machine = websocket.client.host if websocket.client is not None else ""
-        self._key = key
         self._address = address
         self._answers = Answers(Viewer(websocket.state.socket), lambda *_: None)
 
@@ -133,7 +130,7 @@ class DeskPage:
     async def _link(self, token: str) -> TeamLink:
         answer = await self._asked(codec.encode(Own(secret=token)))
         entry = codec.decode(answer, OwnEntry, REPLY_MAX_BYTES)
-        return team_link(entry.team, self._address, self._key, entry.token)
+        return team_link(entry.team, self._address, entry.token)
 
     async def _links(self, secret: str, wanted: str) -> Links:
         answer = await self._asked(codec.encode(Tokens(secret=secret)))
@@ -143,12 +140,12 @@ class DeskPage:
     def _made(self, tokens: TokenList, wanted: str) -> Links:
         enter = f"{self._address}/enter"
         teams = tuple(
-            team_link(team, self._address, self._key, token)
+            team_link(team, self._address, token)
             for team, token in tokens.teams.items()
             if wanted in ("", team)
         )
         referees = tuple(
-            referee_link(court, self._address, self._key, token)
+            referee_link(court, self._address, token)
             for court, token in tokens.referees.items()
             if not wanted
         )

@@ -39,22 +39,21 @@ class Links(msgspec.Struct, frozen=True, kw_only=True):
     referees: tuple[RefereeLink, ...]
 
 
-def team_link(team: str, address: str, key: str, token: str) -> TeamLink:
+def team_link(team: str, address: str, token: str) -> TeamLink:
     """Make the link of a team.
 
     Args:
         team: name of the team.
         address: address of the pages, such as "http://192.168.1.20:8080".
-        key: the gateway's page key, which lets a page act.
         token: the team's token.
     """
-    link = f"{address}/play#key={key}&token={token}"
+    link = f"{address}/play#token={token}"
     return TeamLink(team=team, link=link, qr=qr_code(link))
 
 
-def referee_link(court: str, address: str, key: str, token: str) -> RefereeLink:
+def referee_link(court: str, address: str, token: str) -> RefereeLink:
     """Make the link of a court's referee; arguments as in `team_link`, with the desk's token."""
-    link = f"{address}/referee?court={court}#key={key}&token={token}"
+    link = f"{address}/referee?court={court}#token={token}"
     return RefereeLink(court=court, link=link, qr=qr_code(link))
 
 

@@ -20,17 +20,15 @@ class DeskSite:
 
     Args:
         desk: address of the office's desk.
-        key: the gateway's page key.
         address: address of the pages, as other machines can open it.
     """
 
     paths: Sequence[str] = ("/office", "/enter")
 
-    def __init__(self, desk: str, key: str, address: str) -> None:
+    def __init__(self, desk: str, address: str) -> None:
         self._line = DeskLine(desk)
         self._guesses = Guesses()
         self._hand_ins = HandIns()
-        self._key = key
         self._address = address
 
     @property
@@ -39,7 +37,7 @@ class DeskSite:
 
         async def page(websocket: WebSocket) -> None:
             await DeskPage(
-                websocket, self._line, self._guesses, self._hand_ins, self._key, self._address
+                websocket, self._line, self._guesses, self._hand_ins, self._address
             ).serve()
 
         return [WebSocketRoute("/office/ws", page)]

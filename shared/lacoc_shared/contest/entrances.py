@@ -91,17 +91,6 @@ def gateway_access(contest: Contest | None, court: str | None, connect: str | No
     return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
 
 
-def page_key(contest: Contest) -> str:
-    """Return a contest's page key, which is the same at each start of its gateway.
-
-    So open pages, and links that were handed out, keep working after a restart. The page key is as
-    secret as the contest file.
-    """
-    secret = " ".join(court.referee.token for court in contest.courts.values())
-    digest = hashlib.blake2b(secret.encode(), digest_size=16, person=b"lacoc web key").digest()
-    return digest.hex()
-
-
 def organiser_key(contest: Contest) -> str:
     """Return the key that opens the organiser's page; it is the same at each start of the office.
 
@@ -138,7 +127,7 @@ def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[
     """
     court = contest.courts[contest.asked]
     return {
-        "link": f"{pages}/play#key={page_key(contest)}&token={token}",
+        "link": f"{pages}/play#token={token}",
         "command": f"lacoc play --connect {court.address(any_host)} --token {token}",
     }
 

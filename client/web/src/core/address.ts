@@ -3,9 +3,12 @@
 import { tab } from "./storage";
 
 const KEY = "lacoc-key";
-const TOKEN = "lacoc-team-token";
-const ORGANISER = "lacoc-organiser";
-const REFEREE = "lacoc-referee";
+/** Where the tab keeps the token of a link, by the page that it opens. */
+const TOKENS: Readonly<Record<string, string>> = {
+  referee: "lacoc-referee",
+  office: "lacoc-organiser",
+};
+const TEAM_TOKEN = "lacoc-team-token";
 const query = new URLSearchParams(location.search);
 
 /** The page, where its own file says it: in a published folder, which has no gateway. */
@@ -28,34 +31,28 @@ export function amount(name: string, otherwise: number, least: number, most: num
   return Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : otherwise;
 }
 
-/** The gateway's key, which lets a page act. */
+/** The key of the gateway's owner. */
 export function runKey(): string | null {
   return secret("key", KEY);
 }
 
-/** The token of a team, for the whole contest. */
-export function teamToken(): string | null {
-  return secret("token", TOKEN);
+/** The token of whoever opened this page by link: of a team, a referee or the organiser. */
+export function ownToken(): string | null {
+  return secret("token", tokenKept());
 }
 
-/** The token of a court's referee. */
-export function refereeToken(): string | null {
-  return secret("token", REFEREE);
+/** Keep the token for this tab; null forgets it. */
+export function keepToken(token: string | null): void {
+  tab.write(tokenKept(), token);
 }
 
-/** Keep a referee's token for this tab; null forgets it. */
-export function keepRefereeToken(token: string | null): void {
-  tab.write(REFEREE, token);
+/** Any secret of this tab with which the gateway lets it act: the owner's key first. */
+export function anySecret(): string | null {
+  return runKey() ?? tab.read(TEAM_TOKEN) ?? tab.read(TOKENS.referee!);
 }
 
-/** The organiser's key, which opens the office. */
-export function organiserKey(): string | null {
-  return secret("organiser", ORGANISER);
-}
-
-/** Keep a team's token for this tab; null forgets it. */
-export function keepTeamToken(token: string | null): void {
-  tab.write(TOKEN, token);
+function tokenKept(): string {
+  return TOKENS[location.pathname.replace(/\/+$/, "").split("/").pop()!] ?? TEAM_TOKEN;
 }
 
 /**

@@ -1,7 +1,7 @@
 /** The page's knowledge of a court, as signals that its parts draw from. */
 
 import { batch, type ReadonlySignal, signal } from "@preact/signals";
-import { runKey, setting, socketUrl } from "./address";
+import { ownToken, runKey, setting, socketUrl } from "./address";
 import { recoloured } from "./colours";
 import { Connection } from "./connection";
 import { type Match, part } from "./match";
@@ -122,7 +122,7 @@ export class Court implements Match {
     const { hz, directed: director } = this;
     const aside = this.watched === "aside";
     const court = setting("court") || null;
-    return this.ask("watch", { court, director, aside, hz, key: runKey() });
+    return this.ask("watch", { court, director, aside, hz, key: runKey(), token: ownToken() });
   }
 
   private receive(message: Message, arrivedMs: number): void {

@@ -1,6 +1,6 @@
 /** Asks the gateway to go on with one of its recordings: a fork, which is a recording too. */
 
-import { ownPage, runKey } from "./address";
+import { anySecret, ownPage } from "./address";
 import type { Phrase } from "./phrase";
 import type { ForkChanges } from "./wire";
 
@@ -16,9 +16,9 @@ export interface ForkAsk {
   players: string[];
 }
 
-/** Whether this page may ask for forks: it was opened with the page key. */
+/** Whether this page may ask for forks: the tab has a secret. */
 export function mayFork(): boolean {
-  return ownPage === null && runKey() !== null;
+  return ownPage === null && anySecret() !== null;
 }
 
 /** The bots that can go on with a recording; rejects with an `Error` in the reader's language. */
@@ -36,7 +36,7 @@ export async function fork(name: string, asked: ForkAsk, language: string): Prom
 async function ask(name: string, language: string, body?: string): Promise<unknown> {
   const response = await fetch(`recordings/${encodeURIComponent(name)}/forks`, {
     method: body === undefined ? "GET" : "POST",
-    headers: { "X-Lacoc-Key": runKey() ?? "", "Accept-Language": language },
+    headers: { "X-Lacoc-Key": anySecret() ?? "", "Accept-Language": language },
     ...(body !== undefined && { body }),
   });
   if (!response.ok) throw new Error((await response.text()).trim());

@@ -219,7 +219,8 @@ export class Player {
   private stand(): Standing {
     const welcome = this.court.welcome.value;
     if (this.isHeld()) return "seated";
-    if (welcome && !welcome.can_act) return "watching";
+    const isElsewhere = this.alone && welcome?.home !== "practice";
+    if (welcome && (!welcome.can_act || isElsewhere)) return "watching";
     const { state, wish } = this.claim.value;
     return wish && !this.wishHere.value ? "outside" : SHOWN[state];
   }

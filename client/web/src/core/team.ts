@@ -1,7 +1,7 @@
 /** A team's way through a contest: with its one token it finds its court, again and again. */
 
 import { computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
-import { goToCourt, keepTeamToken, teamToken } from "./address";
+import { goToCourt, keepToken, ownToken } from "./address";
 import type { Refused } from "./connection";
 import type { Court } from "./court";
 import type { Player } from "./player";
@@ -19,7 +19,7 @@ const NO_TEAM = "refused.no-team-token";
 
 export class Team {
   /** The token; null: nobody has given one here. */
-  readonly token = signal<string | null>(teamToken());
+  readonly token = signal<string | null>(ownToken());
   /** Whether this page follows a team. */
   readonly isOn: ReadonlySignal<boolean>;
   /** Whether the court plays for an office, so that teams have tokens and seats have none. */
@@ -61,7 +61,7 @@ export class Team {
 
   /** Follow the team of this token. */
   enter(token: string): void {
-    keepTeamToken(token);
+    keepToken(token);
     this.refusal.value = null;
     this.token.value = token;
     void this.ask();
@@ -69,7 +69,7 @@ export class Team {
 
   /** Ask for the token again. */
   forget(): void {
-    keepTeamToken(null);
+    keepToken(null);
     this.token.value = null;
     this.there.value = null;
   }

@@ -39,8 +39,8 @@ export const play = {
   "join.refused": ["You could not join", "参加できませんでした"],
   "watching.title": ["With this link you can only watch", "このリンクでは観戦だけできます"],
   "watching.text": [
-    "To play, open the address that ends with #key=…. 'lacoc play' or 'lacoc web' printed it when it started. At the venue ask the organiser.",
-    "参加するには、末尾に #key=… が付いたアドレスを開いてください。「lacoc play」または「lacoc web」を起動した画面に表示されています。会場では主催者に尋ねてください。",
+    "To play here, open the address that ends with #key=…. 'lacoc play' printed it when it started.",
+    "ここで参加するには、末尾に #key=… が付いたアドレスを開いてください。「lacoc play」を起動した画面に表示されています。",
   ],
   "watching.practice": [
     "To practise, start 'lacoc practice'. It opens this page with its key.",

@@ -13,11 +13,6 @@ export const referee = {
   "referee.entering": ["Asking the court …", "コートに確認しています…"],
   "referee.leave": ["Leave", "退室"],
   "referee.leaveText": ["Leave the desk and forget the token", "退室してトークンを消去"],
-  "referee.readOnlyTitle": ["This page can only watch", "このページは閲覧専用です"],
-  "referee.readOnly": [
-    "To decide, open the referee's link. “lacoc web” prints it on the server's screen. It ends with #key=…",
-    "判定を行うには、審判用リンクを開いてください。サーバーの「lacoc web」の画面に表示される、#key=… で終わるアドレスです。",
-  ],
   "referee.youAct": ["You are the referee", "あなたが審判です"],
   "referee.acts": ["{name} is the referee", "{name} が審判を担当中"],
   "referee.watching": ["You only watch until you take over.", "交代するまでは閲覧だけです。"],

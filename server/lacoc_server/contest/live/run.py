@@ -156,7 +156,7 @@ def play_live(
         writer(office.contest)
         ticker = Ticker(office.facts)
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
-        opened(Opened(url, addresses, f"{url}/office#organiser={key}", code.value))
+        opened(Opened(url, addresses, f"{url}/office#token={key}", code.value))
         over_s = math.inf  # when the contest was over, as far as is known
         is_late = speed <= 1 and len(addresses) > 1
         farewell_s = _LATE_S if is_late else _FAREWELL_S

@@ -1,7 +1,7 @@
 /** What the page knows of a team that enters, and what it asks of the office. */
 
 import { signal } from "@preact/signals";
-import { keepTeamToken, teamToken } from "../../core/address";
+import { keepToken, ownToken } from "../../core/address";
 import { Refused } from "../../core/connection";
 import {
   type AnyRequest,
@@ -62,7 +62,7 @@ export class Entrant {
   }
 
   private forget(): void {
-    keepTeamToken(null);
+    keepToken(null);
     this.entry.value = null;
     this.link.value = null;
     this.why.value = null;
@@ -94,7 +94,7 @@ export class Entrant {
   }
 
   private async take(entry: OwnEntry): Promise<void> {
-    keepTeamToken(entry.token);
+    keepToken(entry.token);
     this.entry.value = entry;
     this.event.value = entry.event;
     if (this.link.peek()?.team !== entry.team) {
@@ -104,7 +104,7 @@ export class Entrant {
 
   private async look(): Promise<void> {
     if (!this.desk.connection.state.peek().open || this.isWeighing.peek()) return;
-    const token = teamToken();
+    const token = ownToken();
     try {
       if (token) await this.take(await this.desk.ask<OwnEntry>({ do: "own", secret: token }));
       else this.event.value = await this.desk.ask<EventInfo>({ do: "look" });

@@ -1,7 +1,7 @@
 /** What the organiser's page knows of the contest, and what it asks of the office. */
 
 import { computed, signal } from "@preact/signals";
-import { organiserKey, pagesUrl } from "../../core/address";
+import { ownToken, pagesUrl } from "../../core/address";
 import { Refused } from "../../core/connection";
 import { Feed } from "../../core/contest/feed";
 import {
@@ -58,7 +58,7 @@ export class Organiser {
   );
   /** Whether closing entries does not draw the first stage: the organiser does that afterwards. */
   readonly closesOnly = computed(() => this.feed.sheet.value?.planned[0]?.draw === "organiser");
-  private readonly key = organiserKey() ?? "";
+  private readonly key = ownToken() ?? "";
   private timer = 0;
 
   constructor() {

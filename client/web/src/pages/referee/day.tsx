@@ -2,7 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { refereeToken } from "../../core/address";
+import { ownToken } from "../../core/address";
 import { type CourtPlan, Desk as OfficeDesk } from "../../core/desk";
 import { part } from "../../core/match";
 import { BEATS_PER_S, Phase, SeatFlag } from "../../core/wire";
@@ -28,7 +28,7 @@ function officeOf(desk: Desk): OfficeDesk | null {
 }
 
 function ask(from: OfficeDesk, court: string, result: Result | null): Promise<CourtPlan> {
-  const secret = refereeToken() ?? "";
+  const secret = ownToken() ?? "";
   return from.ask<CourtPlan>({ do: "court_day", secret, court, ...result });
 }
 

@@ -1,7 +1,7 @@
 /** The referee's desk: the acting referee, the legal decisions, and their answers. */
 
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { keepRefereeToken, refereeToken } from "../../core/address";
+import { keepToken, ownToken } from "../../core/address";
 import { Refused, Unanswered } from "../../core/connection";
 import type { Court } from "../../core/court";
 import { part, phaseOf } from "../../core/match";
@@ -99,8 +99,8 @@ export class Desk {
     });
     // A new connection, also after a reload, sits down again with the tab's token.
     effect(() => {
-      const token = refereeToken();
-      const known = court.welcome.value?.can_act && court.referee.value;
+      const token = ownToken();
+      const known = court.welcome.value && court.referee.value;
       const away = !this.entered.peek() && !this.busy.peek();
       if (known && token && this.by.peek() && away) this.again(token);
     });
@@ -113,11 +113,11 @@ export class Desk {
     this.by.value = by;
     try {
       await this.court.ask("enter", { token, by });
-      keepRefereeToken(token);
+      keepToken(token);
       this.entered.value = true;
     } catch (error) {
       this.refused.value = reasonOf(error);
-      if (error instanceof Refused && error.tokenRefused) keepRefereeToken(null);
+      if (error instanceof Refused && error.tokenRefused) keepToken(null);
     } finally {
       this.busy.value = false;
     }
@@ -125,7 +125,7 @@ export class Desk {
 
   /** Leave the desk: the token is forgotten. */
   leave(): void {
-    keepRefereeToken(null);
+    keepToken(null);
     location.reload();
   }
 
@@ -230,7 +230,7 @@ export class Desk {
 
   private async again(token: string): Promise<void> {
     await this.enter(token, this.by.peek());
-    if (this.entered.peek() || refereeToken() !== token) return;
+    if (this.entered.peek() || ownToken() !== token) return;
     setTimeout(() => {
       const open = this.court.connection.state.peek().open;
       if (open && !this.entered.peek() && !this.busy.peek()) this.again(token);

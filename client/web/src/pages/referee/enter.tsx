@@ -1,25 +1,17 @@
 /** Sitting down at the desk, and who sits there. */
 
 import { useSignal } from "@preact/signals";
-import { refereeToken } from "../../core/address";
+import { ownToken } from "../../core/address";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import type { Desk } from "./desk";
 
 /** Asks for name and token; nothing once the court has taken them. */
 export function EnterCard({ desk }: { desk: Desk }) {
-  const token = useSignal(refereeToken() ?? ""); // a referee's link has it
+  const token = useSignal(ownToken() ?? ""); // a referee's link has it
   const name = useSignal(desk.by.value);
   const welcome = desk.court.welcome.value;
   if (!welcome || desk.entered.value) return null;
-  if (!welcome.can_act) {
-    return (
-      <section class="card enter" aria-labelledby="read-only">
-        <h2 id="read-only">{t("referee.readOnlyTitle")}</h2>
-        <p>{t("referee.readOnly")}</p>
-      </section>
-    );
-  }
   const refused = desk.refused.value;
   return (
     <section class="card enter" aria-labelledby="enter-title">

@@ -1,0 +1,135 @@
+"""What pages tell commands of their event: its courts, and where they are.
+
+It is public: whoever can open the pages may read it at `event.json`.
+"""
+
+import hashlib
+import ssl
+import urllib.error
+import urllib.request
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import msgspec
+
+from lacoc_client.link.link import Link
+from lacoc_shared.messages import PROTOCOL
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import endpoint
+from lacoc_shared.words import Phrase, say
+
+PATH = "event.json"
+_WAIT_S = 10.0
+_MOST_BYTES = 1 << 20
+
+
+class Event(msgspec.Struct, frozen=True, kw_only=True):
+    """An event, for a command that has a link to it."""
+
+    protocol: int
+    name: str = ""
+    """Name of the contest; "": it has none."""
+    courts: Mapping[str, tuple[str, ...]] = {}
+    """For each court the addresses at which others find it; none: it plays with pages only."""
+    authority: str = ""
+    """Certificate (PEM) of the event's own authority; "": public ones sign for it, or nothing is
+    encrypted."""
+
+
+class Found(NamedTuple):
+    """What a link leads to."""
+
+    link: Link
+    event: Event
+
+    @property
+    def courts(self) -> dict[str, tuple[str, ...]]:
+        """The courts that a command can reach, with their addresses.
+
+        Raises:
+            UserError: if there are none.
+        """
+        found = {name: at for name, at in self.event.courts.items() if at}
+        if not found:
+            raise UserError(say("link.only-pages", url=self.link.pages))
+        return found
+
+
+def find(text: str) -> Found:
+    """Read a link, and ask its pages what it leads to.
+
+    Args:
+        text: a link, or the address of pages.
+
+    Raises:
+        UserError: if it is no link; if its pages do not answer, or can't prove who they are; or if
+            they are of another version.
+    """
+    link = Link.read(text)
+    if not link.authority:
+        return Found(link, _read(link, _fetched(link, None)))
+    # The pages prove who they are with a certificate of an authority that they name themselves. The
+    # link says which authority that is.
+    claimed = _read(link, _fetched(link, _trusting_all())).authority
+    if _fingerprint(link, claimed) != link.authority:
+        raise UserError(say("link.other-authority", url=link.pages))
+    event = _read(link, _fetched(link, ssl.create_default_context(cadata=claimed)))
+    return Found(link, msgspec.structs.replace(event, authority=claimed))
+
+
+def fingerprint(certificate: str) -> str:
+    """Return the fingerprint of a certificate (PEM): SHA-256, hexadecimal.
+
+    Raises:
+        ValueError: if it is none.
+    """
+    return hashlib.sha256(ssl.PEM_cert_to_DER_cert(certificate)).hexdigest()
+
+
+def _fingerprint(link: Link, certificate: str) -> str:
+    try:
+        return fingerprint(certificate)
+    except ValueError:
+        raise UserError(say("link.other-authority", url=link.pages)) from None
+
+
+def _trusting_all() -> ssl.SSLContext:
+    context = ssl.create_default_context()
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE
+    return context
+
+
+def _fetched(link: Link, context: ssl.SSLContext | None) -> bytes:
+    try:
+        with urllib.request.urlopen(
+            f"{link.pages}/{PATH}", timeout=_WAIT_S, context=context
+        ) as answer:
+            return bytes(answer.read(_MOST_BYTES))
+    except urllib.error.HTTPError as error:
+        why = say("link.status", status=error.code)
+        raise UserError(say("link.no-event", url=link.pages, why=why)) from None
+    except (OSError, ValueError) as error:  # URLError is an OSError
+        raise UserError(say("link.no-pages", url=link.pages, why=_why(error))) from None
+
+
+def _why(error: Exception) -> Phrase | str:
+    reason = getattr(error, "reason", error)
+    if isinstance(reason, ssl.SSLCertVerificationError):
+        return reason.verify_message
+    return str(getattr(reason, "strerror", None) or reason)
+
+
+def _read(link: Link, data: bytes) -> Event:
+    try:
+        event = msgspec.json.decode(data, type=Event)
+    except msgspec.MsgspecError:
+        why = say("link.not-read")
+        raise UserError(say("link.no-event", url=link.pages, why=why)) from None
+    if event.protocol != PROTOCOL:
+        raise UserError(say("link.version", pages=event.protocol, program=PROTOCOL))
+    try:
+        courts = {name: tuple(map(endpoint, at)) for name, at in event.courts.items()}
+    except UserError as error:
+        raise UserError(say("link.no-event", url=link.pages, why=error.phrase)) from None
+    return msgspec.structs.replace(event, courts=courts)

@@ -1,0 +1,73 @@
+"""What a link says: where the pages are, which of them it opens, and who has it; pure."""
+
+import re
+from typing import Self
+from urllib.parse import SplitResult, parse_qs, urlsplit
+
+import msgspec
+
+from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.words import say
+
+_PAGES = frozenset(
+    ("play", "referee", "office", "enter", "watch", "overlay", "replay", "contest", "practice")
+)
+_FINGERPRINT = re.compile(r"[0-9a-f]{64}")
+_MOST = 2000
+
+
+class Link(msgspec.Struct, frozen=True, kw_only=True):
+    """A link, taken apart."""
+
+    pages: str
+    """Address of the pages, without a slash at its end."""
+    page: str = ""
+    """The page that it opens, such as "play"; "": it is the address of the pages."""
+    court: str = ""
+    """The court that it names; "": none."""
+    token: str = ""
+    """The secret of a seat, a team, a referee or the organiser; "": who has it only watches."""
+    authority: str = ""
+    """Fingerprint of the event's own authority (SHA-256, hexadecimal); "": it has none."""
+
+    def __repr__(self) -> str:  # an accidental print must not show the token
+        return f"Link(pages={self.pages!r}, page={self.page!r})"
+
+    @classmethod
+    def read(cls, text: str) -> Self:
+        """Take a link apart.
+
+        Raises:
+            UserError: if it is none.
+        """
+        parts = _parts(text.strip())
+        path = parts.path.rstrip("/")
+        before, _, last = path.rpartition("/")
+        page = last if last in _PAGES else ""
+        secret, query = parse_qs(parts.fragment), parse_qs(parts.query)
+        authority = _first(secret, "authority").lower()
+        if authority and not _FINGERPRINT.fullmatch(authority):
+            raise UserError(say("link.bad-fingerprint"))
+        return cls(
+            pages=f"{parts.scheme}://{parts.netloc}{before if page else path}",
+            page=page,
+            court=_first(query, "court"),
+            token=_first(secret, "token"),
+            authority=authority,
+        )
+
+
+def _parts(text: str) -> SplitResult:
+    wrong = UserError(say("link.not-a-link", link=printable(text.partition("#")[0], 200)))
+    try:
+        parts = urlsplit(text[:_MOST])
+        port = parts.port
+    except ValueError:
+        raise wrong from None
+    if parts.scheme not in ("http", "https") or not parts.hostname or port == 0 or "@" in text:
+        raise wrong
+    return parts
+
+
+def _first(values: dict[str, list[str]], name: str) -> str:
+    return next(iter(values.get(name, ())), "")
