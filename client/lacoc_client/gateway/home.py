@@ -61,6 +61,8 @@ class Home:
     """Serves the gateway's metrics."""
     told: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """For each court the addresses that commands are told; none: it plays with pages only."""
+    authority: str = ""
+    """Certificate (PEM) of the event's own authority; "": it has none."""
     key: str = field(default_factory=new_key)
     """The page key: a page with it belongs to the person who started the gateway."""
 

@@ -202,7 +202,7 @@ async def _body(request: Request) -> bytes:
 
 def event_route(home: Home) -> BaseRoute:
     """Return the route on which commands ask for the courts that a link leads to."""
-    event = Event(protocol=PROTOCOL, name=home.contest, courts=home.told)
+    event = Event(protocol=PROTOCOL, name=home.contest, courts=home.told, authority=home.authority)
 
     async def answer_event(request: Request) -> Response:
         return json_response(request, event)
