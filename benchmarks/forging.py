@@ -37,7 +37,7 @@ from lacoc_shared.codec import decode, encode
 from lacoc_shared.command import cli
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.decisions import Adjust, Start
 from lacoc_shared.inputs import Decide, KeySeat
@@ -98,7 +98,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
         def enter(who: str) -> Session:
             access = people[who]
             return stack.enter_context(
-                open_client([access.connect], _WAIT_S, credentials=access.credentials)
+                open_client([access.connect], _WAIT_S, authority=access.authority)
             )
 
         sessions = {who: enter(who) for who in people}

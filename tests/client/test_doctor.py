@@ -20,7 +20,7 @@ from lacoc_client.doctor import machine as doctor
 from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Status
 from lacoc_shared.command import cli
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.words import render, say
 
 

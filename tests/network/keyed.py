@@ -10,7 +10,7 @@ from lacoc_server.doors.keys.make import make_keys
 from lacoc_server.doors.keys.protection import protection
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.network.session import Session, open_client
 
 
@@ -41,4 +41,4 @@ class KeyedCourt(CourtStub):
     def enter(self, who: str) -> Session:
         """Open a network session with a person's credentials."""
         access = self.people[who]
-        return open_client([access.connect], credentials=access.credentials)
+        return open_client([access.connect], authority=access.authority)

@@ -23,7 +23,7 @@ from lacoc_client.controller import Controller, Hold
 from lacoc_server.doors.keys.certificates import LIFE, Authority, utc_now
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access, invitation_text
+from lacoc_shared.contest.access import Access, invitation_text
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client, open_court
 
@@ -48,7 +48,7 @@ def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
     port = keyed.address.rpartition(":")[2]
     for host in ("127.0.0.1", "localhost"):
         access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
-        with open_client([access.connect], credentials=access.credentials) as session:
+        with open_client([access.connect], authority=access.authority) as session:
             assert session.ask("lacoc/main/sheet")
 
 

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from lacoc_shared.command import options
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 
 GOOD = """

@@ -7,7 +7,7 @@ import msgspec
 import pytest
 
 from lacoc_client.commands import entrance
-from lacoc_shared.contest.invitation import Access, invitation_text, read_invitation
+from lacoc_shared.contest.access import Access, invitation_text, read_invitation
 from lacoc_shared.mistakes import UserError
 
 WATCH = Access(

@@ -41,7 +41,6 @@ class Designer:
     Args:
         folder: the files.
         studios: the connection to the studio; this class starts and closes it.
-        invitation: an invitation to a seat, to which pages take their gait; None: practice.
         robot: the robot that pages begin with, as on the command line; None: the workshop's.
 
     Raises:
@@ -53,10 +52,9 @@ class Designer:
         folder: Folder,
         studios: Studios,
         robot: str | None = None,
-        invitation: Path | None = None,
     ) -> None:
         self.folder: Folder | None = folder
-        self.playing: Playing | None = Playing(invitation)
+        self.playing: Playing | None = Playing()
         self.studios = studios
         self.robot = SentFile(*find_robot(robot)) if robot else None
         self.key = new_key()

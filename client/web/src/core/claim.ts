@@ -86,7 +86,6 @@ const MOST_TRIES = 8;
 const ABOUT_TOKEN: ReadonlySet<string> = new Set([
   "refused.wrong-token",
   "gateway.no-token",
-  "connect.token",
 ]);
 /** Refusals that the same request would meet again. */
 const FINAL: ReadonlySet<string> = new Set([...ABOUT_TOKEN, "refused.files-too-large"]);
