@@ -404,9 +404,7 @@ def test_access_without_a_file(file: Path) -> None:
     """Without a contest file, address and token come from options; errors name a missing option."""
     access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
-    assert access == Access(
-        court="main", connect="tcp/10.0.0.7:7447", seat="left", token="t" * 20
-    )
+    assert access == Access(court="main", connect="tcp/10.0.0.7:7447", seat="left", token="t" * 20)
     assert entrances.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
     with pytest.raises(
         UserError, match=r"left seat.*--contest.*--token.*LACOC_CONTEST.*LACOC_TOKEN"

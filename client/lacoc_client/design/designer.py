@@ -4,7 +4,6 @@ import asyncio
 import hmac
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from pathlib import Path
 
 from lacoc_client.design import requests
 from lacoc_client.design.files import FileContent, read_file

@@ -1,4 +1,4 @@
-"""The certificate of a contest's pages and courts: made for a hall without a domain, and checked."""
+"""The certificate of a contest's pages and courts: made in a hall without a domain, and checked."""
 
 import ipaddress
 import json

@@ -1,4 +1,4 @@
-"""Write, check and show the contest file (`lacoc_shared.contest.file`), and make its certificate."""
+"""Write, check and show the contest file (`lacoc_shared.contest.file`); make its certificate."""
 
 import os
 from datetime import UTC, datetime
