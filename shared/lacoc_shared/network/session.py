@@ -370,6 +370,8 @@ def open_client(connect: Sequence[str], timeout_s: float = 2.0, authority: str =
     endpoints = [address.endpoint(one) for one in connect]
     if (unknown := address.why_not_known(endpoints)) is not None:
         raise NotConnected(unknown)
+    if len(endpoints) > 1:  # at first Zenoh tries nothing but the first address
+        endpoints.sort(key=lambda one: not address.is_open(one))
     try:
         config = network_config.client_config(endpoints, timeout_s, authority)
         return Session(_open(config), endpoints)
