@@ -110,7 +110,7 @@ def test_the_entries_go_into_any_contest_file(tmp_path: Path) -> None:
                 run("certificate", str(file))
             continue
         run("certificate", str(file))
-        assert contests.load(file).protocol == "tls"
+        assert contests.load(file).public.protocol == "tls"
         assert head.splitlines()[0] in file.read_text()
 
 

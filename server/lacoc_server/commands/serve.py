@@ -120,7 +120,7 @@ def serve_command(
         levels,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
-    addresses = (endpoint(listen, plan.protocol),) if listen else entry.own_listen
+    addresses = (endpoint(listen, plan.public.protocol),) if listen else entry.own_listen
     with ExitStack() as opened:
         weighing = opened.enter_context(Weighing(admission))
         inbox = Inbox(

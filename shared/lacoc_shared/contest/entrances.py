@@ -28,7 +28,7 @@ def spectator_access(contest: Contest | None, court: str | None, connect: str | 
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
     stand_in = entry.stand_in() if entry and not connect else ""
-    address = endpoint(address, contest.protocol if contest else "tcp")
+    address = endpoint(address, contest.public.protocol if contest else "tcp")
     authority = contest.public.read_authority() if contest else ""
     return Access(court=name, connect=address, stand_in=stand_in, authority=authority)
 

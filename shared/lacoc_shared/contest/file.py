@@ -181,11 +181,6 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     draw."""
 
     @property
-    def protocol(self) -> str:
-        """Protocol of addresses that name none: TLS with a certificate, else TCP."""
-        return _protocol(self.public)
-
-    @property
     def own_host(self) -> str:
         """Host of this machine for others: with a certificate the name of the pages, if it has one.
 
@@ -350,7 +345,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     courts = {}
     for name, entry in file.court.items():
         with found:
-            courts[name] = _court(name, entry, folder, _protocol(public))
+            courts[name] = _court(name, entry, folder, public.protocol)
     limits = {}
     for name, value in file.limits.items():
         with found:
@@ -396,10 +391,6 @@ def _public(general: _General, folder: Path) -> PublicAddress:
         return PublicAddress.of(general.pages, certificate, private_key, general.proxies, authority)
     except UserError as error:
         raise wrong_in("contest", error) from None
-
-
-def _protocol(public: PublicAddress) -> str:
-    return "tcp" if public.pair is None else "tls"
 
 
 def _check_time(entries: dict[str, Any]) -> None:

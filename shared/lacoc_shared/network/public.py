@@ -98,6 +98,11 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         return "http" if self.certificate is None else "https"
 
     @property
+    def protocol(self) -> str:
+        """The protocol of courts whose addresses name none: TLS with a certificate, else TCP."""
+        return "tcp" if self.certificate is None else "tls"
+
+    @property
     def pair(self) -> Pair | None:
         """Certificate and key; None: nothing is encrypted."""
         if self.certificate is None or self.private_key is None:

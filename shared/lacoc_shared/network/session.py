@@ -15,6 +15,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import Any, NamedTuple, Self
 
 import zenoh
@@ -313,14 +314,8 @@ def open_court(
         UserError: if it can't listen on one of them; the message says why.
     """
     os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
-    _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
-    endpoints = [address.endpoint(one, "tls" if certificate else "tcp") for one in listen]
-    address.check_protocols(endpoints, encrypted=certificate is not None)
-    try:
-        config = network_config.court_config(endpoints, certificate, office)
-        return Session(_open(config), endpoints)
-    except zenoh.ZError as error:
-        raise UserError(address.why_not_listening(endpoints, error)) from None
+    config = partial(network_config.court_config, certificate=certificate, office=office)
+    return _listening(listen, config, encrypted=certificate is not None)
 
 
 def open_studio(listen: Sequence[str]) -> Session:
@@ -341,11 +336,14 @@ def open_desk(listen: Sequence[str]) -> Session:
 
 
 def _listening(
-    listen: Sequence[str], config: Callable[[Sequence[str]], network_config.Config]
+    listen: Sequence[str],
+    config: Callable[[Sequence[str]], network_config.Config],
+    *,
+    encrypted: bool = False,
 ) -> Session:
     _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
-    endpoints = [address.endpoint(one) for one in listen]
-    address.check_protocols(endpoints, encrypted=False)
+    endpoints = [address.endpoint(one, "tls" if encrypted else "tcp") for one in listen]
+    address.check_protocols(endpoints, encrypted=encrypted)
     try:
         return Session(_open(config(endpoints)), endpoints)
     except zenoh.ZError as error:

@@ -125,7 +125,7 @@ def _check_free(contest: Contest, name: str, listen: Sequence[str]) -> None:
         UserError: if it can't; the message names the court, the port and what to do.
     """
     try:
-        check_free([endpoint(one, contest.protocol) for one in listen])
+        check_free([endpoint(one, contest.public.protocol) for one in listen])
     except UserError as error:
         raise UserError(say("child.no-address", court=name, why=error.phrase)) from None
 
