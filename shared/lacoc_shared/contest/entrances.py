@@ -83,8 +83,6 @@ def referee_access(
     return access.of_referee(token)
 
 
-
-
 def organiser_key(contest: Contest) -> str:
     """Return the key that opens the organiser's page; it is the same at each start of the office.
 
