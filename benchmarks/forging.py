@@ -1,14 +1,14 @@
 """`python -m benchmarks.forging`: hostile clients against a real court; how much is accepted?
 
-In each of three configurations an honest contestant plays in each seat. Meanwhile hostile clients
+In each of two configurations an honest contestant plays in each seat. Meanwhile hostile clients
 use real Zenoh sessions. They send commands for the other seat, commands as a spectator, commands
 that were heard before, altered commands, and decisions without being the referee. At the end they
 publish frames, events, a sheet and health as if they were the court.
 
 An attempt is accepted if it is in the court's record, if the court answered the decision, or if
 another spectator received the message. As a control, the same code sends commands and decisions
-with the right credentials: these must be accepted. Of two commands that arrive in one beat only the
-newer one counts, so half of the commands are enough.
+with the right tokens and secrets: these must be accepted. Of two commands that arrive in one beat
+only the newer one counts, so half of the commands are enough.
 """
 
 import argparse
@@ -31,13 +31,11 @@ from benchmarks.processes import free_port
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_server.doors.keys.make import make_keys
-from lacoc_shared import seal
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.command import cli
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.decisions import Adjust, Start
 from lacoc_shared.inputs import Decide, KeySeat
@@ -53,7 +51,7 @@ KEYS = Keys("main")
 SEATS = ("left", "right")
 REFEREE = "benchmark"
 CONTROLS = 50
-"""How often the code of the attacks is tried with the right credentials."""
+"""How often the code of the attacks is tried with the right tokens and secrets."""
 _PRESS_S = 0.25
 _SLICE_S = 0.02
 _WAIT_S = 60.0
@@ -66,15 +64,12 @@ class Way(NamedTuple):
 
     name: str
     without: str
-    """What is switched off in the court's process: "", "rules" or "seals"."""
-    a_slice: int
-    """Forged commands for a seat in 20 ms: few enough that the court looks at all it receives."""
+    """What is switched off in the court's process: "" or "rules"."""
 
 
 WAYS = (
-    Way("all protection", "", 30),
-    Way("transport's rules off", "rules", 3),
-    Way("tokens and seals off", "seals", 30),
+    Way("all protection", ""),
+    Way("transport's rules off", "rules"),
 )
 
 
@@ -90,16 +85,14 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
         The accepted attempts by kind, what the court refused, and how many honest keys and controls
         were accepted.
     """
-    people = _contest(folder, keys=way.without != "rules")
+    people = _contest(folder)
     with ExitStack() as stack:
         court = _serve(folder, way.without)
         stack.callback(_stop, court)
 
         def enter(who: str) -> Session:
             access = people[who]
-            return stack.enter_context(
-                open_client([access.connect], _WAIT_S, credentials=access.credentials)
-            )
+            return stack.enter_context(open_client([access.connect], _WAIT_S, access.authority))
 
         sessions = {who: enter(who) for who in people}
         honest = [_Honest(enter(seat), people[seat]) for seat in SEATS]
@@ -112,7 +105,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
             one.start()
         stack.callback(lambda: [one.stop() for one in honest])
         _until(lambda: all(len(one.sent) == _HEARD for one in honest))
-        answered, forged = _attack(way, attempts, sessions, honest, people)
+        answered, forged = _attack(attempts, sessions, honest, people)
         _until(lambda: view.poll() and view.health)
         health = view.health
         for one in honest:
@@ -205,7 +198,6 @@ Forged = dict[str, set[tuple[int, int, int]]]
 
 
 def _attack(
-    way: Way,
     attempts: int,
     sessions: dict[str, Session],
     honest: list[_Honest],
@@ -227,15 +219,13 @@ def _attack(
     ]
     for thread in deciders:
         thread.start()
-    forged = _send_commands(way, attempts, sessions, honest)
+    forged = _send_commands(attempts, sessions, honest)
     for thread in deciders:
         thread.join()
     return sum(answered), forged
 
 
-def _send_commands(
-    way: Way, attempts: int, sessions: dict[str, Session], honest: list[_Honest]
-) -> Forged:
+def _send_commands(attempts: int, sessions: dict[str, Session], honest: list[_Honest]) -> Forged:
     chance = random.Random(2)
     kinds: dict[str, tuple[Callable[[int, int], bytes], str | None]] = {
         # Sealed with the attacker's own secret, for either seat's session, which health shows.
@@ -268,15 +258,15 @@ def _send_commands(
     }
     sent = 0
     while sent < attempts:
-        for _ in range(max(1, way.a_slice // len(kinds))):
-            for number, (kind, (make, who)) in enumerate(kinds.items()):
-                seat = (sent + number) % 2
-                payload = make(seat, 10**6 + len(kinds) * sent + number)
-                command = decode(payload, Command)
-                if kind != "a replayed command":  # these have the honest contestant's numbers
-                    forged[kind].add((seat, command.seq, command.key))
-                doors[who or SEATS[1 - seat], SEATS[seat]].put(payload)
-            sent += 1
+        # One of each kind in a beat: few enough that the court looks at all it receives.
+        for number, (kind, (make, who)) in enumerate(kinds.items()):
+            seat = (sent + number) % 2
+            payload = make(seat, 10**6 + len(kinds) * sent + number)
+            command = decode(payload, Command)
+            if kind != "a replayed command":  # these have the honest contestant's numbers
+                forged[kind].add((seat, command.seq, command.key))
+            doors[who or SEATS[1 - seat], SEATS[seat]].put(payload)
+        sent += 1
         time.sleep(_SLICE_S)
     return forged
 
@@ -327,7 +317,7 @@ def _mails(take: Callable[[], Any]) -> Iterator[Any]:
 def _controls(
     sessions: dict[str, Session], honest: list[_Honest], people: dict[str, Access]
 ) -> set[tuple[int, int, int]]:
-    """Send commands and decisions with the right credentials; return the commands."""
+    """Send commands and decisions with the right tokens and secrets; return the commands."""
     door = sessions["left"].publisher(KEYS.command("left"))
     first = honest[0].pressed[-1][0] + 1
     for seq in range(first, first + CONTROLS):
@@ -336,7 +326,7 @@ def _controls(
     return {(0, seq, seq % 4) for seq in range(first, first + CONTROLS)}
 
 
-def _contest(folder: Path, *, keys: bool) -> dict[str, Access]:
+def _contest(folder: Path) -> dict[str, Access]:
     port = free_port()
     file = folder / "contest.toml"
     seats = "".join(f'seat.{seat}.token = "{new_token()}"\n' for seat in SEATS)
@@ -345,9 +335,11 @@ def _contest(folder: Path, *, keys: bool) -> dict[str, Access]:
         f'{seats}referee.token = "{new_token()}"\n'
         "settings.match.countdown_s = 0.1\nsettings.match.duration_s = 3600.0\n"
     )
-    if keys:
-        make_keys(file, (), renew=False)
-    return entrances.everybody(contests.load(file), "main")
+    contest = contests.load(file)
+    watching = entrances.spectator_access(contest, None, None)
+    court = contest.courts["main"]
+    people = {seat: watching.of_seat(seat, court.seat[seat].token) for seat in SEATS}
+    return people | {"referee": watching.of_referee(court.referee.token), "spectators": watching}
 
 
 def _serve(folder: Path, without: str) -> subprocess.Popen[str]:
@@ -379,10 +371,7 @@ def _until(condition: Callable[[], object]) -> None:
 def _court(folder: Path, without: str) -> None:
     """Run the court in this process, with some of its protection switched off."""
     if without == "rules":
-        network_config.access_control = lambda _: {"enabled": False}
-    if without == "seals":
-        seal.same = lambda *_: True
-        seal.verify_token = lambda *_: True
+        network_config.court_access_control = lambda: {"enabled": False}
     sys.exit(cli.main(["serve", "--json", "--contest", str(folder / "contest.toml")]))
 
 

@@ -7,7 +7,7 @@ from typing import Self
 
 from lacoc_client.asking import NoCourt, NotNow, Patience, ask, fetch, understand
 from lacoc_client.spectator import Spectator
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import Sheet
 from lacoc_shared.messages.office import Where, Whereabouts
@@ -90,7 +90,9 @@ class TeamWay:
         self._said: Phrase | None = None
         self._past = ""
         """The call that the team has played."""
-        self._session = patience.until(lambda: open_client(access.addresses))
+        self._session = patience.until(
+            lambda: open_client(access.addresses, authority=access.authority)
+        )
         try:
             self._court = patience.until(
                 lambda: office_court(self._session, access.court, any_court=any_court)
@@ -148,8 +150,12 @@ class TeamWay:
 
     def access(self, there: Whereabouts) -> Access:
         """Return the way to the seat to which the team is called."""
-        return Access(court=there.court, connect=there.address).of_seat(
-            there.seat, self._access.token
+        return Access(
+            court=there.court,
+            connect=there.address,
+            seat=there.seat,
+            token=self._access.token,
+            authority=self._access.authority,
         )
 
     def _ask(self) -> Whereabouts:

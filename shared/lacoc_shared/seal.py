@@ -11,7 +11,6 @@ import hmac
 MAC_BYTES = 8
 SECRET_BYTES = 16
 _HASH_BYTES = 32
-_PASSWORD_BYTES = 20
 
 
 def hash_token(token: str, salt: bytes) -> str:
@@ -35,15 +34,6 @@ def verify_token(token: str, token_hash: str) -> bool:
         return hmac.compare_digest(_hash(token, bytes.fromhex(salt)), bytes.fromhex(digest))
     except ValueError:
         return False
-
-
-def password(user: str, token: str) -> str:
-    """Derive a user's network password from the token: 40 hexadecimal digits.
-
-    Neither the token nor another user's password can be computed from it.
-    """
-    data = f"{user} {token}".encode("utf-8", "surrogatepass")
-    return hashlib.blake2b(data, digest_size=_PASSWORD_BYTES, person=b"lacoc password").hexdigest()
 
 
 def command_mac(

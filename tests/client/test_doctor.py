@@ -11,16 +11,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import trustme
 from court_process import OpenCourt, environment
 from court_stub import CourtStub
-from keyed import KeyedCourt, keyed_file
 from ports import free_port
+from proxies import issue
 
 from lacoc_client.doctor import machine as doctor
 from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Status
 from lacoc_shared.command import cli
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.words import render, say
 
 
@@ -260,12 +261,14 @@ def test_the_link_to_a_court(
     assert "The courts there: main" in other["court other"]["found"]
 
 
-def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:
-    """With an invitation, doctor recognises a court with keys at its port and checks the link."""
-    with KeyedCourt(keyed_file(tmp_path)) as court:
+def test_an_encrypted_court_is_known_by_its_authority(tmp_path: Path) -> None:
+    """With the authority's certificate, doctor recognises a court and checks the link."""
+    authority = trustme.CA()
+    pem = authority.cert_pem.bytes().decode()
+    with CourtStub(certificate=issue(tmp_path, authority, "lacoc.example.org")) as court:
         port = int(court.address.rpartition(":")[2])
-        credentials = court.people["spectators"].credentials
-        found = doctor.court_port("127.0.0.1", port, "main", credentials)
+        found = doctor.court_port("127.0.0.1", port, "main", "tls", pem)
         assert (found.status, render(found.found)) == (Status.OK, "court main runs here")
-        findings = list(link(court.people["left"].watching(), 0.5))
+        access = Access(court="main", connect=court.address, authority=pem)
+        findings = list(link(access, 0.5))
     assert "Test at tls/" in render(findings[0].found)

@@ -5,29 +5,24 @@ import socket
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 import trustme
 from debian import install, locked
 from waiting import LIMIT_S, until
 
+from lacoc_shared.network.certificate import Pair
+
 EXAMPLES = Path(__file__).parents[2] / "examples" / "online"
 
 
-class Pair(NamedTuple):
-    """A certificate and its key, as files."""
-
-    certificate: Path
-    private_key: Path
-
-
-def issue(folder: Path, authority: trustme.CA, name: str) -> Pair:
-    """Write a certificate for a host name into a folder, in place of an older one."""
-    made = authority.issue_cert(name)
+def issue(folder: Path, authority: trustme.CA, *names: str, **dates: datetime) -> Pair:
+    """Write a certificate for host names into a folder, in place of an older one."""
+    made = authority.issue_cert(*names, **dates)
     pair = Pair(folder / "fullchain.pem", folder / "privkey.pem")
-    pair.private_key.write_bytes(made.private_key_pem.bytes())
+    pair.key.write_bytes(made.private_key_pem.bytes())
     pair.certificate.write_bytes(b"".join(one.bytes() for one in made.cert_chain_pems))
     return pair
 
@@ -44,7 +39,7 @@ def caddy(folder: Path, pair: Pair, name: str, port: int, gateway: str) -> Itera
         gateway: where the gateway listens, "HOST:PORT".
     """
     text = (EXAMPLES / "Caddyfile").read_text("utf-8")
-    tls = f"\ttls {pair.certificate} {pair.private_key}\n\treverse_proxy"
+    tls = f"\ttls {pair.certificate} {pair.key}\n\treverse_proxy"
     text = text.replace("\treverse_proxy", tls)
     settings = "{\n\tadmin off\n\tauto_https off\n}\n"
     (folder / "Caddyfile").write_text(settings + text)
@@ -68,7 +63,7 @@ def nginx(folder: Path, pair: Pair, name: str, port: int, gateway: str) -> Itera
         ("listen 443 ssl", f"listen 127.0.0.1:{port} ssl"),
         ("server_name uni.example", f"server_name {name}"),
         ("/etc/letsencrypt/live/uni.example/fullchain.pem", str(pair.certificate)),
-        ("/etc/letsencrypt/live/uni.example/privkey.pem", str(pair.private_key)),
+        ("/etc/letsencrypt/live/uni.example/privkey.pem", str(pair.key)),
         ("127.0.0.1:8080", gateway),
     ):
         assert wanted in text

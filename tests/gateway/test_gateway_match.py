@@ -8,7 +8,7 @@ from urllib.request import urlopen
 import pytest
 from court_stub import CourtStub
 from page_client import PageClient, Refused, SleepyPage, refusal, x_of
-from venue import TOKENS, Venue
+from venue import REFEREE, TOKENS, Venue
 from waiting import LIMIT_S
 
 from lacoc_client.gateway.wire import Kind
@@ -350,6 +350,21 @@ def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
         page.wait(lambda: page.waits_why == "gateway.other-version")
         court.in_a_beat(lambda: court.show(court.scene))
         page.wait(lambda: page.link["connected"])
+
+
+def test_a_wrong_token_of_a_referee_is_said_in_a_field(venue: Venue) -> None:
+    """Only the refusal of a wrong token sets the field that keeps a page from asking again."""
+    venue.court()
+    venue.web()
+    page = venue.page(venue.key)
+    page.wait(lambda: page.frame)
+    with pytest.raises(Refused) as wrong:
+        page.ask("enter", token="w" * 25, by="Kim")
+    assert wrong.value.is_the_token
+    with pytest.raises(Refused) as nobody:
+        page.ask("enter", token=REFEREE, by=" ")
+    assert not nobody.value.is_the_token
+    page.ask("enter", token=REFEREE, by="Kim")
 
 
 def test_a_seat_that_can_not_be_had_now_may_be_asked_for_again(venue: Venue) -> None:

@@ -37,7 +37,7 @@ from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.recordings import Recordings
 from lacoc_client.gateway.site import PATHS, sheet_route
 from lacoc_client.gateway.viewer import Frames, Viewer
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError

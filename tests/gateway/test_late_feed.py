@@ -10,7 +10,7 @@ from lacoc_client.gateway.programme import Channel
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 
 BEHIND_S = 10.0
 

@@ -13,7 +13,7 @@ import pytest
 import trustme
 from hypothesis import given
 from hypothesis import strategies as st
-from proxies import Pair, issue
+from proxies import issue
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -22,9 +22,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from lacoc_client.gateway import guard, page_socket, server
-from lacoc_client.gateway.certificate import Certificate
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.certificate import Certificate, Pair
 from lacoc_shared.network.public import _ADDRESS, PublicAddress
 from lacoc_shared.words import render
 
@@ -189,7 +189,7 @@ def test_a_certificate_is_renewed_while_pages_are_served(
     pair = issue(tmp_path, authority, "uni.example")
     with served(PublicAddress.of(PAGES, *pair)) as port:
         first = serial(port, authority)
-        pair.private_key.write_text("half a ")
+        pair.key.write_text("half a ")
         assert serial(port, authority) == first
         issue(tmp_path, authority, "uni.example")
         until(lambda: serial(port, authority) != first)
@@ -198,7 +198,7 @@ def test_a_certificate_is_renewed_while_pages_are_served(
 def test_a_certificate_is_read_again_only_if_it_changed(tmp_path: Path) -> None:
     """A wrong pair is refused each time that it changes, and said once."""
     pair = issue(tmp_path, trustme.CA(), "uni.example")
-    certificate = Certificate(*pair)
+    certificate = Certificate(pair)
     assert certificate.renew() is False
     pair.certificate.write_text("no certificate")
     with pytest.raises(UserError, match="PEM"):
@@ -216,9 +216,9 @@ def test_a_wrong_certificate_is_said_at_once(tmp_path: Path, which: str) -> None
     (tmp_path / "other").mkdir()
     other = issue(tmp_path / "other", trustme.CA(), "uni.example")
     wrong = {
-        "missing": Pair(tmp_path / "none.pem", pair.private_key),
-        "swapped": Pair(pair.private_key, pair.certificate),
-        "others": Pair(pair.certificate, other.private_key),
+        "missing": Pair(tmp_path / "none.pem", pair.key),
+        "swapped": Pair(pair.key, pair.certificate),
+        "others": Pair(pair.certificate, other.key),
     }[which]
     with pytest.raises(UserError) as refused:
         server.listen(server.LOOPBACK, PublicAddress.of(PAGES, *wrong))

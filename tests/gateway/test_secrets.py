@@ -9,16 +9,12 @@ import pytest
 from court_process import environment
 from lacoc_process import Lacoc
 from mcap.reader import make_reader
-from page_client import PageClient, refusal
+from page_client import PageClient, Refused
 from venue import REFEREE, TOKENS, Venue
 from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.wire import Kind
-from lacoc_server.doors.keys.make import make_keys
-from lacoc_shared.contest import entrances
-from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import invitation_text
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
@@ -37,15 +33,13 @@ class HearingPage(PageClient):
         super()._take(kind, payload)
 
 
-class KeyedVenue(Venue):
-    """A venue whose contest has keys."""
+class HeardVenue(Venue):
+    """A venue whose pages keep what they hear."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         super().__init__(folder, stack)
-        text = self.contest.read_text().replace("tcp/", "")
+        text = self.contest.read_text()
         self.contest.write_text(text.replace("[court.main.seat", f"{SETTINGS}[court.main.seat", 1))
-        make_keys(self.contest, (), renew=False)
-        self.people = entrances.everybody(contests.load(self.contest), "main")
         self.pages: list[HearingPage] = []
 
     def page(self, key: str | None = None, **options: object) -> HearingPage:
@@ -54,46 +48,28 @@ class KeyedVenue(Venue):
         self.pages.append(page)
         return page
 
-    def session(self, who: str) -> Session:
-        access = self.people[who]
-        return self._stack.enter_context(
-            open_client([access.connect], credentials=access.credentials)
-        )
+    def session(self) -> Session:
+        return self._stack.enter_context(open_client([f"127.0.0.1:{self.court_port}"]))
 
-    def start(self, *words: str) -> Lacoc:
+    def start(self, *words: str, token: str = "") -> Lacoc:
         """Start a command that is killed at the end of the test."""
         process = Lacoc(
             *words,
+            "--contest=contest.toml",
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            env=environment(),
+            env=environment() | ({"LACOC_TOKEN": token} if token else {}),
             cwd=self.folder,
         )
         self._stack.callback(process.kill)
         return process
 
-    def invitation(self, who: str) -> str:
-        return f"--invitation=keys/invitations/main.{who}.toml"
-
-    def secrets(self) -> dict[str, bytes]:
-        """Return every secret by its name; the spectators' password is public and left out."""
-        found: dict[str, bytes] = {}
-        for who, access in self.people.items():
-            if access.token and access.credentials is not None:
-                found[f"token of {who}"] = access.token.encode()
-                found[f"password of {who}"] = access.credentials.password.encode()
-        keys = contests.load(self.contest).keys
-        assert keys is not None
-        for path in (keys.ca_key, keys.private_key):
-            found[path.name] = path.read_bytes().splitlines()[1]
-        return found
-
 
 @pytest.fixture
-def keyed(tmp_path: Path) -> Iterator[KeyedVenue]:
+def heard(tmp_path: Path) -> Iterator[HeardVenue]:
     with ExitStack() as stack:
-        yield KeyedVenue(tmp_path, stack)
+        yield HeardVenue(tmp_path, stack)
 
 
 def titles(where: Path) -> bytes:
@@ -116,42 +92,41 @@ def in_record(path: Path) -> bytes:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
-def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
+def test_no_secret_leaves_its_place(heard: HeardVenue) -> None:
     """No secret leaks in a short match of a bot and a page, in which wrong tokens are tried too.
 
     The test searches all that the court publishes, all that pages receive, the output, logs and
     command lines of all processes, and the record.
     """
-    court, web = keyed.court(), keyed.web()
-    watching = keyed.session("spectators")
+    court, web = heard.court(), heard.web()
+    watching = heard.session()
     boxes = {
         what: watching.mailbox(f"{KEYS.root}/{what}", 100_000)
         for what in ("frame", "event", "sheet", "health")
     }
-    bot = keyed.start("bot", "straight", keyed.invitation("left"))
-    wrong = keyed.folder / "wrong.toml"
-    wrong.write_text(invitation_text(keyed.people["referee"].of_referee("no" + REFEREE), "x"))
-    refused = keyed.start("referee", "start", f"--invitation={wrong}")
-    page = keyed.page(keyed.key)
+    bot = heard.start("bot", "straight", "--seat=left")
+    refused = heard.start("referee", "start", token=f"no{REFEREE}")
+    page = heard.page(heard.key)
     for ask in ({"do": "join", "seat": "right", "name": "x"}, {"do": "enter", "by": "x"}):
-        with refusal("connect.token"):
+        with pytest.raises(Refused):
             page.ask(**ask, token=f"no{TOKENS['right']}")
-    contestant = keyed.contestant("right", "Right")
-    referee = keyed.referee()
+    contestant = heard.contestant("right", "Right")
+    referee = heard.referee()
     contestant.phase(Phase.READY)
     referee.ask("decide", decision={"type": "start"}, reason="")
     contestant.phase(Phase.PLAYING)
     contestant.press(level=1, key=2)
     contestant.wait_own(lambda own: own.applied_seq)
 
-    own = Controller(keyed.session("right"), "main", "right", TOKENS["right"], "Right")
+    own = Controller(heard.session(), "main", "right", TOKENS["right"], "Right")
     own.join()  # takes the seat from the page, so that this test knows a session's secret
     assert own._joined is not None
-    secrets = keyed.secrets() | {"a session's secret": own._joined.secret}
-    watch = keyed.start("watch", "--json", "--hz=5", keyed.invitation("spectators"))
-    seen = {"titles": titles(keyed.folder)}
+    secrets = {f"token of {seat}": token.encode() for seat, token in TOKENS.items()}
+    secrets |= {"token of referee": REFEREE.encode(), "a session's secret": own._joined.secret}
+    watch = heard.start("watch", "--json", "--hz=5")
+    seen = {"titles": titles(heard.folder)}
     for decision in ("halt", "declare left --yes --reason end", "official --yes"):
-        by_hand = keyed.start("referee", *decision.split(), keyed.invitation("referee"))
+        by_hand = heard.start("referee", *decision.split())
         seen[decision] = by_hand.communicate(timeout=LIMIT_S)[0]
         assert by_hand.returncode == 0, seen[decision]
     seen["watch"] = watch.communicate(timeout=LIMIT_S)[0]
@@ -159,21 +134,21 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     for what, box in boxes.items():
         seen[what] = b"".join(mail.payload for mail in iter(box.take, None))
     seen["scene"] = watching.ask(KEYS.scene)
-    seen["pages"] = b"".join(one.heard for one in keyed.pages)
+    seen["pages"] = b"".join(one.heard for one in heard.pages)
     bot.terminate()
     seen["bot"] = bot.communicate(timeout=LIMIT_S)[0]
     court.close()
     web.close()
     seen |= {"court": court.said.encode(), "web": web.said.encode()}
-    (record,) = (keyed.folder / "recordings").glob("*.mcap")
+    (record,) = (heard.folder / "recordings").glob("*.mcap")
     seen["record"] = in_record(record)
-    seen |= {path.name: path.read_bytes() for path in keyed.folder.glob("*.log")}
+    seen |= {path.name: path.read_bytes() for path in heard.folder.glob("*.log")}
 
     said = {where: what for where, what in seen.items() if where not in ("court.log", "web.log")}
     assert all(said.values()), [where for where, what in said.items() if not what]
     assert b"Right" in seen["record"]
-    assert b"does not accept this token" in seen["refused"]
+    assert b"not a referee's token" in seen["refused"]
     leaks = [(w, s) for w, what in seen.items() for s, word in secrets.items() if word in what]
     assert leaks == []
-    control = keyed.contest.read_bytes() + (keyed.folder / "keys/ca.key").read_bytes()
-    assert sum(word in control for word in secrets.values()) == 4  # the search finds secrets
+    control = heard.contest.read_bytes()
+    assert sum(word in control for word in secrets.values()) == 3  # the search finds secrets

@@ -34,7 +34,7 @@ from lacoc_shared.messages import (
     SheetSeat,
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
-from lacoc_shared.network.access_rules import Protection
+from lacoc_shared.network.certificate import Pair
 from lacoc_shared.seat import No, Phase
 from lacoc_shared.words import Phrase, say
 
@@ -100,7 +100,7 @@ class CourtStub:
     def __init__(
         self,
         listen: str = "127.0.0.1:0",
-        protection: Protection | None = None,
+        certificate: Pair | None = None,
         **restored: Any,
     ) -> None:
         token_hashes = restored.pop("token_hashes", HASHES)
@@ -111,7 +111,7 @@ class CourtStub:
         """The newest beat; its frame may not be sent yet."""
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(
-            KEYS, [listen], inbox, desk, protection, look_ahead=lambda _: lambda: SEEN
+            KEYS, [listen], inbox, desk, certificate, look_ahead=lambda _: lambda: SEEN
         )
         self.trouble: Phrase | None = None
         """The reason why no beats pass, such as a full disk; None while they pass.

@@ -17,7 +17,7 @@ from lacoc_robots.seat_files import SeatFiles, to_send
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.inputs import HeardSeat, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import Command, SentFile

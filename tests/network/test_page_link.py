@@ -18,7 +18,7 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.viewer import Viewer
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.inputs import HeardSeat, KeySeat, SilentSeat
 from lacoc_shared.network.session import Session
 from lacoc_shared.seat import FRESH_BEATS

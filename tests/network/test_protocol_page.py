@@ -1,16 +1,16 @@
 """A program that uses only Zenoh can talk to a court as docs/protocol.md describes."""
 
 import base64
-import hashlib
 import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import trustme
 import zenoh
-from court_stub import TOKENS
-from keyed import KeyedCourt, keyed_file
+from court_stub import CourtStub
+from proxies import issue
 
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.keyspace import JOIN_MAX_BYTES, Keys
@@ -22,21 +22,19 @@ PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="
 JOIN = Keys("main").request("left", "join")
 
 
-def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
+def of_page(court: str, authority: bytes = b"") -> zenoh.Config:
     """Return the Zenoh configuration of docs/protocol.md for connecting to a court.
 
-    Without a user, the part for contests with keys is left out.
+    Without an authority, the part for private ones is left out.
     """
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),
-        ("main.left", user),
-        ("0123456789abcdef0123456789abcdef01234567", password),
-        ("LS0tLS1CRUdJTi...", base64.b64encode(ca.encode()).decode()),
+        ("LS0tLS1CRUdJTi...", base64.b64encode(authority).decode()),
     ):
         assert text.count(there) == 1
         text = text.replace(there, here)
-    if not user:
+    if not authority:
         text = re.sub(r"  transport: \{.*", "}", text, flags=re.DOTALL)
     return zenoh.Config.from_json5(text)
 
@@ -63,20 +61,16 @@ def ask(stranger: zenoh.Session, payload: bytes, timeout_s: float = 10.0) -> lis
 
 
 @pytest.mark.slow
-def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
-    """The configuration and password of docs/protocol.md open a court with keys."""
-    with KeyedCourt(keyed_file(tmp_path)) as court:
-        credentials = court.people["left"].credentials
-        assert credentials is not None
-        told = f"main.left {TOKENS['left']}".encode()
-        password = hashlib.blake2b(told, digest_size=20, person=b"lacoc password").hexdigest()
-        config = of_page(court.address, "main.left", password, credentials.ca)
-        with zenoh.open(config) as stranger:
+def test_a_stranger_enters_an_encrypted_court(tmp_path: Path) -> None:
+    """The configuration of docs/protocol.md opens a court with a certificate."""
+    authority = trustme.CA()
+    with CourtStub(certificate=issue(tmp_path, authority, "127.0.0.1")) as court:
+        with zenoh.open(of_page(court.address, authority.cert_pem.bytes())) as stranger:
             (error,) = ask(stranger, b"no join")
             assert error is not None
             assert decode(error, Refusal).why
         with pytest.raises(zenoh.ZError):
-            zenoh.open(of_page(court.address, "main.left", "x" * 40, credentials.ca))
+            zenoh.open(of_page(court.address, trustme.CA().cert_pem.bytes()))
 
 
 def is_not_answered(stranger: zenoh.Session, payload: bytes) -> None:

@@ -1,4 +1,4 @@
-"""Tests of tokens, hashes of tokens, seals and passwords."""
+"""Tests of tokens, hashes of tokens, and seals."""
 
 import base64
 import hashlib
@@ -83,15 +83,6 @@ def test_a_request_seal_is_the_documented_one(ready: bool) -> None:
     """The seal of ready and leave is the one that docs/protocol.md describes."""
     expected = hashlib.blake2b(b"lacoc/a 77 3 %d" % ready, key=b"k" * 16, digest_size=8).digest()
     assert seal.request_mac(b"k" * 16, "lacoc/a", 77, 3, ready) == expected
-
-
-@pytest.mark.parametrize("token", ["", "a token", "\ud800 is no character"])
-def test_a_password_is_the_documented_one(token: str) -> None:
-    """A password is the one that docs/protocol.md describes."""
-    text = b"main.left " + token.encode("utf-8", "surrogatepass")
-    digest = hashlib.blake2b(text, digest_size=20, person=b"lacoc password").hexdigest()
-    assert seal.password("main.left", token) == digest
-    assert seal.password("main.right", token) != digest
 
 
 def test_every_part_changes_the_seal() -> None:

@@ -74,6 +74,12 @@ def test_where_nobody_listens_is_said() -> None:
         open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
 
 
+def test_the_first_address_that_answers_is_used(router: Session) -> None:
+    """A court that goes on at its second address is found there, also by who comes later."""
+    with open_client(["tcp/127.0.0.1:1", *router.locators()]) as client:
+        assert client.routers()
+
+
 def test_another_program_at_the_address_is_said() -> None:
     """A client gets a message if another program than a court listens at the address."""
     with socket.create_server(("127.0.0.1", 0)) as other:

@@ -1,213 +1,152 @@
-"""Why a court with keys can't be entered: each case has a message that says what to do."""
+"""Encrypted courts: who gets in, and why somebody does not; each case says what to do."""
 
-import os
 import re
-import socket
-import subprocess
-import sys
-import tempfile
-import threading
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
-from datetime import timedelta
+from contextlib import ExitStack
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-import msgspec
 import pytest
-from court_stub import CourtStub
-from keyed import KeyedCourt, keyed_file
-from waiting import LIMIT_S, until
+import trustme
+from court_stub import TOKENS, CourtStub
+from proxies import issue
+from waiting import until
 
 from lacoc_client.controller import Controller, Hold
-from lacoc_server.doors.keys.certificates import LIFE, Authority, utc_now
-from lacoc_shared.contest import entrances
-from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access, invitation_text
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network import address
+from lacoc_shared.network.certificate import Pair
 from lacoc_shared.network.session import open_client, open_court
 
 SHORT_S = 0.3
+NAMES = ("127.0.0.1", "localhost")
+DAYS = timedelta(days=30)
+
+
+def pem(authority: trustme.CA) -> str:
+    return authority.cert_pem.bytes().decode()
 
 
 @pytest.fixture(scope="module")
-def keyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KeyedCourt]:
-    with KeyedCourt(keyed_file(tmp_path_factory.mktemp("keyed"))) as court:
+def authority() -> trustme.CA:
+    return trustme.CA()
+
+
+@pytest.fixture(scope="module")
+def pair(authority: trustme.CA, tmp_path_factory: pytest.TempPathFactory) -> Pair:
+    return issue(tmp_path_factory.mktemp("tls"), authority, *NAMES)
+
+
+@pytest.fixture(scope="module")
+def court(pair: Pair) -> Iterator[CourtStub]:
+    with CourtStub(certificate=pair) as court:
         yield court
 
 
-def refused(access: Access) -> str:
+def refused(at: str, authority: str = "") -> str:
     """Return the message with which a connection fails."""
     with pytest.raises(UserError) as caught:
-        open_client([access.connect], SHORT_S, access.credentials)
+        open_client([at], SHORT_S, authority)
     return str(caught.value)
 
 
-def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
-    """An invitation works with the IP address and with the host name of the court."""
-    port = keyed.address.rpartition(":")[2]
-    for host in ("127.0.0.1", "localhost"):
-        access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
-        with open_client([access.connect], credentials=access.credentials) as session:
+@pytest.fixture
+def far(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Treat all addresses as those of other machines, whose names are checked."""
+    monkeypatch.setattr(address, "is_own", lambda _: False)
+
+
+@pytest.mark.usefixtures("far")
+def test_who_knows_the_authority_gets_in(court: CourtStub, authority: trustme.CA) -> None:
+    """The certificate holds for the IP address and for the host name of the court."""
+    port = court.address.rpartition(":")[2]
+    for host in NAMES:
+        with open_client([f"tls/{host}:{port}"], authority=pem(authority)) as session:
             assert session.ask("lacoc/main/sheet")
 
 
-def test_a_court_that_comes_back_is_entered_again(tmp_path: Path) -> None:
-    """After a restart of a court with keys, a controller takes its seat back by itself."""
-    file = keyed_file(tmp_path)
+def test_a_court_that_comes_back_is_entered_again(pair: Pair, authority: trustme.CA) -> None:
+    """After a restart of an encrypted court, a controller takes its seat back by itself."""
     with ExitStack() as stack:
-        with KeyedCourt(file) as court:
-            address, left = court.address, court.people["left"]
-            session = stack.enter_context(court.enter("left"))
-            controller = Controller(session, "main", "left", left.token, "Ants")
+        with CourtStub(certificate=pair) as court:
+            at = court.address
+            session = stack.enter_context(open_client([at], authority=pem(authority)))
+            controller = Controller(session, "main", "left", TOKENS["left"], "Ants")
             controller.join()
         until(lambda: controller.view.poll() or controller.view.silent_s(time.monotonic()) > 0.2)
-        with KeyedCourt(file, address) as court:
+        with CourtStub(at, pair) as court:
             until(lambda: controller.poll(time.monotonic()) and court.inputs)
             until(lambda: controller.poll(time.monotonic()) and controller.hold is Hold.HELD)
 
 
-def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """Whoever enters with another contest's invitation is warned that the court may be false."""
-    other = contests.load(keyed_file(tmp_path))
-    access = entrances.everybody(other, "main")["left"]
-    why = refused(msgspec.structs.replace(access, connect=keyed.address))
-    assert re.search(r"can't prove that it is the court.*Do not go on", why)
+def test_another_authority_proves_nothing(court: CourtStub) -> None:
+    """Whoever knows only public authorities, or another private one, is warned."""
+    for other in ("", pem(trustme.CA())):
+        assert re.search(
+            r"can't prove that it is the court.*Do not go on", refused(court.address, other)
+        )
 
 
-def test_a_name_that_is_not_in_the_certificate(keyed: KeyedCourt) -> None:
-    """If a name is not in the certificate, the message says how an organiser adds it."""
-    with _tunnel("127.0.0.2", int(keyed.address.rpartition(":")[2])) as port:
-        there = msgspec.structs.replace(keyed.people["left"], connect=f"tls/127.0.0.2:{port}")
-        assert "not made for the name 127.0.0.2" in refused(there)
-        assert "lacoc contest keys --host 127.0.0.2" in refused(there)
+def test_a_name_is_checked_unless_the_court_is_at_this_machine(
+    tmp_path: Path, authority: trustme.CA, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At an address of this machine a public certificate, which names no such address, will do."""
+    with CourtStub(certificate=issue(tmp_path, authority, "lacoc.example.org")) as court:
+        with open_client([court.address], authority=pem(authority)) as session:
+            assert session.ask("lacoc/main/sheet")
+        assert "can't prove" in refused(court.address, pem(trustme.CA()))
+        monkeypatch.setattr(address, "is_own", lambda _: False)
+        said = refused(court.address, pem(authority))
+    assert "not made for the name 127.0.0.1" in said
+    assert "lacoc contest certificate --host 127.0.0.1" in said
+
+
+def test_which_addresses_are_of_this_machine() -> None:
+    """A host name is none, except "localhost": others could make it lead anywhere."""
+    assert all(map(address.is_own, ("127.0.0.1", "::1", "localhost", address.own_address())))
+    assert not any(map(address.is_own, ("192.0.2.1", "2001:db8::1", "lacoc.example.org")))
 
 
 @pytest.mark.parametrize(
-    ("made", "said"),
+    ("begins", "ends", "said"),
     [
-        (-LIFE - timedelta(days=2), r"has expired.*contest keys --renew"),
-        (timedelta(days=3), r"not valid yet.*clock"),
+        (-2 * DAYS, -DAYS, r"has expired.*lacoc contest certificate"),
+        (DAYS, 2 * DAYS, r"not valid yet.*clock"),
     ],
 )
-def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: str) -> None:
+def test_a_certificate_out_of_its_time(
+    tmp_path: Path, authority: trustme.CA, begins: timedelta, ends: timedelta, said: str
+) -> None:
     """A certificate that is expired or not valid yet gets a message about renewal or clocks."""
-    file = keyed_file(tmp_path)
-    folder = contests.load(file).keys
-    assert folder is not None
-    authority = Authority.new(utc_now() + made)
-    pair = authority.issue(["127.0.0.1"], utc_now() + made)
-    folder.ca.write_bytes(authority.pair().certificate)
-    folder.certificate.write_bytes(pair.certificate)
-    folder.private_key.write_bytes(pair.private_key)
-    with KeyedCourt(file) as court:
-        assert re.search(said, refused(court.people["left"]))
+    now = datetime.now(UTC)
+    wrong = issue(tmp_path, authority, *NAMES, not_before=now + begins, not_after=now + ends)
+    with CourtStub(certificate=wrong) as court:
+        assert re.search(said, refused(court.address, pem(authority)))
 
 
-def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
-    """If only the court or only the client uses keys, the message says what is wrong."""
-    left = keyed.people["left"]
+def test_encrypted_and_not_encrypted(court: CourtStub, authority: trustme.CA) -> None:
+    """A court with a certificate has no plain door, and the message says how to write addresses."""
+    place = court.address.partition("/")[2]
+    assert [one.partition("/")[0] for one in court.network.locators] == ["tls"]
+    assert f"Write tls/{place}" in refused(f"tcp/{place}")
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")
-        assert "does not use encryption" in refused(msgspec.structs.replace(left, connect=there))
-        assert "tls/127" in refused(msgspec.structs.replace(left, connect=plain.address))
-    bare = Access(court="main", connect=keyed.address.replace("tls/", "tcp/"))
-    assert re.search(r"only with an invitation.*--invitation", refused(bare))
-    assert "--invitation" in refused(Access(court="main", connect=keyed.address))
+        assert "does not use encryption" in refused(there, pem(authority))
 
 
-def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
-    """A damaged certificate and a closed port each have their own message."""
-    left = keyed.people["left"]
-    damaged = left.ca.replace("BEGIN CERT", "BEGIN SERT")
-    assert "damaged" in refused(msgspec.structs.replace(left, ca=damaged))
-    by_mail = left.ca.replace("-----BEGIN", "\u2014\u2013BEGIN\u00a0")
-    assert "damaged" in refused(msgspec.structs.replace(left, ca=by_mail))
-    assert "No program answers" in refused(msgspec.structs.replace(left, connect="tls/127.0.0.1:1"))
+def test_a_damaged_authority_and_nobody_there(court: CourtStub, authority: trustme.CA) -> None:
+    """A damaged certificate of an authority and a closed port each have their own message."""
+    right = pem(authority)
+    assert "damaged" in refused(court.address, right.replace("BEGIN CERT", "BEGIN SERT"))
+    by_mail = right.replace("-----BEGIN", "\u2014\u2013BEGIN\u00a0")
+    assert "damaged" in refused(court.address, by_mail)
+    assert "No program answers" in refused("tls/127.0.0.1:1", right)
 
 
-def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """A court at a TLS address needs keys, and a contest with keys needs TLS addresses."""
-    with pytest.raises(UserError, match="lacoc contest keys"):
+def test_a_court_needs_a_certificate_for_tls_and_tls_for_a_certificate(pair: Pair) -> None:
+    """A court at a TLS address needs a certificate, and one with a certificate a TLS address."""
+    with pytest.raises(UserError, match="lacoc contest certificate"):
         open_court(["tls/127.0.0.1:0"])
-    contest = keyed_file(tmp_path)
-    contest.write_text(contest.read_text().replace('"127.0.0.1:0"', '"tcp/127.0.0.1:0"'))
     with pytest.raises(UserError, match=r"are encrypted.*Write tls/127"):
-        contests.load(contest)
-
-
-def test_passwords_are_on_disk_only_while_a_court_opens(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The file of passwords has mode 0600, and is deleted when the court is open."""
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "t"))
-    (tmp_path / "t").mkdir()
-    seen: list[tuple[str, int]] = []
-    write = os.open
-
-    def noted(path: str, flags: int, mode: int = 0o777, **more: int) -> int:
-        seen.append((str(path), mode))
-        return write(path, flags, mode, **more)
-
-    file = keyed_file(tmp_path)
-    monkeypatch.setattr(os, "open", noted)
-    with KeyedCourt(file) as court, court.enter("left"):
-        assert list((tmp_path / "t").iterdir()) == []
-    assert [mode for path, mode in seen if path.endswith("users")] == [0o600]
-
-
-def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """Zenoh's log has no password and no token, even at level "trace"."""
-    left = keyed.people["left"]
-    invitation = tmp_path / "left.toml"
-    invitation.write_text(invitation_text(left, "x"))
-    code = (
-        "import sys, pathlib; from lacoc_shared.contest.invitation import *\n"
-        "from lacoc_shared.network.session import *\n"
-        "left = read_invitation(pathlib.Path(sys.argv[1]))\n"
-        "with open_client([left.connect], credentials=left.credentials) as session:\n"
-        "    session.ask('lacoc/main/sheet')\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(invitation)],
-        env=os.environ | {"RUST_LOG": "trace"},
-        capture_output=True,
-        timeout=LIMIT_S,
-    )
-    said = done.stdout + done.stderr
-    assert done.returncode == 0, said
-    assert b"DEBUG" in said
-    assert left.credentials is not None
-    assert left.credentials.password.encode() not in said
-    assert left.token.encode() not in said
-
-
-@contextmanager
-def _tunnel(host: str, to_port: int) -> Iterator[int]:
-    """Give a port at the address `host` that forwards connections to `to_port` of 127.0.0.1."""
-    with ExitStack() as stack:
-        door = stack.enter_context(socket.create_server((host, 0)))
-        open_sockets: list[socket.socket] = []
-
-        def carry(one: socket.socket, other: socket.socket) -> None:
-            try:
-                while data := one.recv(65_536):
-                    other.sendall(data)
-            except OSError:
-                pass
-
-        def accept() -> None:
-            try:
-                while True:
-                    came, _ = door.accept()
-                    gone = socket.create_connection(("127.0.0.1", to_port))
-                    open_sockets.extend((came, gone))
-                    for pair in ((came, gone), (gone, came)):
-                        threading.Thread(target=carry, args=pair, daemon=True).start()
-            except OSError:
-                return
-
-        threading.Thread(target=accept, daemon=True).start()
-        yield door.getsockname()[1]
-        for one in open_sockets:
-            one.close()
+        open_court(["tcp/127.0.0.1:0"], pair)

@@ -48,12 +48,15 @@ def online(folder: Path, how: str) -> Iterator[Place]:
         how: "caddy", "nginx" (the pages are below a path), or "own": a certificate of its own.
     """
     port, inner = free_port(), f"127.0.0.1:{free_port()}"
-    pair = proxies.issue(folder, trustme.CA(), NAME)
+    authority = trustme.CA()
+    pair = proxies.issue(folder, authority, NAME)
     pages = f"https://{NAME}:{port}" + ("/lacoc" if how == "nginx" else "")
     more = 'proxies = ["127.0.0.1"]'
     if how == "own":
         inner = f"127.0.0.1:{port}"
-        more = 'certificate = "fullchain.pem"\nprivate_key = "privkey.pem"'
+        authority.cert_pem.write_to_path(folder / "authority.pem")
+        files = ("certificate", "fullchain"), ("private_key", "privkey"), ("authority", "authority")
+        more = "\n".join(f'{entry} = "{name}.pem"' for entry, name in files)
     file = folder / "contest.toml"
     file.write_text(f"""
 [contest]

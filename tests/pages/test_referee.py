@@ -12,7 +12,6 @@ from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.gateway.browser import unseen
-from lacoc_server.doors.keys.make import make_keys
 
 pytestmark = pytest.mark.slow
 
@@ -294,14 +293,8 @@ def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) 
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("keys", [False, True])
-def test_a_token_that_was_replaced_is_not_shown_for_ever(
-    venue: Venue, referee: Referee, keys: bool
-) -> None:
-    """A tab forgets its old token after one refusal, whether or not the court has keys."""
-    if keys:
-        venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
-        make_keys(venue.contest, (), renew=False)
+def test_a_token_that_was_replaced_is_not_shown_for_ever(venue: Venue, referee: Referee) -> None:
+    """A tab forgets its old token after one refusal."""
     venue.court()
     venue.web()
     page = at_the_desk(referee())
@@ -314,8 +307,8 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
 
     page.on("websocket", lambda socket: socket.on("framesent", heed))
     page.reload()
-    said = "does not accept this token" if keys else "not a referee's token of this court"
-    expect(page.locator("#token-refused")).to_contain_text(said)
+    refused = page.locator("#token-refused")
+    expect(refused).to_contain_text("not a referee's token of this court")
     page.wait_for_timeout(5000)
     assert len(shown) == 1
     at_the_desk(page)

@@ -113,7 +113,7 @@ def try_contestant(env: Environment, archive: Path) -> None:
     assert f"{archive.resolve()}[server]" in error, error
     error = env.run("lacoc", "film", "a.mcap", "a.mp4", code=2).stderr
     assert f"{archive.resolve()}[film]" in error, error
-    error = env.run("lacoc", "contest", "keys", "--host", "localhost", code=2).stderr
+    error = env.run("lacoc", "contest", "certificate", code=2).stderr
     assert re.search(r"Needs cryptography.*\[server\]", error), error
     shown = " ".join(env.run("lacoc", "--help").stdout.split())
     assert "practice Walk your robot on a field of its own" in shown, shown
@@ -129,8 +129,8 @@ def try_court(env: Environment) -> None:
     try_both(env)
     packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
     env.run("python", "-c", IMPORT_ALL.format(packages=packages))
-    env.run("lacoc", "contest", "keys", "--host", "localhost")
-    assert "--invitation main.left.toml" in env.run("lacoc", "contest", "show").stdout
+    env.run("lacoc", "contest", "certificate")
+    assert "--connect tls/" in env.run("lacoc", "contest", "show").stdout
     env.run("lacoc", "demo", "--headless", "--seconds", "3")
 
 

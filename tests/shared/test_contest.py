@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from lacoc_shared.command import options
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 
 GOOD = """
@@ -72,16 +72,13 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
 
 
 def test_an_office_opens_the_seats_of_its_courts(file: Path) -> None:
-    """With an office the seats need no tokens; a contest with keys can't have an office."""
+    """With an office the seats need no tokens."""
     office = '[office]\ntoken = "token-of-the-office"\n'
     court = '[court.main]\narena = "othello"\nreferee.token = "referee-token-of-main"\n'
     file.write_text(office + court)
     contest = contests.load(file)
     assert contest.office is not None
     assert (contest.office.token, contest.courts["main"].seat) == ("token-of-the-office", {})
-    file.write_text('[contest]\nkeys = "keys"\n' + office + court)
-    with pytest.raises(UserError, match="with keys can't have an office"):
-        contests.load(file)
 
 
 def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
@@ -407,9 +404,7 @@ def test_access_without_a_file(file: Path) -> None:
     """Without a contest file, address and token come from options; errors name a missing option."""
     access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
-    assert access == Access(
-        court="main", connect="tcp/10.0.0.7:7447", role="seat", seat="left", token="t" * 20
-    )
+    assert access == Access(court="main", connect="tcp/10.0.0.7:7447", seat="left", token="t" * 20)
     assert entrances.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
     with pytest.raises(
         UserError, match=r"left seat.*--contest.*--token.*LACOC_CONTEST.*LACOC_TOKEN"

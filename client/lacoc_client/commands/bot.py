@@ -19,7 +19,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_client.team_way import TeamWay, is_gone, is_over
 from lacoc_robots.seat_files import SeatFiles, gather
 from lacoc_shared.command import options, screen
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import NotConnected, open_client
@@ -43,7 +43,6 @@ def bot_command(
             "'ghost:RECORD.mcap:left', which presses the keys of a recorded match again."
         ),
     ],
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -84,10 +83,10 @@ def bot_command(
     is a Python file with a function bot(sheet, seat). This function returns another function, which
     takes a frame and returns a key.
     """
-    if (any_seat := entrance.team(invitation, contest, court, connect, seat, token)) is not None:
+    if (any_seat := entrance.team(contest, court, connect, seat, token)) is not None:
         _follow(name, any_seat, court is None, arena, wait)
         return
-    access = entrance.seat(invitation, contest, court, connect, seat, token)
+    access = entrance.seat(contest, court, connect, seat, token)
     notes: list[Phrase] = []
     files, own_team = _brings(name, robot, gait or [], notes)
     for note in notes:
@@ -96,7 +95,7 @@ def bot_command(
         stopping = stack.enter_context(stop_signals())
         patience = Patience(wait, stopping)
         session = stack.enter_context(
-            patience.until(lambda: open_client(access.addresses, credentials=access.credentials))
+            patience.until(lambda: open_client(access.addresses, authority=access.authority))
         )
         controller = patience.until(
             lambda: Controller(
@@ -152,7 +151,7 @@ def _play_match(
 ) -> bool:
     """Play one match of a team; return whether it is over."""
     access = way.access(there)
-    with open_client(access.addresses) as session:
+    with open_client(access.addresses, authority=access.authority) as session:
         controller = Controller(session, access.court, access.seat, access.token, there.team)
         if is_over(controller.view, there.call):
             return True

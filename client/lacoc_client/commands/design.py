@@ -48,15 +48,6 @@ def design_command(
             help="Address of a studio that runs elsewhere, such as tcp/192.168.1.20:7448.",
         ),
     ] = None,
-    invitation: Annotated[
-        Path | None,
-        typer.Option(
-            envvar="LACOC_INVITATION",
-            metavar="FILE",
-            help="Your invitation to a match: the page takes your gait there instead of to "
-            "practice.",
-        ),
-    ] = None,
     listen: Annotated[
         str,
         typer.Option(
@@ -81,7 +72,7 @@ def design_command(
     public = pages.public_address(public_pages, certificate, private_key, proxy)
     files = Folder(folder)
     with nullcontext(connect) if connect else own_studio() as address:
-        designer = Designer(files, Studios([Asker(address)]), robot, invitation)
+        designer = Designer(files, Studios([Asker(address)]), robot)
         site = design_site(designer, PageFiles())
         pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, public, MESSAGE_BYTES)
 

@@ -15,7 +15,6 @@ from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Finding, Status
 from lacoc_client.doctor.pages import pages, plain_courts
 from lacoc_shared.command import options, screen
-from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError
@@ -33,7 +32,6 @@ _HOST_PORT = re.compile(r"(?:\w+/)?(?P<host>\[[^\]]+\]|[^:/]+):(?P<port>\d{1,5})
 
 @app.command(name="doctor")
 def doctor_command(
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -63,7 +61,7 @@ def doctor_command(
 ) -> None:
     """Check whether this machine is ready: packages, ports, graphics, clock, disk.
 
-    With --invitation, --connect or --contest this command also checks the connection to a court, or
+    With --connect or --contest this command also checks the connection to a court, or
     to each court of the contest: whether the court answers, how long a request takes, and how many
     frames arrive. If the contest file says where everybody opens the pages, this command opens them
     there as a browser does. With --court it checks only that court. A court of the contest file
@@ -73,16 +71,13 @@ def doctor_command(
     plan = None if contest is None else contests.load(contest)
     planned = [*plan.courts] if plan and court is None else [court]
     asked = planned if connect is None else [court]
-    ways = [
-        entrance.spectator(invitation, contest, one, connect)
-        for one in (asked if plan or invitation or connect else ())
-    ]
+    ways = [entrance.spectator(contest, one, connect) for one in (asked if plan or connect else ())]
     folder = recordings or (plan.recordings if plan else Path("recordings"))
     findings = list(_look(plan, planned, web, folder, seconds))
     if plan is not None and plan.public.pages:
         findings += [*plain_courts(plan.public, plan.courts), *pages(plan.public, plan.given_name)]
     for way in ways:
-        findings += link(way, seconds, planned=plan is not None and not (invitation or connect))
+        findings += link(way, seconds, planned=plan is not None and not connect)
     if json:
         screen.print_json([finding.in_words() for finding in findings])
     else:
@@ -102,9 +97,10 @@ def _look(
     if plan is None:
         yield doctor.court_port(*_host_port(contests.LOOPBACK), None)
     for name, entry in map(plan.court, courts) if plan else ():
-        credentials = entrances.spectator_access(plan, name, None).credentials
+        authority = plan.public.read_authority() if plan else ""
         for address in entry.listen:
-            yield doctor.court_port(*_host_port(address), name, credentials)
+            protocol = address.partition("/")[0]
+            yield doctor.court_port(*_host_port(address), name, protocol, authority)
     yield doctor.web_port(*_host_port(web or _WEB), needed=web is not None)
     yield doctor.graphics()
     yield doctor.clock(seconds)

@@ -4,14 +4,11 @@ from pathlib import Path
 
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.file import Contest
-from lacoc_shared.contest.invitation import Access, Role, read_invitation
-from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import say
 
 
 def seat(
-    invitation: Path | None,
     contest: Path | None,
     court: str | None,
     connect: str | None,
@@ -21,15 +18,12 @@ def seat(
     """Find the way to a seat; see `entrances.seat_access`.
 
     Raises:
-        UserError: if the contest file or the invitation is wrong, or something is missing.
+        UserError: if the contest file is wrong, or something is missing.
     """
-    if invitation is not None:
-        return _invited(invitation, "seat", contest, court, connect, seat, token)
     return entrances.seat_access(_load(contest), court, connect, seat, token)
 
 
 def team(
-    invitation: Path | None,
     contest: Path | None,
     court: str | None,
     connect: str | None,
@@ -39,12 +33,12 @@ def team(
     """Find the way to a court for a team that has a token but names no seat.
 
     Teams have such tokens in a contest with an office; the office says where each team plays.
-    None: there is an invitation, a seat is named or is the only one, or there is no token.
+    None: a seat is named or is the only one, or there is no token.
 
     Raises:
         UserError: if the contest file is wrong.
     """
-    if invitation is not None or seat is not None or token is None:
+    if seat is not None or token is None:
         return None
     plan = _load(contest)
     if plan is not None:
@@ -56,7 +50,6 @@ def team(
 
 
 def perhaps_seat(
-    invitation: Path | None,
     contest: Path | None,
     court: str | None,
     connect: str | None,
@@ -66,10 +59,8 @@ def perhaps_seat(
     """Find the way to a court, with seat and token if they are known; a page asks for the rest.
 
     Raises:
-        UserError: if the contest file or the invitation is wrong.
+        UserError: if the contest file is wrong.
     """
-    if invitation is not None:
-        return _invited(invitation, "seat", contest, court, connect, seat, token)
     plan = _load(contest)
     access = entrances.spectator_access(plan, court, connect)
     seats = plan.court(court)[1].seat if plan else {}
@@ -81,7 +72,6 @@ def perhaps_seat(
 
 
 def referee(
-    invitation: Path | None,
     contest: Path | None,
     court: str | None,
     connect: str | None,
@@ -90,49 +80,18 @@ def referee(
     """Find the way to a court for its referee; see `entrances.referee_access`.
 
     Raises:
-        UserError: if the contest file or the invitation is wrong, or something is missing.
+        UserError: if the contest file is wrong, or something is missing.
     """
-    if invitation is not None:
-        return _invited(invitation, "referee", contest, court, connect, token)
     return entrances.referee_access(_load(contest), court, connect, token)
 
 
-def spectator(
-    invitation: Path | None, contest: Path | None, court: str | None, connect: str | None
-) -> Access:
-    """Find the way to a court for a spectator; any invitation is accepted.
+def spectator(contest: Path | None, court: str | None, connect: str | None) -> Access:
+    """Find the way to a court for a spectator; see `entrances.spectator_access`.
 
     Raises:
-        UserError: if the contest file or the invitation is wrong.
+        UserError: if the contest file is wrong.
     """
-    if invitation is not None:
-        return _invited(invitation, None, contest, court, connect).watching()
     return entrances.spectator_access(_load(contest), court, connect)
-
-
-def gateway(
-    invitation: Path | None, contest: Contest | None, court: str | None, connect: str | None
-) -> Access:
-    """Find the way to a court for a gateway; with a person's invitation it can only watch.
-
-    Raises:
-        UserError: if the invitation or the contest's keys can't be read.
-    """
-    if invitation is not None:
-        access = _invited(invitation, None, contest, court, connect)
-        return access if access.role == "gateway" else access.watching()
-    return entrances.gateway_access(contest, court, connect)
-
-
-def _invited(path: Path, role: Role | None, *others: object) -> Access:
-    if any(other is not None for other in others):
-        raise UserError(say("contest.invitation-alone"))
-    access = read_invitation(path)
-    if role is not None and access.role != role:
-        raise UserError(
-            say("contest.invitation-for", path=str(path), wanted=role, role=access.role)
-        )
-    return access
 
 
 def _load(path: Path | None) -> Contest | None:

@@ -56,6 +56,7 @@ def public_address(
         certificate or own.certificate,
         private_key or own.private_key,
         proxy or own.proxies,
+        own.authority,
     )
 
 

@@ -22,7 +22,7 @@ from lacoc_client.terminal.play import TerminalPlay, keys_table
 from lacoc_client.terminal.words import played
 from lacoc_robots.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_shared.command import options, screen
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError
@@ -58,7 +58,6 @@ _SHEET_S = 2.0
 
 @app.command(name="play")
 def play_command(
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -93,12 +92,12 @@ def play_command(
     robot wait until the match is played. The last key of the pipe stays pressed until the match is
     over.
     """
-    any_seat = entrance.team(invitation, contest, court, connect, seat, token)
+    any_seat = entrance.team(contest, court, connect, seat, token)
     if terminal and any_seat is not None:
         follow(any_seat, court is None, ready=ready)
         return
     if terminal:
-        access = entrance.seat(invitation, contest, court, connect, seat, token)
+        access = entrance.seat(contest, court, connect, seat, token)
         files = own_files(robot, gait or []).files
         play(access, name or render(say("page.team", seat=access.seat)), files, ready=ready)
         return
@@ -106,7 +105,7 @@ def play_command(
     if at_office is not None:
         access, prefill = at_office, Prefill(token=at_office.token)
     else:
-        access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
+        access = entrance.perhaps_seat(contest, court, connect, seat, token)
         prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
     home = player_home(access, prefill, "player", None)
     pages.show_page(home, f"/play#key={home.key}", browser, json)
@@ -146,7 +145,7 @@ def play(
         FileRefused: if the court finds mistakes in the files.
         UserError: if the court refuses, does not answer, or the seat is lost.
     """
-    with open_client(access.addresses, credentials=access.credentials) as session:
+    with open_client(access.addresses, authority=access.authority) as session:
         controller = _seated(session, access, team, files, ready=ready, greeting=greeting)
         with stop_signals() as stopping, open_keys() as keys:
             TerminalPlay(controller, keys, Path()).run(stopping)
@@ -155,7 +154,7 @@ def play(
 def _at_office(access: Access, any_court: bool) -> Access | None:
     """Find a court with an office for the page of a team; None: there is none now."""
     try:
-        with open_client(access.addresses) as session:
+        with open_client(access.addresses, authority=access.authority) as session:
             court = office_court(session, access.court, any_court=any_court)
     except UserError:
         return None
@@ -196,7 +195,7 @@ def _play_match(
 ) -> bool:
     """Play one match of a team at the terminal; return whether the team goes on."""
     access = way.access(there)
-    with open_client(access.addresses) as session:
+    with open_client(access.addresses, authority=access.authority) as session:
         controller = _seated(session, access, there.team, SeatFiles(), ready=ready)
         view = controller.view
 

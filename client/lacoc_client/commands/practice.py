@@ -15,7 +15,7 @@ from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.command import options
 from lacoc_shared.command.child import child
 from lacoc_shared.command.scratch import Scratch
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.words import render, say
 
 app = typer.Typer()

@@ -121,7 +121,6 @@ _COMMON: dict[str, tuple[Any, Any]] = {
         ],
         None,
     ),
-    "invitation": (options.Invitation, None),
     "contest": (options.ContestFile, None),
     "court": (options.CourtName, None),
     "connect": (options.Connect, None),
@@ -192,7 +191,6 @@ for _name, _kind in DECISIONS.items():
 
 @app.command(rich_help_panel="Look")
 def status(
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -200,8 +198,8 @@ def status(
     json: options.Json = False,
 ) -> None:
     """Show phase, clock, score, connections, and which decisions are possible."""
-    access = entrance.spectator(invitation, contest, court, connect)
-    with open_client(access.addresses, credentials=access.credentials) as session:
+    access = entrance.spectator(contest, court, connect)
+    with open_client(access.addresses, authority=access.authority) as session:
         view = Spectator(session, access.court)
         frame, health = _look(view)
         if json:
@@ -213,7 +211,6 @@ def status(
 
 @app.command(rich_help_panel="Look")
 def log(
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -224,8 +221,8 @@ def log(
     json: options.Json = False,
 ) -> None:
     """List the events of the match with their numbers; with --json, one on each line."""
-    access = entrance.spectator(invitation, contest, court, connect)
-    with open_client(access.addresses, credentials=access.credentials) as session:
+    access = entrance.spectator(contest, court, connect)
+    with open_client(access.addresses, authority=access.authority) as session:
         view = Spectator(session, access.court)
         events = _history(view)
         if json:
@@ -261,7 +258,6 @@ def outlook(
             metavar="SEAT", help="Put the robot of this seat back at its start place before."
         ),
     ] = None,
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -280,10 +276,8 @@ def outlook(
         decision = TakeBack(take_back)
     elif restart is not None:
         decision = Restart(restart)
-    access = entrance.referee(
-        invitation=invitation, contest=contest, court=court, connect=connect, token=token
-    )
-    with open_client(access.addresses, credentials=access.credentials) as session:
+    access = entrance.referee(contest=contest, court=court, connect=connect, token=token)
+    with open_client(access.addresses, authority=access.authority) as session:
         view = Spectator(session, access.court)
         found = RefereeClient(session, access.court, access.token).look_ahead(decision, seconds)
         if json:
@@ -314,7 +308,7 @@ def _decide(
     if name in _FINAL and not yes:
         _ask(name, say("referee.sure", decision=name))
     with patience.until(
-        lambda: open_client(access.addresses, credentials=access.credentials)
+        lambda: open_client(access.addresses, authority=access.authority)
     ) as session:
         if isinstance(decision, Clock) and decision.gives_s < 0 and not yes:
             view = patience.until(lambda: Spectator(session, access.court))

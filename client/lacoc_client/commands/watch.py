@@ -31,7 +31,6 @@ _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 @app.command(name="watch")
 def watch_command(
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -62,12 +61,12 @@ def watch_command(
     A page opens in your browser. In the terminal and with --json the command ends when the result
     is official or the match is void. Anybody may watch without a token.
     """
-    access = entrance.spectator(invitation, contest, court, connect)
+    access = entrance.spectator(contest, court, connect)
     if not (terminal or board or json):
         pages.show_page(Home({access.court: access}, "player"), "/watch", browser)
         return
     with (
-        open_client(access.addresses, credentials=access.credentials) as session,
+        open_client(access.addresses, authority=access.authority) as session,
         stop_signals() as stopping,
     ):
         view = Spectator(session, access.court)

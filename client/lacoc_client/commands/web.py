@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from lacoc_client.commands import entrance
 from lacoc_client.commands.pages import public_address
 from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
@@ -18,8 +17,9 @@ from lacoc_client.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.access import Access
+from lacoc_shared.contest.entrances import spectator_access
 from lacoc_shared.contest.file import Contest
-from lacoc_shared.contest.invitation import Access
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
@@ -27,7 +27,6 @@ app = typer.Typer()
 
 @app.command(name="web")
 def web_command(
-    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -84,7 +83,7 @@ def web_command(
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
     home = Home(
-        courts=_courts(invitation, plan, court, connect),
+        courts=_courts(plan, court, connect),
         contest=plan.given_name if plan else "",
         sheet=contests.sheet_path(contest) if contest else None,
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
@@ -119,14 +118,12 @@ def web_command(
         server.run(site(home, PageFiles(), desk), port, ready, DESK_BYTES if desk else JOIN_BYTES)
 
 
-def _courts(
-    invitation: Path | None, plan: Contest | None, court: str | None, connect: str | None
-) -> dict[str, Access]:
+def _courts(plan: Contest | None, court: str | None, connect: str | None) -> dict[str, Access]:
     """Find the access to the named court, or to all courts of the contest."""
     if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
-        access = entrance.gateway(invitation, plan, court, connect)
+        access = spectator_access(plan, court, connect)
         return {access.court: access}
-    return {name: entrance.gateway(invitation, plan, name, None) for name in plan.courts}
+    return {name: spectator_access(plan, name, None) for name in plan.courts}
 
 
 def _tell(home: Home, address: str, *, office: bool) -> None:

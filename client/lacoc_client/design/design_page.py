@@ -287,7 +287,5 @@ def _must_allow(learner: Learner, size: str | None) -> None:
 
 
 def _court(host: Host) -> str | None:
-    """Return where a page can take its table: to practice or to a contest; None: nowhere."""
-    if host.playing is None:
-        return None
-    return "practice" if host.playing.invitation is None else "contest"
+    """Return where a page can take its table: to practice; None: nowhere."""
+    return None if host.playing is None else "practice"

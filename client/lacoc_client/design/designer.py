@@ -4,7 +4,6 @@ import asyncio
 import hmac
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from pathlib import Path
 
 from lacoc_client.design import requests
 from lacoc_client.design.files import FileContent, read_file
@@ -41,7 +40,6 @@ class Designer:
     Args:
         folder: the files.
         studios: the connection to the studio; this class starts and closes it.
-        invitation: an invitation to a seat, to which pages take their gait; None: practice.
         robot: the robot that pages begin with, as on the command line; None: the workshop's.
 
     Raises:
@@ -53,10 +51,9 @@ class Designer:
         folder: Folder,
         studios: Studios,
         robot: str | None = None,
-        invitation: Path | None = None,
     ) -> None:
         self.folder: Folder | None = folder
-        self.playing: Playing | None = Playing(invitation)
+        self.playing: Playing | None = Playing()
         self.studios = studios
         self.robot = SentFile(*find_robot(robot)) if robot else None
         self.key = new_key()

@@ -1,4 +1,4 @@
-"""The way from a table on /design to a court: to practice, or to a seat of a contest."""
+"""The way from a table on /design to a court: to practice."""
 
 import threading
 from pathlib import Path
@@ -10,21 +10,16 @@ from lacoc_shared.words import say
 
 
 class Playing:
-    """Runs `lacoc practice` or `lacoc play` with files from /design; any thread may use it.
+    """Runs `lacoc practice` with files from /design; any thread may use it."""
 
-    Args:
-        invitation: an invitation to a seat; None: practice.
-    """
-
-    def __init__(self, invitation: Path | None = None) -> None:
-        self.invitation = None if invitation is None else invitation.resolve()
+    def __init__(self) -> None:
         self._folder = Scratch("playing")
         self._child: Child | None = None
         self._url = ""
         self._lock = threading.Lock()
 
     def open(self, files: SeatFiles) -> str:
-        """Hand files to the page of `lacoc practice` or `lacoc play`; first start it if needed.
+        """Hand files to the page of `lacoc practice`; first start it if needed.
 
         The start takes some seconds. A page that is open already notices the new files, and asks
         whether to use them.
@@ -61,10 +56,7 @@ class Playing:
 
     def _words(self, paths: list[Path]) -> list[str]:
         robot, *gaits = paths
-        words = ["practice"] if self.invitation is None else ["play"]
-        if self.invitation is not None:
-            words += ["--invitation", str(self.invitation)]
-        words += ["--json", "--no-open"]
+        words = ["practice", "--json", "--no-open"]
         if robot.exists():
             words += ["--robot", str(robot)]
         for gait in gaits:

@@ -150,7 +150,7 @@ class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
 
 
 class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
-    """Check the table, and take it to a court: to practice, or to the seat of an invitation."""
+    """Check the table, and take it to a court, to practise."""
 
     table: FileTable
     robot: SentFile | None = None

@@ -7,7 +7,7 @@ from lacoc_client.asking import fetch
 from lacoc_client.doctor.machine import Finding, Status
 from lacoc_client.spectator import Spectator
 from lacoc_shared import __version__
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
@@ -30,7 +30,7 @@ def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[F
     """
     about = say("doctor.court", court=access.court)
     try:
-        with open_client(access.addresses, credentials=access.credentials) as session:
+        with open_client(access.addresses, authority=access.authority) as session:
             view = Spectator(session, access.court)
             yield _version(about, access, view)
             yield _round_trip(session, view)

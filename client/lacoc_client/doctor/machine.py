@@ -29,7 +29,6 @@ from lacoc_shared.command.priority import go_first
 from lacoc_shared.keyspace import EVERY_COURT
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.access_rules import Credentials
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase, render, say
@@ -131,7 +130,7 @@ def _package(needed: Requirement) -> Finding | None:
 
 
 def court_port(
-    host: str, port: int, court: str | None, credentials: Credentials | None = None
+    host: str, port: int, court: str | None, protocol: str = "tcp", authority: str = ""
 ) -> Finding:
     """Check that a court can listen at a port, or already does.
 
@@ -140,14 +139,15 @@ def court_port(
         port: the port.
         court: name of the court that the contest file has there; None: any court, and a taken
             port is only a note.
-        credentials: credentials to ask a court that has keys.
+        protocol: "tls" if the court is encrypted.
+        authority: certificate (PEM) of a private authority that vouches for it; "": none.
     """
     about = say("doctor.port", port=port)
     why: Phrase | str = _why_taken(host, port)
     if not why:
         return Finding(about, Status.OK, say("doctor.port-free-court", host=host))
     try:
-        with open_client([f"127.0.0.1:{port}"], _ASK_S, credentials) as session:
+        with open_client([f"{protocol}/127.0.0.1:{port}"], _ASK_S, authority) as session:
             courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     except UserError:
         courts = []

@@ -111,10 +111,9 @@ def _certificate(public: PublicAddress) -> Finding:
     Raises:
         OSError: if there is no connection, or the certificate is not proven.
     """
-    context = ssl.create_default_context()
     with (
         socket.create_connection((public.host, _port(public)), _WAIT_S) as raw,
-        context.wrap_socket(raw, server_hostname=public.host) as wrapped,
+        _context(public).wrap_socket(raw, server_hostname=public.host) as wrapped,
     ):
         shown = wrapped.getpeercert() or {}
     end_s = ssl.cert_time_to_seconds(str(shown["notAfter"]))
@@ -130,7 +129,13 @@ def _websocket(public: PublicAddress) -> Finding:
     about = say("doctor.websocket")
     url = public.pages.replace("http", "ws", 1) + "/ws"
     try:
-        with connect(url, origin=Origin(public.origin), open_timeout=_WAIT_S, close_timeout=1):
+        with connect(
+            url,
+            origin=Origin(public.origin),
+            open_timeout=_WAIT_S,
+            close_timeout=1,
+            ssl=_context(public) if url.startswith("wss:") else None,
+        ):
             return Finding(about, Status.OK, say("doctor.websocket-found"))
     except (OSError, WebSocketException) as error:
         found = say("doctor.websocket-none", why=str(error))
@@ -144,15 +149,25 @@ def _get(public: PublicAddress, path: str) -> _Answer:
         OSError: if nobody answers.
         HTTPException: if the answer is no HTTP.
     """
-    encrypted = public.pages.startswith("https:")
-    kind = http.client.HTTPSConnection if encrypted else http.client.HTTPConnection
-    connection = kind(public.host, _port(public), timeout=_WAIT_S)
+    host, port = public.host, _port(public)
+    connection = http.client.HTTPConnection(host, port, timeout=_WAIT_S)
+    if public.pages.startswith("https:"):
+        connection = http.client.HTTPSConnection(
+            host, port, timeout=_WAIT_S, context=_context(public)
+        )
     try:
         connection.request("GET", f"{public.path}{path}")
         answer = connection.getresponse()
         return _Answer(answer.status, answer.read(1 << 16))
     finally:
         connection.close()
+
+
+def _context(public: PublicAddress) -> ssl.SSLContext:
+    context = ssl.create_default_context()
+    if authority := public.read_authority():
+        context.load_verify_locations(cadata=authority)
+    return context
 
 
 def _port(public: PublicAddress) -> int:

@@ -14,7 +14,7 @@ from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared.codec import BadMessage
 from lacoc_shared.command import log
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
@@ -149,7 +149,7 @@ class CourtFeed:
         while self.session is None:
             try:
                 self.session = await self._threads.run(
-                    lambda: open_client(self.access.addresses, credentials=self.access.credentials)
+                    lambda: open_client(self.access.addresses, authority=self.access.authority)
                 )
                 await self._subscribe(self.session)
             except UserError as error:

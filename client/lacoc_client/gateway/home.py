@@ -8,7 +8,7 @@ from typing import Literal
 
 from lacoc_client.own_files import OwnFiles
 from lacoc_shared.command.metrics import Exporter
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 
 Kind = Literal["venue", "player", "practice"]
 

@@ -21,7 +21,7 @@ from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
 from lacoc_client.team_way import where
 from lacoc_shared import __version__
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError
@@ -204,7 +204,9 @@ class Page:
         found = await self._ask_where(asked.token or (own.token if own else ""), feed)
         if self._home.kind == "player" and found.address:
             # Only the court of the command line was known; the office names the others.
-            self._home.courts[found.court] = Access(court=found.court, connect=found.address)
+            self._home.courts[found.court] = Access(
+                court=found.court, connect=found.address, authority=feed.access.authority
+            )
         return found
 
     async def _ask_where(self, token: str, feed: CourtFeed) -> Whereabouts:

@@ -12,7 +12,7 @@ from lacoc_client.gateway.seat_thread import Answer, SeatThread
 from lacoc_client.gateway.viewer import MOST_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_robots.seat_files import SeatFiles, to_send
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
 

@@ -7,7 +7,7 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import say
@@ -24,7 +24,7 @@ def as_referee(access: Access, do: Callable[[RefereeClient], T]) -> T:
     Raises:
         UserError: if the court refuses, or does not let the referee in.
     """
-    with open_client(access.addresses, credentials=access.credentials) as session:
+    with open_client(access.addresses, authority=access.authority) as session:
         return do(RefereeClient(session, access.court, access.token))
 
 

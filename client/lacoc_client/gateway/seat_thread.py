@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from lacoc_client.controller import REPEAT_S, Controller, Hold
 from lacoc_client.gateway.wire import FAULT
 from lacoc_robots.seat_files import SeatFiles
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
@@ -92,7 +92,7 @@ class SeatThread:
         try:
             noted: list[Phrase] = []
             files, wrong = self._files(noted)
-            with open_client(access.addresses, credentials=access.credentials) as session:
+            with open_client(access.addresses, authority=access.authority) as session:
                 controller = Controller(
                     session,
                     access.court,

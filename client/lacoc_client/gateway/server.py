@@ -12,7 +12,6 @@ from typing import Self
 import uvicorn
 from starlette.types import ASGIApp
 
-from lacoc_client.gateway.certificate import Certificate, certificate_of
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page_socket import PageRequests, PageSocket
 from lacoc_client.gateway.wire import JOIN_BYTES
@@ -20,6 +19,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_shared.command import log
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import own_address
+from lacoc_shared.network.certificate import Certificate
 from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
@@ -50,7 +50,7 @@ class Port:
         self.socket = opened
         self.public = public
         try:
-            self.certificate: Certificate | None = certificate_of(public)
+            self.certificate = None if public.pair is None else Certificate(public.pair)
         except UserError:
             opened.close()
             raise

@@ -16,10 +16,10 @@ from lacoc_server.court.assigning import Preparation
 from lacoc_server.court.copying import Copying
 from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.court.outlooks import Outlooks
+from lacoc_server.court.renewal import Renewal
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
-from lacoc_server.doors.keys.protection import protection
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk
 from lacoc_server.journal.recovery import last_result, unfinished
@@ -120,8 +120,7 @@ def serve_command(
         levels,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
-    addresses = (endpoint(listen, plan.protocol),) if listen else entry.own_listen
-    guard = protection(plan, name)
+    addresses = (endpoint(listen, plan.public.protocol),) if listen else entry.own_listen
     with ExitStack() as opened:
         weighing = opened.enter_context(Weighing(admission))
         inbox = Inbox(
@@ -143,8 +142,10 @@ def serve_command(
             office = OfficeDesk(hash_token(plan.office.token), inbox.seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         outlooks = Outlooks(weighing.aside)
+        pair = plan.public.pair
+        renewal = None if pair is None else opened.enter_context(Renewal(pair, name))
         network = opened.enter_context(
-            CourtNetwork(keys, addresses, inbox, desk, guard, office, outlooks)
+            CourtNetwork(keys, addresses, inbox, desk, pair, office, outlooks)
         )
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
         running = Court(settings, network, left or over, office, outlooks)
@@ -161,7 +162,13 @@ def serve_command(
             json=json,
         )
         log.start(json)
-        running.run(lambda: bool(stop) or (office is not None and office.retired))
+        running.run(
+            lambda: (
+                bool(stop)
+                or (office is not None and office.retired)
+                or (renewal is not None and renewal.is_due and running.is_idle)
+            )
+        )
     if office is not None and office.retired:
         screen.note(say("serve.retired", court=name))
         raise typer.Exit(child.NOT_AGAIN)

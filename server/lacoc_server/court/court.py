@@ -129,6 +129,12 @@ class Court:
         """Id of the open match; it names the record."""
         return self._journal.match.setup.match_id
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether no match is in play: none has begun, or it is over."""
+        match = self._journal.match
+        return match.is_over or not match.has_begun
+
     def run(self, stopping: Callable[[], bool]) -> None:
         """Give the match its beats until `stopping` returns True; then finish the record.
 

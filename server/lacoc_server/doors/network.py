@@ -31,7 +31,7 @@ from lacoc_shared.messages import (
     Sheet,
 )
 from lacoc_shared.messages.office import Assigned, Copied, Whereabouts
-from lacoc_shared.network.access_rules import Protection
+from lacoc_shared.network.certificate import Pair
 from lacoc_shared.network.session import Desk, Request, Ring, open_court
 from lacoc_shared.words import Phrase
 
@@ -72,8 +72,7 @@ class CourtNetwork:
         listen: addresses to listen on; port 0 takes a free one.
         inbox: checks what comes for the seats.
         decision_desk: checks what comes from referees.
-        protection: the court's certificate and users; None: anybody may connect, and nothing is
-            encrypted.
+        certificate: what proves the court's name; None: nothing is encrypted.
         office_desk: checks what comes from the office; None: the court has no office.
         look_ahead: answers referees who ask for an outlook; None: nobody answers them.
 
@@ -87,14 +86,14 @@ class CourtNetwork:
         listen: Sequence[str],
         inbox: Inbox,
         decision_desk: DecisionDesk,
-        protection: Protection | None = None,
+        certificate: Pair | None = None,
         office_desk: OfficeDesk[Any] | None = None,
         look_ahead: LookAhead | None = None,
     ) -> None:
         self._inbox = inbox
         self._decision_desk = decision_desk
         self._office_desk = office_desk
-        self._session = session = open_court(listen, protection, office_desk is not None)
+        self._session = session = open_court(listen, certificate, office_desk is not None)
         self._outbox = Outbox()
         self._frame = session.publisher(keys.frame)
         self._event = session.publisher(keys.event)

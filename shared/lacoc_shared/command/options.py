@@ -19,15 +19,6 @@ ContestFile = Annotated[
         help="Contest file; it has what you do not give here (see 'lacoc contest').",
     ),
 ]
-Invitation = Annotated[
-    Path | None,
-    typer.Option(
-        "--invitation",
-        envvar="LACOC_INVITATION",
-        metavar="FILE",
-        help="Your invitation: a file from the organiser with court, address, seat and token.",
-    ),
-]
 CourtName = Annotated[
     str | None,
     typer.Option(

@@ -12,10 +12,19 @@ VARIABLE = "LACOC_PARENT"
 """Environment variable that is set if this process's standard input is such a pipe."""
 
 
+_followed = threading.Event()
+
+
 def follow() -> None:
     """End this process with SIGTERM when its parent has gone, if its parent asked for this."""
     if os.environ.pop(VARIABLE, None) is not None:
+        _followed.set()
         threading.Thread(target=_wait, name="parent", daemon=True).start()
+
+
+def is_followed() -> bool:
+    """Return whether this process ends with its parent, which started it for itself."""
+    return _followed.is_set()
 
 
 def _wait() -> None:

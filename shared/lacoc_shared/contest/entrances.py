@@ -6,15 +6,15 @@ An option that is None was not given; it is looked up in the contest file.
 import hashlib
 
 from lacoc_shared.contest import codes
-from lacoc_shared.contest.file import LOOPBACK, MAIN, OTHERS, Contest, Court
-from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.access import Access
+from lacoc_shared.contest.file import LOOPBACK, MAIN, Contest, Court
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
 from lacoc_shared.words import say
 
 
 def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Return the access of a client that only watches: court, address and, with keys, certificate.
+    """Return the access of a client that only watches: court, address and authority.
 
     Args:
         contest: the contest file, if there is one; it gives what the options leave open.
@@ -23,15 +23,14 @@ def spectator_access(contest: Contest | None, court: str | None, connect: str | 
 
     Raises:
         UserError: if the contest has no court of this name; if it has several courts and none is
-            named; if the address is wrong; or if the keys can't be read.
+            named; if the address is wrong; or if the authority's certificate can't be read.
     """
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
     stand_in = entry.stand_in() if entry and not connect else ""
-    keys = contest.keys if contest else None
-    address = endpoint(address, contest.protocol if contest else "tcp")
-    ca = keys.read(keys.ca) if keys else ""
-    return Access(court=name, connect=address, stand_in=stand_in, ca=ca)
+    address = endpoint(address, contest.public.protocol if contest else "tcp")
+    authority = contest.public.read_authority() if contest else ""
+    return Access(court=name, connect=address, stand_in=stand_in, authority=authority)
 
 
 def seat_access(
@@ -84,13 +83,6 @@ def referee_access(
     return access.of_referee(token)
 
 
-def gateway_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Return the access of a gateway; arguments and errors as in `spectator_access`."""
-    access = spectator_access(contest, court, connect)
-    keys = contest.keys if contest else None
-    return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
-
-
 def organiser_key(contest: Contest) -> str:
     """Return the key that opens the organiser's page; it is the same at each start of the office.
 
@@ -132,26 +124,6 @@ def team_lines(contest: Contest, token: str, pages: str, any_host: str) -> dict[
     }
 
 
-def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
-    """Return all accesses to a court with keys, by seat and as "referee", "gateway", "spectators".
-
-    Args:
-        contest: a contest with keys.
-        court: the court's name.
-        any_host: the host to name if the court listens on all addresses of its machine.
-
-    Raises:
-        UserError: if the contest's keys can't be read.
-    """
-    entry = contest.courts[court]
-    address = entry.address(any_host)
-    watching = spectator_access(contest, court, address)
-    seats = {seat: watching.of_seat(seat, holder.token) for seat, holder in entry.seat.items()}
-    referee = watching.of_referee(entry.referee.token)
-    others = (referee, gateway_access(contest, court, address), watching)
-    return seats | dict(zip(OTHERS, others, strict=True))
-
-
 def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
     """Return the command lines for a court: by seat, for "referee" and for "spectators".
 
@@ -169,19 +141,6 @@ def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
         **seats,
         "referee": f"lacoc referee status {where} --token {court.referee.token}",
         "spectators": f"lacoc watch {where}",
-    }
-
-
-def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
-    """Return a command line for each person, to be run in the folder of the invitation file.
-
-    Args:
-        everybody: the access of each person, by name.
-    """
-    commands = {"seat": "play", "referee": "referee status", "gateway": "web"}
-    return {
-        who: f"lacoc {commands.get(access.role, 'watch')} --invitation {access.user}.toml"
-        for who, access in everybody.items()
     }
 
 

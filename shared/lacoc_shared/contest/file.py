@@ -17,7 +17,6 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from lacoc_shared.contest.health_limits import HealthLimits
-from lacoc_shared.contest.key_folder import KeyFolder
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.contest.wrong_value import convert
@@ -30,6 +29,7 @@ from lacoc_shared.network.address import (
     collisions,
     endpoint,
     free_beside,
+    own_address,
 )
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.network.public import PublicAddress
@@ -41,9 +41,6 @@ MAIN = "main"
 """Name of the court if none is given."""
 LOOPBACK = "127.0.0.1:7447"
 """Default address on which a court listens and to which a client connects."""
-
-OTHERS = ("referee", "gateway", "spectators")
-"""Everybody at a court besides the seats."""
 
 Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
 
@@ -169,9 +166,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     replays: Replays = "at-once"
     """From when everybody may see the records, which hold the gaits of both teams."""
     public: PublicAddress = PublicAddress()
-    """How everybody reaches the pages."""
-    keys: KeyFolder | None = None
-    """Certificates for encryption and access; None: tokens alone, and no encryption."""
+    """How everybody reaches the pages, and the certificate of pages and courts."""
     office: Holder | None = None
     """Whoever assigns matches to the courts; None: each court opens its matches itself."""
     standby: Standby | None = None
@@ -186,9 +181,12 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     draw."""
 
     @property
-    def protocol(self) -> str:
-        """Protocol of addresses that name none: TLS in a contest with keys, else TCP."""
-        return "tls" if self.keys else "tcp"
+    def own_host(self) -> str:
+        """Host of this machine for others: with a certificate the name of the pages, if it has one.
+
+        A public certificate has that name, and no IP address.
+        """
+        return (self.public.host if self.public.pair else "") or own_address()
 
     @property
     def given_name(self) -> str:
@@ -310,11 +308,11 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     name: str = _NO_NAME
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
-    keys: _PathText | None = None
     replays: Replays = "at-once"
     pages: str = ""
     certificate: _PathText | None = None
     private_key: _PathText | None = None
+    authority: _PathText | None = None
     proxies: tuple[str, ...] = ()
     least_rest_s: Annotated[float, msgspec.Meta(ge=0, le=86_400)] = 0.0
     entries_close: datetime | None = None
@@ -341,14 +339,13 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     public = PublicAddress()
     with found:
         public = _public(general, folder)
-    keys = None if general.keys is None else KeyFolder(folder / general.keys)
     robot = general.robot
     with found:
         robot = _beside(folder, general.robot)
     courts = {}
     for name, entry in file.court.items():
         with found:
-            courts[name] = _court(name, entry, folder, keys is not None)
+            courts[name] = _court(name, entry, folder, public.protocol)
     limits = {}
     for name, value in file.limits.items():
         with found:
@@ -365,7 +362,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     found.check()
     _check_ports(courts)
     if office is not None:
-        _check_office(office, courts, keys)
+        _check_office(office, courts)
     elif far := [name for name, court in courts.items() if court.elsewhere]:
         raise UserError(say("contest.elsewhere-without-office", court=far[0]))
     return Contest(
@@ -376,7 +373,6 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         health=health,
         replays=general.replays,
         public=public,
-        keys=keys,
         office=office,
         standby=standby,
         courts=courts,
@@ -387,12 +383,12 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
 
 
 def _public(general: _General, folder: Path) -> PublicAddress:
-    certificate, private_key = (
+    certificate, private_key, authority = (
         None if name is None else folder / Path(name).expanduser()
-        for name in (general.certificate, general.private_key)
+        for name in (general.certificate, general.private_key, general.authority)
     )
     try:
-        return PublicAddress.of(general.pages, certificate, private_key, general.proxies)
+        return PublicAddress.of(general.pages, certificate, private_key, general.proxies, authority)
     except UserError as error:
         raise wrong_in("contest", error) from None
 
@@ -408,7 +404,7 @@ def _check_time(entries: dict[str, Any]) -> None:
         raise UserError(_not_a_time(found)) from None
 
 
-def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
+def _court(name: str, table: Any, folder: Path, protocol: str) -> Court:
     where = f"court.{name}"
     entries = convert(table, dict[str, Any], where)
     found = Gathered()
@@ -426,15 +422,13 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
     tokens = [court.referee.token, *(holder.token for holder in holders.values())]
     if len(set(tokens)) < len(tokens):
         raise UserError(say("contest.same-tokens", where=where))
-    if taken := set(holders) & set(OTHERS):
-        raise UserError(say("contest.seat-name", where=f"{where}.seat", name=taken.pop()))
-    protocol = "tls" if keys else "tcp"
     try:
         Keys(name)
         listen = tuple(endpoint(one, protocol) for one in court.listen)
         connect = court.connect and endpoint(court.connect, protocol)
         elsewhere = court.elsewhere and endpoint(court.elsewhere, protocol)
-        check_protocols([*listen, *filter(None, (connect, elsewhere))], keys=keys)
+        reached = [*listen, *filter(None, (connect, elsewhere))]
+        check_protocols(reached, encrypted=protocol == "tls")
         return msgspec.structs.replace(
             court,
             arena=_beside(folder, court.arena),
@@ -447,18 +441,16 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
         raise wrong_in(where, error) from None
 
 
-def _check_office(office: Holder, courts: dict[str, Court], keys: KeyFolder | None) -> None:
+def _check_office(office: Holder, courts: dict[str, Court]) -> None:
     if office.token in _tokens(courts):
         raise UserError(say("contest.same-tokens", where="office"))
-    if keys is not None:
-        raise UserError(say("contest.office-with-keys"))
 
 
 def _standby(table: dict[str, Any], office: Holder | None, courts: dict[str, Court]) -> Standby:
     found = convert(table, Standby, "standby")
     try:
         found = msgspec.structs.replace(found, office=endpoint(found.office))
-        check_protocols([found.office], keys=False)
+        check_protocols([found.office], encrypted=False)
     except UserError as error:
         raise wrong_in("standby", error) from None
     if office is None:

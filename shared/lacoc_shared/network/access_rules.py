@@ -1,78 +1,34 @@
-"""Zenoh's access rules: for a court, made from its users; for a studio; for an office's desk.
+"""Zenoh's access rules, the same for everybody: of a court, of a studio, of an office's desk.
 
 Zenoh gives a court no trustworthy information about a sender, so the rules do the check:
-a message that a user may not send reaches neither the court nor anybody else.
+a message that nobody may send reaches neither the court nor anybody else.
 """
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from lacoc_shared.keyspace import DESK, Keys
+from lacoc_shared.keyspace import DESK
 
 Rules = dict[str, dict[str, Any]]
 """Rules by name."""
 
 
-class Credentials(NamedTuple):
-    """A client's name and password for a court's network, and a certificate to check the court."""
+def court_access_control() -> dict[str, Any]:
+    """Make Zenoh's access control for a court: anybody may watch, send commands and make requests.
 
-    user: str
-    password: str
-    ca: str
-    """Certificate of the contest's authority (PEM)."""
-
-    def __repr__(self) -> str:
-        return f"Credentials(user={self.user!r})"  # an accidental print must not show the password
-
-
-class Protection(NamedTuple):
-    """Certificate and users of a court with keys."""
-
-    court: str
-    certificate: Path
-    private_key: Path
-    passwords: Mapping[str, str]
-    """Passwords by user."""
-    seats: Mapping[str, str]
-    """The user of each seat, by the seat's name."""
-    referee: str
-    """The referee's user."""
-
-
-def access_control(protection: Protection | None) -> dict[str, Any]:
-    """Make Zenoh's access control for a court; everything that is not allowed is denied.
-
-    Only the court sends frames, events, sheets and health, and answers requests.
-
-    Args:
-        protection: the court's users; None: anybody may send commands and requests, and only
-            tokens and seals show whose they are.
+    Tokens and seals show whose these are. Only the court sends frames, events, sheets and health,
+    and answers requests.
     """
-    if protection is None:
-        requests = ["lacoc/*/seat/*/*", "lacoc/*/referee/*", "lacoc/*/office/*"]
-        requests += ["lacoc/*/outlook", "lacoc/*/where"]
-        anyone = _acting(["lacoc/*/seat/*/key"], requests)
-        groups: dict[str, tuple[dict[str, Any], Rules]] = {"anyone": ({}, _watching() | anyone)}
-    else:
-        groups = {"anyone": ({"usernames": list(protection.passwords)}, _watching())}
-        groups |= {
-            user: ({"usernames": [user]}, rules) for user, rules in _actors(protection).items()
+    seen = ["frame", "event", "sheet", "health"]
+    asked = ["sheet", "scene", "event", "seat/*/*", "referee/*", "office/*", "outlook", "where"]
+    return _for_anyone(
+        {
+            "court-to-all": _to_all(),
+            "watch": _rule("ingress", [f"lacoc/*/{one}" for one in seen], ["declare_subscriber"]),
+            "request": _rule("ingress", [f"lacoc/*/{one}" for one in asked], ["query"]),
+            "command": _rule("ingress", ["lacoc/*/seat/*/key"], ["put"]),
+            "presence": _presence(),
         }
-    return {
-        "enabled": True,
-        "default_permission": "deny",
-        "rules": [
-            {"id": f"{group} {name}", **rule}
-            for group, (_, rules) in groups.items()
-            for name, rule in rules.items()
-        ],
-        "subjects": [{"id": group, **subject} for group, (subject, _) in groups.items()],
-        "policies": [
-            {"rules": [f"{group} {name}" for name in rules], "subjects": [group]}
-            for group, (_, rules) in groups.items()
-        ],
-    }
+    )
 
 
 def studio_access_control() -> dict[str, Any]:
@@ -119,40 +75,6 @@ def _presence() -> dict[str, Any]:
         ["lacoc/*/live/**"],
         ["liveliness_query", "declare_liveliness_subscriber"],
     )
-
-
-def _watching() -> Rules:
-    return {
-        "court-to-all": _to_all(),
-        "watch": _rule(
-            "ingress",
-            [f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")],
-            ["declare_subscriber"],
-        ),
-        "fetch": _rule(
-            "ingress",
-            [f"lacoc/*/{what}" for what in ("sheet", "scene", "event")],
-            ["query"],
-        ),
-        "presence": _presence(),
-    }
-
-
-def _actors(protection: Protection) -> dict[str, Rules]:
-    """Return the rules by user: a seat's user may send keys and requests, the referee decisions."""
-    keys = Keys(protection.court)
-    seats = {
-        user: _acting(
-            [keys.command(seat)], [keys.request(seat, what) for what in ("join", "ready", "leave")]
-        )
-        for seat, user in protection.seats.items()
-    }
-    return seats | {protection.referee: _acting([], [keys.decision("*"), keys.outlook])}
-
-
-def _acting(commands: list[str], requests: list[str]) -> Rules:
-    rules = {"request": _rule("ingress", requests, ["query"])}
-    return rules | ({"command": _rule("ingress", commands, ["put"])} if commands else {})
 
 
 def _rule(flow: str, key_expressions: list[str], messages: list[str]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import ssl
 from collections.abc import Sequence
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.public import is_loopback, is_number
 from lacoc_shared.words import Phrase, say
 
 DEFAULT_PORT = 7447
@@ -33,7 +34,7 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
 
     Args:
         text: the address as a person wrote it.
-        protocol: "tls" for a court with keys.
+        protocol: the protocol if it names none: "tcp", or "tls" for a court with a certificate.
 
     Raises:
         UserError: if it is not an address.
@@ -63,18 +64,18 @@ def free_beside(one: str, taken: Sequence[str]) -> str:
     return f"{one.rpartition(':')[0]}:{free}"
 
 
-def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
-    """Check that complete addresses are encrypted if there are keys, and plain if not.
+def check_protocols(endpoints: Sequence[str], *, encrypted: bool) -> None:
+    """Check that a court with a certificate listens only at encrypted addresses, others at none.
 
     Raises:
         UserError: if one is wrong.
     """
     for one in endpoints:
         protocol, _, place = one.partition("/")
-        if keys and protocol != "tls":
-            raise UserError(say("address.plain-with-keys", at=one, place=place))
-        if protocol == "tls" and not keys:
-            raise UserError(say("address.needs-keys", at=one))
+        if encrypted and protocol != "tls":
+            raise UserError(say("address.not-encrypted", at=one, place=place))
+        if protocol == "tls" and not encrypted:
+            raise UserError(say("address.needs-certificate", at=one))
 
 
 def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
@@ -85,14 +86,14 @@ def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
     return None
 
 
-def why_not_connected(endpoints: Sequence[str], ca: str = "") -> Phrase:
+def why_not_connected(endpoints: Sequence[str], authority: str = "") -> Phrase:
     """Say why none of these addresses could be connected, one sentence for each.
 
     Args:
         endpoints: complete addresses.
-        ca: certificate (PEM) of the authority that signs the court's certificate; "" without keys.
+        authority: certificate (PEM) of a private authority; "": only public ones are known.
     """
-    reasons = [_why_not_connected(one, ca) for one in endpoints]
+    reasons = [_why_not_connected(one, authority) for one in endpoints]
     return reasons[0] if len(reasons) == 1 else say("plain.sentences", sentences=reasons)
 
 
@@ -147,10 +148,10 @@ def _resolves(host: str, port: int) -> bool:
         return False
 
 
-def _why_not_connected(one: str, ca: str) -> Phrase:
+def _why_not_connected(one: str, authority: str) -> Phrase:
     try:
         with socket.create_connection(_split(one), timeout=_PROBE_S) as probe:
-            return _why_not_let_in(one, probe, ca)
+            return _why_not_let_in(one, probe, authority)
     except ConnectionRefusedError:
         return say("connect.nobody", at=one)
     except socket.gaierror:
@@ -161,27 +162,39 @@ def _why_not_connected(one: str, ca: str) -> Phrase:
         return say("connect.unreachable", at=one, why=error.strerror or str(error))
 
 
-def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> Phrase:
+def _why_not_let_in(one: str, probe: socket.socket, authority: str) -> Phrase:
     """Say why a court that answers did not let a client in.
 
     Args:
         one: the court's complete address.
         probe: a plain connection to the court.
-        ca: as in `why_not_connected`.
+        authority: as in `why_not_connected`.
     """
-    host = _split(one)[0]
+    protocol, _, place = one.partition("/")
+    is_encrypted, name = protocol == "tls", _split(one)[0]
+    context = ssl.create_default_context()
     try:
-        context = ssl.create_default_context(cadata=ca) if ca else _trusting_all()
+        if authority:
+            context.load_verify_locations(cadata=authority)
     except (ssl.SSLError, TypeError):  # TypeError: a character that is not ASCII
-        return say("connect.damaged-certificate")
+        return say("connect.damaged-authority")
+    context.check_hostname = is_encrypted and not is_own(name)
+    if not is_encrypted:  # to see whether the court is encrypted
+        context.verify_mode = ssl.CERT_NONE
     try:
-        with context.wrap_socket(probe, server_hostname=host):
+        with context.wrap_socket(probe, server_hostname=name):
             pass
     except ssl.SSLCertVerificationError as error:
-        return _why_not_trusted(one, host, error)
+        return _why_not_trusted(one, name, error)
     except OSError:  # the other end has no TLS
-        return say("connect.no-keys", at=one) if ca else say("connect.not-let-in", at=one)
-    return say("connect.token", at=one) if ca else say("connect.needs-keys", at=one)
+        return (
+            say("connect.not-encrypted", at=one)
+            if is_encrypted
+            else say("connect.not-let-in", at=one)
+        )
+    if is_encrypted:
+        return say("connect.not-let-in", at=one)
+    return say("connect.encrypted", at=one, place=place)
 
 
 def _why_not_trusted(one: str, host: str, error: ssl.SSLCertVerificationError) -> Phrase:
@@ -193,13 +206,6 @@ def _why_not_trusted(one: str, host: str, error: ssl.SSLCertVerificationError) -
         case 62 | 64:
             return say("connect.wrong-name", at=one, host=host)
     return say("connect.not-proven", at=one, reason=error.verify_message)
-
-
-def _trusting_all() -> ssl.SSLContext:
-    """Make a TLS context that accepts every certificate, to test whether the court has keys."""
-    context = ssl.create_default_context()
-    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
-    return context
 
 
 def _why_not_listening(one: str) -> Phrase | None:
@@ -225,9 +231,20 @@ def _why_not_listening(one: str) -> Phrase | None:
 
 def own_address() -> str:
     """Return this machine's IP address in its network; 127.0.0.1 if it is in none."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+    return _sender_to("192.0.2.1") or "127.0.0.1"
+
+
+def is_own(name: str) -> bool:
+    """Return whether a host is an address of this machine: what is sent there does not leave it."""
+    return is_loopback(name) or (is_number(name) and _sender_to(name) == name)
+
+
+def _sender_to(number: str) -> str:
+    """Return this machine's address on the way to an IP address; "" if there is no way."""
+    family = socket.AF_INET6 if ":" in number else socket.AF_INET
+    with socket.socket(family, socket.SOCK_DGRAM) as probe:
         try:
-            probe.connect(("192.0.2.1", 9))  # sends nothing: it only finds the route
+            probe.connect((number, 9))  # sends nothing: it only finds the route
         except OSError:
-            return "127.0.0.1"
+            return ""
         return str(probe.getsockname()[0])

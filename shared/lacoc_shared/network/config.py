@@ -7,7 +7,6 @@ module changes them.
 
 import base64
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from lacoc_shared.keyspace import (
@@ -16,13 +15,13 @@ from lacoc_shared.keyspace import (
     DECISION_MAX_BYTES,
     JOIN_MAX_BYTES,
 )
+from lacoc_shared.network import address
 from lacoc_shared.network.access_rules import (
-    Credentials,
-    Protection,
-    access_control,
+    court_access_control,
     desk_access_control,
     studio_access_control,
 )
+from lacoc_shared.network.certificate import Pair
 from lacoc_shared.studio import TRIAL_REPLY_MAX_BYTES
 
 Config = dict[str, Any]
@@ -48,16 +47,14 @@ _LEASE_MS = 3000
 
 def court_config(
     listen: Sequence[str],
-    protection: Protection | None = None,
-    users: Path | None = None,
+    certificate: Pair | None = None,
     office: bool = False,
 ) -> Config:
     """Make the configuration of a court's own session.
 
     Args:
         listen: complete addresses.
-        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
-        users: file with the users' passwords, which Zenoh reads when the session opens.
+        certificate: what proves the court's name; None: nothing is encrypted.
         office: whether an office may assign matches; its requests are larger than all others.
     """
     largest = ASSIGN_MAX_BYTES if office else JOIN_MAX_BYTES
@@ -66,7 +63,7 @@ def court_config(
         "listen": {"endpoints": list(listen)},
         # The court reads this itself to learn its port; the access rules deny it to all others.
         "adminspace": {"enabled": True, "permissions": {"read": True, "write": False}},
-        "access_control": access_control(protection),
+        "access_control": court_access_control(),
         "low_pass_filter": [
             _limit("commands", "lacoc/*/seat/*/key", COMMAND_MAX_BYTES),
             _limit("ready", "lacoc/*/seat/*/ready", COMMAND_MAX_BYTES),
@@ -76,14 +73,13 @@ def court_config(
             _limit("office", "lacoc/*/office/*", ASSIGN_MAX_BYTES),
             _limit("where", "lacoc/*/where", COMMAND_MAX_BYTES),
         ],
-        "transport": _transport(largest + _HEADERS_BYTES, _court_tls(protection))
-        | _court_users(users)
+        "transport": _transport(largest + _HEADERS_BYTES, _court_tls(certificate))
         | {"unicast": _unicast()},
     }
 
 
 def studio_config(listen: Sequence[str]) -> Config:
-    """Make the configuration of a studio's own session; it has no keys, and nothing is encrypted.
+    """Make the configuration of a studio's own session; nothing is encrypted.
 
     Args:
         listen: complete addresses.
@@ -106,26 +102,24 @@ def desk_config(listen: Sequence[str]) -> Config:
     return studio_config(listen) | {"access_control": desk_access_control()}
 
 
-def client_config(
-    connect: Sequence[str], timeout_s: float, credentials: Credentials | None = None
-) -> Config:
+def client_config(connect: Sequence[str], timeout_s: float, authority: str = "") -> Config:
     """Make the configuration for everyone who is not a court.
 
     Args:
         connect: complete addresses; the first that answers is used.
         timeout_s: time limit of the first connection; later ones are tried forever.
-        credentials: credentials for a court with keys; None for a court without.
+        authority: certificate (PEM) of a private authority, which is trusted besides the public
+            ones.
     """
     return {
         **_common("client"),
         "connect": {
-            "endpoints": list(connect),
+            "endpoints": [_checked(one) for one in connect],
             "timeout_ms": round(timeout_s * 1000),
             # A client finds a court that comes back within half a second.
             "retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 1.5},
         },
-        "transport": _transport(_CLIENT_MAX_BYTES, _client_tls(credentials))
-        | _client_user(credentials),
+        "transport": _transport(_CLIENT_MAX_BYTES, _client_tls(authority)),
     }
 
 
@@ -142,28 +136,26 @@ def _unicast() -> Config:
     return {"max_sessions": MAX_SESSIONS, "accept_pending": 1000, "accept_timeout": 3000}
 
 
-def _court_tls(protection: Protection | None) -> Config:
-    if protection is None:
+def _court_tls(certificate: Pair | None) -> Config:
+    if certificate is None:
         return {}
-    certificate, key = str(protection.certificate), str(protection.private_key)
-    return {"tls": {"listen_certificate": certificate, "listen_private_key": key}}
+    files = {"listen_certificate": certificate.certificate, "listen_private_key": certificate.key}
+    return {"tls": {name: str(path) for name, path in files.items()}}
 
 
-def _court_users(users: Path | None) -> Config:
-    return {} if users is None else {"auth": {"usrpwd": {"dictionary_file": str(users)}}}
+def _checked(endpoint: str) -> str:
+    """Return an endpoint with which Zenoh checks the name of a court, unless it is at this machine.
+
+    What is sent there leaves no machine, and a public certificate names no 127.0.0.1.
+    """
+    here = endpoint.startswith("tls/") and address.is_own(address.host(endpoint))
+    return f"{endpoint}#verify_name_on_connect=false" if here else endpoint
 
 
-def _client_tls(credentials: Credentials | None) -> Config:
-    if credentials is None:
-        return {}
-    ca = base64.b64encode(credentials.ca.encode()).decode()
-    return {"tls": {"root_ca_certificate_base64": ca}}
-
-
-def _client_user(credentials: Credentials | None) -> Config:
-    if credentials is None:
-        return {}
-    return {"auth": {"usrpwd": {"user": credentials.user, "password": credentials.password}}}
+def _client_tls(authority: str) -> Config:
+    # Zenoh knows the public authorities by itself.
+    encoded = base64.b64encode(authority.encode()).decode()
+    return {"tls": {"root_ca_certificate_base64": encoded}} if authority else {}
 
 
 def _transport(max_message_bytes: int, tls: Config) -> Config:

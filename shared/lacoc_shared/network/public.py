@@ -1,4 +1,4 @@
-"""The address at which everybody opens the pages, and who encrypts the way to them.
+"""The address at which everybody opens the pages, and what proves its name.
 
 Pages are served at a port of this machine. Others may open them at another address: a domain name
 that leads here, or the address of a proxy (docs/online.md).
@@ -14,6 +14,7 @@ from urllib.parse import SplitResult, urlsplit
 import msgspec
 
 from lacoc_shared.mistakes import Gathered, UserError, printable
+from lacoc_shared.network.certificate import Pair
 from lacoc_shared.words import say
 
 _STANDARD = {"http": 80, "https": 443}
@@ -32,10 +33,12 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
     address of this machine.
     """
     certificate: Path | None = None
-    """Certificate (PEM, with those between it and a known authority); None: the gateway does not
-    encrypt."""
+    """Certificate of pages and courts (PEM, with those between it and an authority); None: they are
+    not encrypted."""
     private_key: Path | None = None
     """The certificate's key (PEM)."""
+    authority: Path | None = None
+    """Certificate (PEM) of the private authority that issued it; None: a public one did."""
     proxies: tuple[str, ...] = ()
     """Addresses or networks of proxies that say truly who asks, in `X-Forwarded-For`."""
 
@@ -46,6 +49,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         certificate: Path | None = None,
         private_key: Path | None = None,
         proxies: Iterable[str] = (),
+        authority: Path | None = None,
     ) -> Self:
         """Make a public address; arguments as its attributes, but not checked yet.
 
@@ -66,7 +70,11 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
                 raise UserError(say("public.not-https", pages=address))
         found.check()
         return cls(
-            pages=address, certificate=certificate, private_key=private_key, proxies=networks
+            pages=address,
+            certificate=certificate,
+            private_key=private_key,
+            authority=authority,
+            proxies=networks,
         )
 
     @property
@@ -88,6 +96,32 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
     def scheme(self) -> str:
         """The scheme of the port's own address."""
         return "http" if self.certificate is None else "https"
+
+    @property
+    def protocol(self) -> str:
+        """The protocol of courts whose addresses name none: TLS with a certificate, else TCP."""
+        return "tcp" if self.certificate is None else "tls"
+
+    @property
+    def pair(self) -> Pair | None:
+        """Certificate and key; None: nothing is encrypted."""
+        if self.certificate is None or self.private_key is None:
+            return None
+        return Pair(self.certificate, self.private_key)
+
+    def read_authority(self) -> str:
+        """Return the certificate (PEM) of the private authority; "": there is none.
+
+        Raises:
+            UserError: if it can't be read.
+        """
+        if self.authority is None:
+            return ""
+        try:
+            return self.authority.read_text(encoding="ascii")
+        except (OSError, UnicodeDecodeError) as error:
+            why = (error.strerror if isinstance(error, OSError) else None) or str(error)
+            raise UserError(say("public.no-authority", file=str(self.authority), why=why)) from None
 
     @property
     def _parts(self) -> SplitResult:

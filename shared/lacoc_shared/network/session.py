@@ -10,13 +10,12 @@ import atexit
 import json
 import os
 import sys
-import tempfile
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
 from typing import Any, NamedTuple, Self
 
 import zenoh
@@ -25,7 +24,7 @@ from zenoh.handlers import Callback, RingChannel
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import address, heap
 from lacoc_shared.network import config as network_config
-from lacoc_shared.network.access_rules import Credentials, Protection
+from lacoc_shared.network.certificate import Pair
 
 _OTHER_FILES = 200
 """Files that a court's process opens besides one for each session: records, modules, Zenoh's."""
@@ -302,28 +301,21 @@ class Session:
 
 
 def open_court(
-    listen: Sequence[str], protection: Protection | None = None, office: bool = False
+    listen: Sequence[str], certificate: Pair | None = None, office: bool = False
 ) -> Session:
     """Open a court's session: the router to which everyone else connects.
 
     Args:
         listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
-        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
+        certificate: what proves the court's name; None: nothing is encrypted.
         office: whether an office may assign matches to the court.
 
     Raises:
         UserError: if it can't listen on one of them; the message says why.
     """
     os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
-    _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
-    endpoints = [address.endpoint(one, "tls" if protection else "tcp") for one in listen]
-    address.check_protocols(endpoints, keys=protection is not None)
-    try:
-        with _user_file(protection) as users:
-            config = network_config.court_config(endpoints, protection, users, office)
-            return Session(_open(config), endpoints)
-    except zenoh.ZError as error:
-        raise UserError(address.why_not_listening(endpoints, error)) from None
+    config = partial(network_config.court_config, certificate=certificate, office=office)
+    return _listening(listen, config, encrypted=certificate is not None)
 
 
 def open_studio(listen: Sequence[str]) -> Session:
@@ -344,20 +336,21 @@ def open_desk(listen: Sequence[str]) -> Session:
 
 
 def _listening(
-    listen: Sequence[str], config: Callable[[Sequence[str]], network_config.Config]
+    listen: Sequence[str],
+    config: Callable[[Sequence[str]], network_config.Config],
+    *,
+    encrypted: bool = False,
 ) -> Session:
     _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
-    endpoints = [address.endpoint(one) for one in listen]
-    address.check_protocols(endpoints, keys=False)
+    endpoints = [address.endpoint(one, "tls" if encrypted else "tcp") for one in listen]
+    address.check_protocols(endpoints, encrypted=encrypted)
     try:
         return Session(_open(config(endpoints)), endpoints)
     except zenoh.ZError as error:
         raise UserError(address.why_not_listening(endpoints, error)) from None
 
 
-def open_client(
-    connect: Sequence[str], timeout_s: float = 2.0, credentials: Credentials | None = None
-) -> Session:
+def open_client(connect: Sequence[str], timeout_s: float = 2.0, authority: str = "") -> Session:
     """Open the session of a controller, referee, spectator or gateway.
 
     It stays open when the court goes away, and connects again by itself.
@@ -365,36 +358,23 @@ def open_client(
     Args:
         connect: addresses of a court; the first that answers is used.
         timeout_s: how long to try.
-        credentials: credentials for a court with keys; None for a court without.
+        authority: certificate (PEM) of a private authority, which is trusted besides the public
+            ones.
 
     Raises:
         NotConnected: if there is no connection; the message says why.
-        UserError: if an address is wrong, or is encrypted without keys or plain with keys.
+        UserError: if an address is wrong.
     """
-    endpoints = [address.endpoint(one, "tls" if credentials else "tcp") for one in connect]
-    address.check_protocols(endpoints, keys=credentials is not None)
+    endpoints = [address.endpoint(one) for one in connect]
     if (unknown := address.why_not_known(endpoints)) is not None:
         raise NotConnected(unknown)
+    if len(endpoints) > 1:  # at first Zenoh tries nothing but the first address
+        endpoints.sort(key=lambda one: not address.is_open(one))
     try:
-        config = network_config.client_config(endpoints, timeout_s, credentials)
+        config = network_config.client_config(endpoints, timeout_s, authority)
         return Session(_open(config), endpoints)
     except zenoh.ZError:
-        ca = credentials.ca if credentials else ""
-        raise NotConnected(address.why_not_connected(endpoints, ca)) from None
-
-
-@contextmanager
-def _user_file(protection: Protection | None) -> Iterator[Path | None]:
-    """Write the passwords to a file that exists only as long as Zenoh needs it."""
-    if protection is None:
-        yield None
-        return
-    with tempfile.TemporaryDirectory(prefix="lacoc-") as folder:  # readable only by its owner
-        users = Path(folder, "users")
-        lines = [f"{user}:{password}\n" for user, password in protection.passwords.items()]
-        with open(users, "x", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
-            file.writelines(lines)
-        yield users
+        raise NotConnected(address.why_not_connected(endpoints, authority)) from None
 
 
 def _allow_files(count: int) -> None:
@@ -409,14 +389,7 @@ def _allow_files(count: int) -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
-_WITHOUT_PASSWORDS = ",zenoh::api::session=info"
-"""Added to RUST_LOG: at debug, Zenoh logs its whole configuration, passwords too."""
-
-
 def _open(config: dict[str, Any]) -> zenoh.Session:
     heap.share()
-    words = os.environ.get("RUST_LOG", "")
-    if words and not words.endswith(_WITHOUT_PASSWORDS):
-        os.environ["RUST_LOG"] = words + _WITHOUT_PASSWORDS
     zenoh.init_log_from_env_or("off")  # its log is for developers: RUST_LOG=warn shows it
     return zenoh.open(zenoh.Config.from_json5(json.dumps(config)))

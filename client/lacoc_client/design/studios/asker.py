@@ -50,7 +50,7 @@ class Asker:
 
     def __init__(self, connect: str) -> None:
         self._connect = [address.endpoint(connect)]
-        address.check_protocols(self._connect, keys=False)
+        address.check_protocols(self._connect, encrypted=False)
         self._session: Session | None = None
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._look, name="studio", daemon=True)

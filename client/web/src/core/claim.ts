@@ -83,11 +83,7 @@ export interface Claim {
 
 const MOST_TRIES = 8;
 /** Refusals that are about the token. */
-const ABOUT_TOKEN: ReadonlySet<string> = new Set([
-  "refused.wrong-token",
-  "gateway.no-token",
-  "connect.token",
-]);
+const ABOUT_TOKEN: ReadonlySet<string> = new Set(["refused.wrong-token", "gateway.no-token"]);
 /** Refusals that the same request would meet again. */
 const FINAL: ReadonlySet<string> = new Set([...ABOUT_TOKEN, "refused.files-too-large"]);
 

@@ -466,11 +466,6 @@ export const design = {
     "Type the address of the contest's pages, such as 192.168.1.20:8080.",
     "大会ページのアドレスを入力してください（例：192.168.1.20:8080）。",
   ],
-  "design.court.contest": ["To the match", "試合へ"],
-  "design.court.contest.hint": [
-    "Opens the seat of your invitation in a new tab, with this gait",
-    "招待された席を新しいタブで開き、この歩容を使います",
-  ],
   "design.court.going": ["Opening …", "開いています…"],
   "design.court.open": [
     "The browser opened no tab. Open the page here.",

@@ -19,7 +19,7 @@ app = typer.Typer(
 for command in (
     setting_up.init,
     setting_up.check,
-    setting_up.keys,
+    setting_up.certificate,
     setting_up.show,
     playing.enter,
     inviting.invite,

@@ -10,7 +10,6 @@ from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.network.address import own_address
 from lacoc_shared.words import render, say
 
 _PAGES_PORT = 8080
@@ -35,7 +34,7 @@ def invite(
 
     tokens = organiser.tokens(contest, team)
     plan = contests.load(contest)
-    any_host = host or own_address()
+    any_host = host or plan.own_host
     address = plan.public.pages or f"{plan.public.scheme}://{any_host}:{_PAGES_PORT}"
     lines = {
         name: entrances.team_lines(plan, token, address, any_host) for name, token in tokens.items()

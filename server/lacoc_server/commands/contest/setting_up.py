@@ -1,4 +1,4 @@
-"""Write, check and show the contest file (`lacoc_shared.contest.file`), and make its keys."""
+"""Write, check and show the contest file (`lacoc_shared.contest.file`); make its certificate."""
 
 import os
 from datetime import UTC, datetime
@@ -19,7 +19,6 @@ from lacoc_shared.contest.file import Contest, Court
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import Gathered, UserError
-from lacoc_shared.network.address import own_address
 from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import render, say
 
@@ -31,7 +30,7 @@ FileToRead = Annotated[
 _TEMPLATE = """\
 # A contest of LACOC. Check it with 'lacoc contest check', start its court with
 # 'lacoc serve --contest {file}', and hand each person their line of 'lacoc contest show'.
-# 'lacoc contest keys' encrypts it and makes an invitation for each person.
+# 'lacoc contest certificate' makes a certificate, with which everything is encrypted.
 # Whoever has a token is let in with it: keep this file to yourself.
 
 [contest]
@@ -57,7 +56,7 @@ robot = "hexapod"          # for a team that brings none: an installed robot or 
 [court.{court}]
 arena = "{arena}"
 listen = ["0.0.0.0:7447"]          # 127.0.0.1:7447: this machine alone
-# connect = "192.168.1.20:7447"    # where others reach it, for 'show' and 'keys'
+# connect = "192.168.1.20:7447"    # where others reach it, for 'show'
 # input_delay = "equal"                # hold keys until both links have the same delay,
 # input_delay_max_ms = 400             # at most this
 
@@ -125,7 +124,7 @@ _HALL = """
 _ONLINE = """
 pages = "{pages}"  # as everybody opens the pages: all links begin with it
 proxies = ["{proxy}"]  # whose word about who asks is believed ('lacoc docs online')
-# certificate = "fullchain.pem"        # without a proxy: the gateway encrypts by itself
+# certificate = "fullchain.pem"        # without a proxy: pages and courts encrypt by themselves
 # private_key = "privkey.pem"
 """
 _EVENT_COURT = """
@@ -252,9 +251,9 @@ def check(file: FileToRead = FILE) -> None:
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
         screen.warn(say("contest.close-is-over", time=close.isoformat()))
     if contest.public.certificate is not None:
-        from lacoc_server.commands.contest import certificate  # as `keys`
+        from lacoc_server.contest.certificate import doubts  # needs packages, as `organiser`
 
-        for doubt in certificate.doubts(contest.public, close, datetime.now(UTC)):
+        for doubt in doubts(contest.public, close, datetime.now(UTC)):
             screen.warn(doubt)
     if contests.facts_path(file).exists():  # else no team has entered, and reading makes no file
         from lacoc_server.contest import organiser  # needs packages that the base install lacks
@@ -263,47 +262,30 @@ def check(file: FileToRead = FILE) -> None:
             screen.warn(doubt)
 
 
-def keys(
+def certificate(
     file: FileToRead = FILE,
     host: Annotated[
         list[str] | None,
         typer.Option(
             metavar="HOST",
-            help="Name or IP address by which others reach the courts' machine; can be given more "
+            help="Another name or IP address by which this machine is reached; can be given more "
             "than once.",
         ),
     ] = None,
-    renew: Annotated[
-        bool,
-        typer.Option(
-            "--renew",
-            help="Replace all keys: everybody needs a new invitation. The old keys are kept "
-            "with a number.",
-        ),
-    ] = False,
 ) -> None:
-    """Encrypt a contest: make its keys, and an invitation for each person.
+    """Encrypt a contest in a hall without a domain: make a certificate for pages and courts.
 
-    The keys and invitations go to the folder 'keys' beside the contest file, or to 'keys-FILE' if
-    'keys' belongs to another contest. An entry in the contest file names the folder. From then on
-    the courts use encryption (TLS), and each person can do only what their invitation allows.
+    A private authority issues it, which this command makes too. The files are in the folder 'tls'
+    beside the contest file, and entries in the contest file name them. If you run this command
+    again, the same authority issues a new certificate, and running courts and pages take it by
+    themselves.
 
-    If you run this command again, it adds what is new (a court, a token, a host). Invitations that
-    were handed out stay valid. Courts that are running use the new keys after a restart.
+    With a domain, put the files of a public certificate into the contest file instead.
     """
-    from lacoc_server.doors.keys.make import make_keys  # needs packages that the base install lacks
+    from lacoc_server.contest.certificate import make_certificate  # needs packages
 
-    made = make_keys(file, host or (), renew)
-    if made.kept is not None:
-        screen.note(say("contest.old-keys", folder=str(made.kept)))
-    elif made.handed_out_hold:
-        screen.note(say("contest.keys-hold"))
-    folder = str(made.folder.path)
-    screen.show(say("contest.keys", hosts=made.hosts, day=str(made.ends), folder=folder))
-    for access in made.invitations:
-        screen.show(f"  {made.folder.invitation(access.user)}")
-    starts = [f"lacoc serve --contest {file} --court {name}" for name in contests.load(file).courts]
-    screen.note(say("contest.hand-out", commands=starts))
+    hosts, end = make_certificate(file, host or ())
+    screen.show(say("contest.certificate", hosts=hosts, day=str(end)))
 
 
 def show(
@@ -315,11 +297,8 @@ def show(
     """Print the command line for each contestant, the referee and spectators."""
     contest = contests.load(file)
     names = [contest.court(court)[0]] if court else list(contest.courts)
-    any_host = host or own_address()
-    if contest.keys:
-        lines = {n: entrances.invitation_lines(entrances.everybody(contest, n)) for n in names}
-    else:
-        lines = {name: entrances.join_lines(name, contest.courts[name], any_host) for name in names}
+    any_host = host or contest.own_host
+    lines = {name: entrances.join_lines(name, contest.courts[name], any_host) for name in names}
     if json:
         screen.print_json(lines)
         return
@@ -329,9 +308,7 @@ def show(
                 Text(render(say("contest.for-whom", court=name, person=person)), style="dim")
             )
             screen.stdout.print(line, markup=False, soft_wrap=True)  # to be copied whole
-    if contest.keys:
-        screen.note(say("contest.invitations", folder=str(contest.keys.invitations)))
-    elif host is None and not all(contest.courts[name].host for name in names):
+    if host is None and not all(contest.courts[name].host for name in names):
         screen.note(say("contest.host", host=any_host))
 
 

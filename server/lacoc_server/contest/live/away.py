@@ -105,6 +105,7 @@ class AwayCourt:
         self.name = name
         self._where = where
         self._entry = where.contest.courts[name]
+        self._authority = where.contest.public.read_authority()
         self._link_to = link_to
         self._open_here = open_here
         self._tell = tell
@@ -176,7 +177,9 @@ class AwayCourt:
         if not is_open(self._entry.elsewhere):
             return None
         try:
-            session = self._opened.enter_context(open_client([self._entry.elsewhere]))
+            session = self._opened.enter_context(
+                open_client([self._entry.elsewhere], authority=self._authority)
+            )
         except NotConnected:  # it has gone again
             return None
         return self._link_to(session, self.name)
@@ -198,14 +201,14 @@ class AwayCourt:
             return
         address, link = opened
         self._is_open_here = True
-        office.connect(self.name, link, venue.told_address(self._entry, address))
+        office.connect(self.name, link, venue.told_address(self._where.contest, self.name, address))
 
     def _open(self) -> tuple[str, CourtLink] | None:
         """Return the address of the court on this machine, and a connection; None: it can't be."""
         try:
             with ExitStack() as stack:
                 address = stack.enter_context(self._open_here(self.name))
-                session = stack.enter_context(open_client([address]))
+                session = stack.enter_context(open_client([address], authority=self._authority))
                 self._opened.push(stack.pop_all())
         except UserError as error:
             self._tell(say("away.can-not-open", court=self.name, why=error.phrase))

@@ -130,11 +130,12 @@ def play_live(
             stack.enter_context(AwayCourt(where, name, link_to, run_here, tell))
             for name in filter(addresses.get, addresses)
         ]
+        authority = where.contest.public.read_authority()
         here = [name for name, elsewhere in addresses.items() if not elsewhere]
         for name, address in _opened(stack, {name: run_here(name) for name in here}).items():
             addresses[name] = address
-            told[name] = venue.told_address(where.contest.courts[name], address)
-            session = stack.enter_context(open_client([address]))
+            told[name] = venue.told_address(where.contest, name, address)
+            session = stack.enter_context(open_client([address], authority=authority))
             links[name] = link_to(session, name)
         tokens = TeamTokens(where.tokens)
         rest_ms = round(1000 * where.contest.least_rest_s)

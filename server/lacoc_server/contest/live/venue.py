@@ -12,9 +12,9 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import Contest as Computed
 from lacoc_shared.command.child import apart, command_line, kept_child
-from lacoc_shared.contest.file import Contest, Court
+from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.address import check_free, endpoint, own_address
+from lacoc_shared.network.address import check_free, endpoint
 from lacoc_shared.words import Phrase, say
 
 _END_S = 5.0
@@ -101,19 +101,21 @@ def pages(
         yield opened["url"]
 
 
-def told_address(court: Court, opened: str) -> str:
+def told_address(contest: Contest, name: str, opened: str) -> str:
     """Return the address for contestants of a court on this machine; they may be on others.
 
     Args:
-        court: its entry in the contest file.
+        contest: the contest.
+        name: the court's name.
         opened: the address at which it was opened, with the real port.
     """
+    court = contest.courts[name]
     if court.connect:
         return court.connect
     port = opened.rpartition(":")[2]
     if court.host:
         return f"{court.listen[0].rpartition(':')[0]}:{port}"
-    return f"{opened.partition('/')[0]}/{own_address()}:{port}"
+    return f"{opened.partition('/')[0]}/{contest.own_host}:{port}"
 
 
 def _check_free(contest: Contest, name: str, listen: Sequence[str]) -> None:
@@ -123,7 +125,7 @@ def _check_free(contest: Contest, name: str, listen: Sequence[str]) -> None:
         UserError: if it can't; the message names the court, the port and what to do.
     """
     try:
-        check_free([endpoint(one, contest.protocol) for one in listen])
+        check_free([endpoint(one, contest.public.protocol) for one in listen])
     except UserError as error:
         raise UserError(say("child.no-address", court=name, why=error.phrase)) from None
 

@@ -18,7 +18,7 @@ export interface Greeting {
   /** The newest table that the gateway got; null: none. */
   draft: Draft | null;
   /** Where a table can be taken; null: nowhere. */
-  court: "practice" | "contest" | null;
+  court: "practice" | null;
 }
 
 /** What somebody must do at the door of a class. */

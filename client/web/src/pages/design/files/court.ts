@@ -1,4 +1,4 @@
-/** The way of the table to a court: to practice, or to the seat of an invitation. */
+/** The way of the table to a court: to practice. */
 
 import { signal } from "@preact/signals";
 import { enterPage, filesFragment, type GivenFiles } from "../../../core/given";
@@ -11,7 +11,7 @@ import { sentGait } from "./gait";
 
 export class Court {
   /** Where it leads; null: nowhere, as in a class. */
-  readonly leads = signal<"practice" | "contest" | null>(null);
+  readonly leads = signal<"practice" | null>(null);
   readonly isGoing = signal(false);
   /** Address of the court's page where the browser has let no tab be opened; "": it has. */
   readonly blocked = signal("");

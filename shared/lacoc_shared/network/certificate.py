@@ -1,26 +1,33 @@
-"""The certificate with which a gateway proves its name to browsers; it can be renewed meanwhile."""
+"""The certificate with which a program proves its name; it can be renewed meanwhile."""
 
 import ssl
 from pathlib import Path
+from typing import NamedTuple
 
 from lacoc_shared.mistakes import UserError, text_of
-from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
+
+
+class Pair(NamedTuple):
+    """The files of a certificate and its key (PEM)."""
+
+    certificate: Path
+    """The certificate, with those between it and an authority."""
+    key: Path
 
 
 class Certificate:
     """A certificate and its key, as a TLS context that takes newer ones.
 
     Args:
-        certificate: file of the certificate (PEM), with those between it and a known authority.
-        private_key: file of its key (PEM).
+        pair: their files.
 
     Raises:
         UserError: if they can't be read, or do not belong together.
     """
 
-    def __init__(self, certificate: Path, private_key: Path) -> None:
-        self._files = certificate, private_key
+    def __init__(self, pair: Pair) -> None:
+        self._files = pair
         self._seen = self._versions()
         self.context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         self._load(self.context)
@@ -63,14 +70,3 @@ class Certificate:
             except OSError:
                 found.append((0, 0))
         return found
-
-
-def certificate_of(public: PublicAddress) -> Certificate | None:
-    """Return the certificate of a public address; None if it has none.
-
-    Raises:
-        UserError: if it can't be read.
-    """
-    if public.certificate is None or public.private_key is None:
-        return None
-    return Certificate(public.certificate, public.private_key)

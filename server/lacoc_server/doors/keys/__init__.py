@@ -1,1 +1,0 @@
-"""Certificates and invitations of a contest with keys."""
