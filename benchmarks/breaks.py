@@ -112,10 +112,8 @@ def played_through(folder: Path, times: int) -> dict[str, list[float]]:
         for seat, token in TOKENS.items():
             page = browser.new_context(ignore_https_errors=True).new_page()
             page.add_init_script(SLOW_SCREEN)
-            page.goto(f"{online.pages}/play?q=low#key={online.venue.key}")
-            page.locator(f".seats input[value={seat}]").check(force=True)
+            page.goto(f"{online.pages}/play?q=low#token={token}")
             page.fill("#join-name", seat)
-            page.fill("#join-token", token)
             page.click("button[type=submit]")
             page.click("button.ready")
             pages.append(page)

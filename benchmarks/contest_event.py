@@ -13,7 +13,6 @@ Only times are shorter than in the file that `lacoc contest init` writes (`_SHOR
 """
 
 import argparse
-import json
 import random
 import subprocess
 import sys
@@ -82,8 +81,8 @@ class Event:
     def held(self, seconds: float) -> dict[str, Any]:
         """Hold the event; return what was counted."""
         begun_s = time.monotonic()
-        self._step("lacoc contest init --event --courts 2")
-        _lacoc(self._folder, "contest", "init", "--event", "--courts", "2")
+        self._step("lacoc contest init --courts 2")
+        _lacoc(self._folder, "contest", "init", "--courts", "2")
         self._step("edit contest.toml")
         self._shorten(seconds)
         self._step("lacoc contest run --entries")
@@ -174,10 +173,9 @@ class Event:
         if team not in _AT_A_TERMINAL:
             page.locator(".qr a").click()
             return True
+        link = page.evaluate("document.querySelector('.qr a').href")
         page.close()
-        lines = _lacoc(self._folder, "contest", "invite", team, "--json", "--host", "127.0.0.1")
-        words = json.loads(lines)[team]["command"].split()[1:]
-        terminal = started(LACOC, *words, "--terminal", "--ready")
+        terminal = started(LACOC, "play", link, "--terminal", "--ready")
         process = self._stack.enter_context(terminal)
         hush(process)
         assert process.stdin is not None

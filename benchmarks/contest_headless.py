@@ -37,7 +37,6 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_shared.command import screen
-from lacoc_shared.contest.tokens import new_token
 
 _DASK_MOST = 1.05
 """Most that Dask may cost, as a multiple of the pool's time."""
@@ -50,12 +49,6 @@ recordings = "{records}"
 
 [court.main]
 arena = "othello"
-[court.main.seat.left]
-token = "{left}"
-[court.main.seat.right]
-token = "{right}"
-[court.main.referee]
-token = "{referee}"
 
 [stage.all]
 format = "round-robin"
@@ -136,8 +129,7 @@ def _contest(
     """Make a contest of bots; with `changed`, the first team has another bot."""
     folder.mkdir()
     file = folder / "contest.toml"
-    tokens = {name: new_token() for name in ("left", "right", "referee")}
-    file.write_text(_STAGE.format(records=records, seconds=seconds, **tokens))
+    file.write_text(_STAGE.format(records=records, seconds=seconds))
     bots, robots = [*arenas.load("othello").bots], installed_robots()
     for number in range(teams):
         bot = bots[(number + (changed and number == 0)) % len(bots)]

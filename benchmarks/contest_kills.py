@@ -32,7 +32,6 @@ from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, Played, Recalled
-from lacoc_shared.contest.tokens import new_token
 
 _REST_S = 1.0
 _CALM_SPEED = 20.0
@@ -85,12 +84,10 @@ def main() -> None:
 def _contest(folder: Path, teams: int, courts: int, seconds: float) -> Path:
     folder.mkdir()
     text = f'[contest]\nname = "Kills"\nleast_rest_s = {_REST_S}\n'
-    text += f'\n[office]\ntoken = "{new_token()}"\n'
-    text += f'\n[standby]\noffice = "127.0.0.1:{free_port()}"\ntoken = "{new_token()}"\n'
+    text += f'\n[standby]\noffice = "127.0.0.1:{free_port()}"\n'
     for number in range(1, courts + 1):
         listen = f'listen = ["127.0.0.1:{free_port()}"]'
         text += f'\n[court.court-{number}]\narena = "othello"\n{listen}\n'
-        text += f'[court.court-{number}.referee]\ntoken = "{new_token()}"\n'
     file = folder / "contest.toml"
     file.write_text(text + _STAGES.format(seconds=seconds))
     bot = folder / "bot.py"

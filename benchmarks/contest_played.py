@@ -9,16 +9,12 @@ from lacoc_server.contest import organiser
 from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
 from lacoc_shared.words import Phrase
 
-TOKENS = {seat: f"token-of-{seat}-{seat}" for seat in ("left", "right", "referee")}
-CONTEST = f"""\
+CONTEST = """\
 [contest]
 name = "Cup"
 recordings = "records"
 [court.main]
 arena = "othello"
-seat.left.token = "{TOKENS["left"]}"
-seat.right.token = "{TOKENS["right"]}"
-referee.token = "{TOKENS["referee"]}"
 """
 SWISS = """\
 [stage.swiss]

@@ -32,14 +32,12 @@ from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.whereabouts import Known, Pace
 from lacoc_shared.codec import encode
-from lacoc_shared.contest.entrances import event_code, organiser_key, page_key
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import DESK
 from lacoc_shared.messages import SentFile
@@ -66,14 +64,11 @@ _SESSIONS = 3
 _HONEST_EVERY = 250
 _ANSWER_S = 5.0
 _FILE = """
-[office]
-token = "{office}"
 [stage.cup]
 format = "round-robin"
 [court.north]
 arena = "othello"
 listen = ["127.0.0.1:0"]
-referee.token = "{referee}"
 """
 _IN, _WAITS, _MINE = ("Ants", "Bees"), "Crabs", "Dogs"
 
@@ -95,13 +90,14 @@ class _Trial:
     def __init__(self, folder: Path, stack: ExitStack, chance: random.Random) -> None:
         self._chance = chance
         file = folder / "contest.toml"
-        file.write_text(_FILE.format(office=new_token(), referee=new_token()))
+        file.write_text(_FILE)
         self._where = where = ContestFolder(file)
         self._files = _sample()
         self._store = stack.enter_context(FactStore(where.facts))
         self._applications = stack.enter_context(Applications(where.applications))
-        self._tokens = TeamTokens(where.tokens)
-        self._key, self._code = organiser_key(where.contest), event_code(where.contest)
+        self._secrets = where.contest.secrets
+        self._whistle = self._secrets.referee("north")
+        self._key, self._code = self._secrets.organiser, self._secrets.event_code
         own = stack.enter_context(FactStore(where.facts))
         organiser.prepare(where, self._store, entering=True)
         for team in (*_IN, _MINE):
@@ -110,14 +106,13 @@ class _Trial:
             where,
             own,
             self._applications,
-            self._tokens,
             EventCode(where.event_code, self._code),
         )
         known = Known({"north": Seen(0)}, Pace(0, 60_000), {})
         desk = Desk(book, self._key, lambda: known)
         desk.answer(Apply(secret=self._code, team=_WAITS, files=self._files))
-        self._mine = self._tokens.of(_MINE)
-        self._others = {team: self._tokens.of(team) for team in (*_IN, _WAITS)}
+        self._mine = self._secrets.team(_MINE)
+        self._others = {team: self._secrets.team(team) for team in (*_IN, _WAITS)}
         service = stack.enter_context(DeskService(desk.judge))
         self._honest = stack.enter_context(open_client([service.address]))
         self._hostile = [
@@ -174,7 +169,13 @@ class _Trial:
     def _organise(self) -> bytes:
         """Make a request that only the organiser may send, with a wrong secret."""
         secret = self._chance.choice(
-            ("", self._code, self._mine, page_key(self._where.contest), self._guess(self._key))
+            (
+                "",
+                self._code,
+                self._mine,
+                self._whistle,
+                self._guess(self._key),
+            )
         )
         team = self._chance.choice((*_IN, _WAITS, _MINE))
         kinds: tuple[DeskRequest, ...] = (
@@ -253,7 +254,7 @@ class _Trial:
         assert due(compute(facts, FORMATS), FORMATS) is not None, "entries are open"
         with Applications(self._where.applications) as waiting:
             kept = waiting.waiting
-        return facts, kept, self._where.tokens.read_bytes()
+        return facts, kept, self._where.secrets.read_bytes()
 
 
 def _sample() -> Files:

@@ -27,16 +27,14 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from benchmarks import alone
 from benchmarks.processes import free_port
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared.codec import decode, encode
-from lacoc_shared.command import cli
-from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access
-from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.decisions import Adjust, Start
 from lacoc_shared.inputs import Decide, KeySeat
 from lacoc_shared.keyspace import Keys
@@ -329,17 +327,17 @@ def _controls(
 def _contest(folder: Path) -> dict[str, Access]:
     port = free_port()
     file = folder / "contest.toml"
-    seats = "".join(f'seat.{seat}.token = "{new_token()}"\n' for seat in SEATS)
     file.write_text(
         f'[court.main]\narena = "othello"\nlisten = ["127.0.0.1:{port}"]\n'
-        f'{seats}referee.token = "{new_token()}"\n'
         "settings.match.countdown_s = 0.1\nsettings.match.duration_s = 3600.0\n"
     )
     contest = contests.load(file)
-    watching = entrances.spectator_access(contest, None, None)
-    court = contest.courts["main"]
-    people = {seat: watching.of_seat(seat, court.seat[seat].token) for seat in SEATS}
-    return people | {"referee": watching.of_referee(court.referee.token), "spectators": watching}
+    watching, secrets = contest.access(contest.court()[0]), contest.secrets
+    people = {seat: watching.of_seat(seat, secrets.seat("main", seat)) for seat in SEATS}
+    return people | {
+        "referee": watching.of_referee(secrets.referee("main")),
+        "spectators": watching,
+    }
 
 
 def _serve(folder: Path, without: str) -> subprocess.Popen[str]:
@@ -372,7 +370,14 @@ def _court(folder: Path, without: str) -> None:
     """Run the court in this process, with some of its protection switched off."""
     if without == "rules":
         network_config.court_access_control = lambda: {"enabled": False}
-    sys.exit(cli.main(["serve", "--json", "--contest", str(folder / "contest.toml")]))
+    sys.argv = [
+        "alone",
+        str(folder / "contest.toml"),
+        "--json",
+        "--recordings",
+        str(folder / "recordings"),
+    ]
+    alone.main()
 
 
 def main() -> None:

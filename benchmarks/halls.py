@@ -39,10 +39,8 @@ from lacoc_client.team_way import where
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.facts import Closed, Played, new
 from lacoc_shared import codec
-from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Frame
 from lacoc_shared.network.session import Mail, open_client
@@ -142,13 +140,14 @@ def play(folder: Path, halls: int, courts: int) -> dict[str, Any]:
         office = stack.enter_context(_inside(_OFFICE, *words))
         assert office.stdout is not None
         office.stdout.readline()
-        token = TeamTokens(ContestFolder(file).tokens).of("Team 1")
+        token = ContestFolder(file).contest.secrets.team("Team 1")
         found_s: dict[str, float] = {}
         waiting = []
         for hall in range(2, halls + 1):
             there = folder / f"hall-{hall}"
             there.mkdir()
-            shutil.copy(file, there)
+            for one in (file, ContestFolder(file).secrets):
+                shutil.copy(one, there)
             own = [name for name in names if hall_of[name] == hall]
             words = ("contest", "courts", *own, "--contest", str(there / "contest.toml"))
             process = stack.enter_context(_inside(hall, *words))
@@ -178,13 +177,12 @@ def _whole(store: FactStore, records: Path) -> list[str]:
 
 def _contest(folder: Path, hall_of: dict[str, int], halls: int) -> Path:
     folder.mkdir()
-    text = f'[contest]\nname = "Halls"\n[office]\ntoken = "{new_token()}"\n'
+    text = '[contest]\nname = "Halls"\n'
     for number, (name, hall) in enumerate(hall_of.items()):
         port = _PORT + number
         text += f'[court.{name}]\narena = "othello"\nlisten = ["{address(_OFFICE)}:{port}"]\n'
         if hall != _OFFICE:
             text += f'elsewhere = "{address(hall)}:{port}"\n'
-        text += f'[court.{name}.referee]\ntoken = "{new_token()}"\n'
     text += f"""[stage.groups]
 format = "round-robin"
 groups = {halls}

@@ -30,7 +30,8 @@ from lacoc_client.referee import RefereeClient
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.codec import decode
-from lacoc_shared.contest.file import Court, load
+from lacoc_shared.contest.file import load
+from lacoc_shared.contest.secrets import Secrets
 from lacoc_shared.decisions import Adjust, Decision, Declare, Halt, Official, Resume, Start
 from lacoc_shared.messages import DecisionReply, Frame
 from lacoc_shared.mistakes import UserError
@@ -109,13 +110,14 @@ class _Trial:
         self._seen: dict[int, Frame] = {}
 
     def run(self) -> None:
-        name, court = load(self._contest).court()
+        plan = load(self._contest)
+        name, court = plan.court()
         with ExitStack() as stack:
             stack.callback(self._stop)
             self._serve()
             session = stack.enter_context(open_client([court.address()], timeout_s=WAIT_S))
-            self._controllers = _controllers(session, name, court)
-            self._referee = RefereeClient(session, name, court.referee.token)
+            self._controllers = _controllers(session, name, plan.secrets)
+            self._referee = RefereeClient(session, name, plan.secrets.referee(name))
             for phase in PLAN:
                 self._reach(phase)
                 self._wait(self._chance.uniform(0, MOST_DELAY_S))
@@ -124,9 +126,9 @@ class _Trial:
         self._check_record()
 
     def _serve(self) -> None:
-        words = ["serve", "--json", "--contest", str(self._contest)]
+        words = [str(self._contest), "--json"]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "lacoc_shared", *words, "--recordings", str(self._folder)],
+            [sys.executable, "-m", "benchmarks.alone", *words, "--recordings", str(self._folder)],
             stdout=subprocess.PIPE,
             text=True,
         )
@@ -265,13 +267,13 @@ class _Trial:
             figures.not_same.append(render(verdict.said))
 
 
-def _controllers(session: Session, name: str, court: Court) -> list[Controller]:
+def _controllers(session: Session, name: str, secrets: Secrets) -> list[Controller]:
     end_s = time.monotonic() + WAIT_S
     while True:
         try:
             controllers = [
-                Controller(session, name, seat, holder.token, f"Team {seat}")
-                for seat, holder in court.seat.items()
+                Controller(session, name, seat, secrets.seat(name, seat), f"Team {seat}")
+                for seat in ("left", "right")
             ]
             break
         except UserError:
@@ -289,9 +291,6 @@ def _contest() -> str:
 arena = "othello"
 listen = ["tcp/127.0.0.1:{port}"]
 settings.match.countdown_s = 0.7
-seat.left.token = "the token of left"
-seat.right.token = "the token of right"
-referee.token = "the token of the referee"
 """
 
 

@@ -58,7 +58,7 @@ def killed(kills: int, seed: int = 0) -> tuple[int, Counter[str]]:
         folder.mkdir()
         temporary.mkdir()
         environment = {**os.environ, "TMPDIR": str(temporary), "HOME": str(folder)}
-        _run(["contest", "init", str(folder / "contest.toml"), "--event"], folder, environment)
+        _run(["contest", "init", str(folder / "contest.toml")], folder, environment)
         commands = _commands(folder)
         for _ in range(kills):
             name = dice.choice([*commands])

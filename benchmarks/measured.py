@@ -29,6 +29,7 @@ from lacoc_server.match.entry import Admission
 from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
+from lacoc_shared.messages.office import open_match
 from lacoc_shared.seat import Phase
 
 NAME = "measured"
@@ -84,14 +85,15 @@ def measured_court(name: str = NAME) -> Iterator[Measured]:
     keys = Keys(name)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), loaded.match.open_levels)
-    hashes = {seat: hash_token(token) for seat, token in tokens.items()}
-    inbox = Inbox(keys, list(tokens), hashes, admission, secrets.token_bytes)
+    opened = open_match({seat: [hash_token(token)] for seat, token in tokens.items()})
+    inbox = Inbox(keys, list(tokens), admission, secrets.token_bytes)
     desk = DecisionDesk([hash_token(referee)])
     with (
         tempfile.TemporaryDirectory() as folder,
         CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, desk) as network,
     ):
-        court = MeasuredCourt(CourtSettings(name, loaded, {}, Path(folder)), network)
+        settings = CourtSettings(name, loaded, {}, Path(folder), assigned=opened)
+        court = MeasuredCourt(settings, network)
         yield Measured(court, inbox, network.locators[0], tokens, referee)
 
 

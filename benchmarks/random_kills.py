@@ -26,6 +26,7 @@ from lacoc_client.asking import NoCourt, NotNow
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared.contest.file import load
+from lacoc_shared.contest.secrets import Secrets
 from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
@@ -78,11 +79,14 @@ def run(
     contest.write_text(_contest(), encoding="utf-8")
     records = folder / "recordings"
     of_contest = ("--contest", str(contest))
+    served = (str(contest), "--recordings", str(records))
+    plan = load(contest)
+    secrets, where = plan.secrets, ("--connect", plan.courts["main"].address())
     services = [
-        _Service("court", folder, cores, "serve", *of_contest, "--recordings", str(records)),
+        _Service("court", folder, cores, *served, module="benchmarks.alone"),
         _Service("gateway", folder, cores, "web", *of_contest, "--listen", "127.0.0.1:0"),
         *(
-            _Service(seat, folder, cores, "bot", bot, "--seat", seat, *of_contest, *_WAIT)
+            _Service(seat, folder, cores, "bot", bot, *where, *_seat(secrets, seat), *_WAIT)
             for seat, bot in (("left", "planner"), ("right", "nearest"))
         ),
         _Service("referee", folder, cores, "--referee", str(contest), module=__spec__.name),
@@ -108,6 +112,10 @@ def run(
             kills[service.name] += 1
     same, not_same = _verify(records)
     return {"kills": dict(kills), "ended": ended, "same": same, "not_same": not_same}
+
+
+def _seat(secrets: Secrets, seat: str) -> tuple[str, ...]:
+    return "--token", secrets.seat("main", seat)
 
 
 class _Service:
@@ -163,12 +171,13 @@ def _allow_cores() -> None:
 
 def _referee(contest: Path) -> None:
     """Be the referee: make the decisions that let matches go on, until this process is killed."""
-    name, court = load(contest).court()
+    plan = load(contest)
+    name, court = plan.court()
     while True:
         try:
             with open_client([court.address()]) as session:
                 view = Spectator(session, name)
-                hand = RefereeClient(session, name, court.referee.token)
+                hand = RefereeClient(session, name, plan.secrets.referee(name))
                 while view.silent_s(time.monotonic()) < _END_S:
                     view.wait_frame(0.1)
                     legal = {} if view.health is None else view.health.decisions
@@ -211,9 +220,6 @@ def _contest() -> str:
 arena = "othello"
 listen = ["tcp/127.0.0.1:{port}"]
 settings.match = {{ duration_s = 20, countdown_s = 0.7 }}
-seat.left.token = "the token of left"
-seat.right.token = "the token of right"
-referee.token = "the token of the referee"
 """
 
 

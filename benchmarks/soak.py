@@ -137,7 +137,7 @@ def soak(
         where = ("--connect", opened.address)
         processes = {"court": opened.process}
         for seat, bot in (("left", "planner"), ("right", "nearest")):
-            join = ("bot", bot, "--seat", seat, "--token", opened.tokens[seat], *where)
+            join = ("bot", bot, "--token", opened.tokens[seat], *where)
             processes[f"bot {seat}"] = stack.enter_context(started(LACOC, *join))
         gateway = stack.enter_context(started(LACOC, "web", "--json", *where))
         processes["gateway"] = gateway

@@ -220,7 +220,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
         folder = Path(name)
         file = folder / "contest.toml"
-        subprocess.run([*_COMMAND, "contest", "init", str(file), "--event"], check=True, stdout=-3)
+        subprocess.run([*_COMMAND, "contest", "init", str(file)], check=True, stdout=-3)
         text = file.read_text().replace("0.0.0.0:7447", f"127.0.0.1:{free_port()}")
         file.write_text(text)
         office = stack.enter_context(
@@ -245,7 +245,7 @@ def main() -> int:
         hush(court)
         for seat in ("left", "right"):
             where = ("--connect", place["locators"][0], "--token", place["tokens"][seat])
-            hush(stack.enter_context(started(LACOC, "bot", "planner", "--seat", seat, *where)))
+            hush(stack.enter_context(started(LACOC, "bot", "planner", *where)))
         watching = threading.Thread(target=_memory, args=(peaks, ended))
         watching.start()
         where = ("--connect", place["locators"][0], "--token", place["referee"])

@@ -92,8 +92,7 @@ def watched(direct: int, pages: int, courts: int, seconds: float, rounds: int) -
 
 def _entry(opened: dict[str, Any]) -> str:
     """Return a court's part of the contest file."""
-    where = f'[court.{opened["name"]}]\narena = "othello"\nlisten = ["{opened["address"]}"]\n'
-    return f'{where}referee.token = "{opened["referee"]}"\n'
+    return f'[court.{opened["name"]}]\narena = "othello"\nlisten = ["{opened["address"]}"]\n'
 
 
 def _round(courts: Sequence[subprocess.Popen[str]], seconds: float) -> dict[str, float]:

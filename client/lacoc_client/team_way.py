@@ -1,20 +1,20 @@
-"""A team's way through a contest: with its one token it asks where it plays, again and again."""
+"""The way of a token: it asks a court where its seat is, in a contest again and again."""
 
 import time
 from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
-from lacoc_client.asking import NoCourt, NotNow, Patience, ask, fetch, understand
+from msgspec.structs import replace
+
+from lacoc_client.asking import NoCourt, NotNow, Patience, ask
 from lacoc_client.spectator import Spectator
 from lacoc_shared.contest.access import Access
 from lacoc_shared.keyspace import EVERY_COURT, Keys
-from lacoc_shared.messages import Sheet
 from lacoc_shared.messages.office import Where, Whereabouts
-from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import Phrase, say
+from lacoc_shared.words import Phrase
 
 _SOON_S, _LATER_S = 0.5, 2.0
 """Time between two questions: while the team may be called at once, and otherwise."""
@@ -39,40 +39,30 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
     return ask(session, keys, keys.where, Where(token=token), Whereabouts)
 
 
-def office_court(session: Session, court: str, *, any_court: bool) -> str:
-    """Find the court to ask, and check that it has an office; return its name.
+def _court_at(session: Session, court: str, *, any_court: bool) -> str:
+    """Return the name of the court to ask.
 
     Args:
         session: a connection to the court.
         court: the court's name.
         any_court: whether nobody named the court, so that any court at this address will do.
-
-    Raises:
-        NoCourt: if there is no court.
-        UserError: if the court has no office.
     """
-    if any_court:
-        there = [key.split("/")[1] for key in session.present(EVERY_COURT)]
-        court = court if court in there else next(iter(there), court)
-    keys = Keys(court)
-    sheet = understand(fetch(session, keys, keys.sheet), Sheet)
-    if sheet.fixture is None:
-        raise UserError(say("contest.which-seat", seats=[seat.id for seat in sheet.seats]))
-    return court
+    there = [key.split("/")[1] for key in session.present(EVERY_COURT)] if any_court else []
+    return court if court in there else next(iter(there), court)
 
 
 class TeamWay:
-    """Leads a team from court to court; used as a context manager.
+    """Leads a team to its seat, and from court to court; used as a context manager.
 
     Args:
-        access: the way to any court of the contest, with the team's token.
+        access: the way to any court of the event, with the token.
         any_court: whether nobody named the court, so that whichever is at the address is asked.
         patience: how long to wait for the first answer.
         tell: told what is next, as often as it changes.
         stopping: returns whether somebody asked the program to end.
 
     Raises:
-        UserError: if there is no such court, it has no office, or no team has the token.
+        UserError: if there is no such court, or the token opens nothing.
     """
 
     def __init__(
@@ -94,9 +84,7 @@ class TeamWay:
             lambda: open_client(access.addresses, authority=access.authority)
         )
         try:
-            self._court = patience.until(
-                lambda: office_court(self._session, access.court, any_court=any_court)
-            )
+            self._court = _court_at(self._session, access.court, any_court=any_court)
             self._newest = patience.until(self._ask)
         except BaseException:
             self._session.close()
@@ -130,6 +118,8 @@ class TeamWay:
             if there.state in ("out", "over"):
                 self._say(there.said)
                 return None
+            if there.open:
+                return there
             if there.state == "court" and there.call != self._past:
                 self._say(there.said)
                 return there
@@ -150,13 +140,10 @@ class TeamWay:
 
     def access(self, there: Whereabouts) -> Access:
         """Return the way to the seat to which the team is called."""
-        return Access(
-            court=there.court,
-            connect=there.address,
-            seat=there.seat,
-            token=self._access.token,
-            authority=self._access.authority,
-        )
+        own = self._access
+        if there.address:
+            own = Access(court=there.court, connect=there.address, authority=own.authority)
+        return replace(own, court=there.court).of_seat(there.seat, self._access.token)
 
     def _ask(self) -> Whereabouts:
         return where(self._session, self._court, self._access.token)

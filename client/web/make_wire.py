@@ -156,6 +156,7 @@ DESK_STRUCTS = (
     desk.Said,
     links.TeamLink,
     links.RefereeLink,
+    links.SeatLink,
     links.Links,
     scores.CourtScore,
 )

@@ -168,13 +168,13 @@ def contest(folder: Path, open_page: Open) -> None:
         court = place.court("--seconds", "180")
         place.web()
         play = Contestant(open_page, place.url, viewport=LAPTOP)
-        play.page.goto(f"{place.url}/play#key={place.key}")
+        play.page.goto(f"{place.url}/play#token={TOKENS['left']}")
         play.join(TOKENS["left"], "Ants")
         play.stands("seated")
         play.page.get_by_role("button", name="Ready").click()
         bot(court.opened["locators"][0], "right", "planner", "Bees")
         referee = open_page()
-        referee.goto(f"{place.url}/referee#key={place.key}")
+        referee.goto(f"{place.url}/referee")
         referee.locator("input[name=by]").fill("Kim")
         referee.locator("input[name=token]").fill(REFEREE)
         referee.locator(".enter button[type=submit]").click()
@@ -231,7 +231,7 @@ def venue(
         place.contest.write_text(place.contest.read_text("utf-8").replace("othello", arena))
 
         def bot(address: str, seat: str, name: str, team: str) -> None:
-            where = ("--connect", address, "--seat", seat, "--token", TOKENS[seat])
+            where = ("--connect", address, "--token", TOKENS[seat])
             process = subprocess.Popen(
                 [*COMMAND, "bot", name, "--name", team, *where],
                 stdout=subprocess.DEVNULL,

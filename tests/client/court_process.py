@@ -42,7 +42,7 @@ class CourtProcess:
         """Return the options that connect a command to the court, and to a seat if one is named."""
         if not seat:
             return ["--connect", self.address]
-        return ["--connect", self.address, "--seat", seat, "--token", self.tokens[seat]]
+        return ["--connect", self.address, "--token", self.tokens[seat]]
 
     def start(self, *words: str, **options: Any) -> Lacoc:
         """Start a command; `close` ends it together with the court."""

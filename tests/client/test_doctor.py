@@ -49,10 +49,7 @@ def look(
 
 def contest(folder: Path, port: int) -> str:
     path = folder / "contest.toml"
-    path.write_text(
-        f'[court.main]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{port}"]\n'
-        'referee.token = "the token of the referee"\n'
-    )
+    path.write_text(f'[court.main]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{port}"]\n')
     return str(path)
 
 
@@ -237,8 +234,7 @@ def test_a_contest_that_does_not_run_yet(
     file = contest(tmp_path, free_port())
     assert look(capsys, tmp_path, "--contest", file)["court main"]["status"] == "note"
     text = Path(file).read_text()
-    office = '[office]\ntoken = "the token of the office"\n'
-    Path(file).write_text(f'{text}elsewhere = "tcp/127.0.0.1:{free_port()}"\n{office}')
+    Path(file).write_text(f'{text}elsewhere = "tcp/127.0.0.1:{free_port()}"\n')
     found = look(capsys, tmp_path, "--contest", file)["court main"]
     assert (found["status"], found["found"].count("tcp/")) == ("note", 2)
 

@@ -18,7 +18,8 @@ from lacoc_client.doctor.machine import Finding, Status
 from lacoc_client.doctor.pages import _reached, pages, plain_courts
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import PageFiles
-from lacoc_client.gateway.site import Health, page_routes
+from lacoc_client.gateway.health import Health
+from lacoc_client.gateway.site import page_routes
 from lacoc_shared.contest import file as contests
 from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import Phrase
@@ -158,7 +159,6 @@ def test_courts_in_plain_text_are_noted(tmp_path: Path) -> None:
     text = '[contest]\npages = "{}"\n'
     for name, listen in (("open", "0.0.0.0:7447"), ("closed", "127.0.0.1:7448")):
         text += f'[court.{name}]\narena = "othello"\nlisten = ["{listen}"]\n'
-        text += f'referee.token = "the whistle of {name}"\n'
     for address, noted in (("https://x.example", ["open"]), ("http://x.example", [])):
         plan = contests.loads(text.format(address).encode(), tmp_path / "contest.toml")
         notes = [*plain_courts(plan.public, plan.courts)]

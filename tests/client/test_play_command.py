@@ -259,7 +259,7 @@ def quiet_court(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CourtProce
 
 
 def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
-    given = {"connect": court.address, "seat": "left", "token": court.tokens["left"]} | changes
+    given = {"connect": court.address, "token": court.tokens["left"]} | changes
     return [word for name, value in given.items() for word in (f"--{name}", value)]
 
 
@@ -268,13 +268,11 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
     ("changes", "expected"),
     [
         ({"token": "not-the-token-of-it"}, "token"),
-        ({"seat": "middle"}, 'has no seat "middle". Its seats are left and right.'),
         ({"court": "centre"}, 'There is no court "centre" at'),
         ({"connect": "tcp/127.0.0.1:1"}, "No program answers at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, '"my court" is not an address.'),
         ({"name": "x" * 25}, "1 to 24 characters that can be seen"),
         ({"robot": "centipede"}, "centipede"),
-        ({"contest": "missing.toml"}, "missing.toml"),
     ],
 )
 def test_a_wrong_start_is_one_clear_message(

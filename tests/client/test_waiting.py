@@ -78,7 +78,7 @@ def test_a_court_that_is_opened_later_is_found() -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [("bot", "straight", "--seat", "left", "--token", "x"), ("referee", "start", "--token", "x")],
+    [("bot", "straight", "--token", "x"), ("referee", "start", "--token", "x")],
     ids=["bot", "referee"],
 )
 def test_services_take_the_option(

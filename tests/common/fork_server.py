@@ -8,6 +8,7 @@ is closed.
 
 import contextlib
 import gc
+import importlib
 import importlib.metadata
 import json
 import os
@@ -16,6 +17,7 @@ import signal
 import socket
 import struct
 import sys
+from pathlib import Path
 
 from lacoc_shared.command.cli import main
 
@@ -67,7 +69,11 @@ def serve(door: socket.socket) -> int:
                     own.close()
                 for number in (status, *waiting.values()):
                     os.close(number)
-                become(json.loads(data), streams)
+                request = json.loads(data)
+                become(request, streams)
+                if request["module"] != "lacoc_shared":
+                    sys.path.append(str(Path(__file__).parents[2]))
+                    return importlib.import_module(request["module"]).main()
                 return main()
             waiting[pid] = status
             for number in streams:

@@ -18,6 +18,8 @@ from typing import Any
 
 COMMAND = (sys.executable, "-m", "lacoc_shared")
 """The command line that starts `lacoc` in a new interpreter, as users do."""
+ALONE = "alone"
+"""First word of a command line for `benchmarks.alone`: a court that is started alone."""
 
 _SERVER = Path(__file__).with_name("fork_server.py")
 _STATUS = struct.Struct("i")
@@ -32,7 +34,7 @@ class Lacoc(subprocess.Popen[Any]):
     _status = -1
 
     def __init__(self, *words: str, **options: Any) -> None:
-        super().__init__([*COMMAND, *words], **options)
+        super().__init__(command_line(words), **options)
 
     if hasattr(socket, "send_fds"):  # Windows lacks it and starts a new interpreter
 
@@ -40,6 +42,7 @@ class Lacoc(subprocess.Popen[Any]):
             folder, environment = options[4:6]
             pipes = options[9:15]
             request = {
+                "module": args[2],
                 "words": args[len(COMMAND) :],
                 "folder": str(Path(folder or ".").absolute()),
                 "environment": dict(os.environ if environment is None else environment),
@@ -75,10 +78,17 @@ class Lacoc(subprocess.Popen[Any]):
             return self.returncode
 
 
+def command_line(words: Sequence[str]) -> list[str]:
+    """Return the whole command line of a `lacoc` command, or of a court that is started alone."""
+    if words[:1] == (ALONE,):
+        return [sys.executable, "-m", "benchmarks.alone", *words[1:]]
+    return [*COMMAND, *words]
+
+
 def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
     """Start a `lacoc` command; the words of `before`, if any, precede it on the command line."""
     if before:
-        return subprocess.Popen([*before, *COMMAND, *words], **options)
+        return subprocess.Popen([*before, *command_line(words)], **options)
     return Lacoc(*words, **options)
 
 

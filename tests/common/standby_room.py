@@ -12,7 +12,6 @@ from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.stand_ins import stand_in
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.facts import Called, Entered, Played, generation, new
 from lacoc_server.contest.standby.door import StandbyDoor
 from lacoc_server.contest.standby.following import Follower
@@ -20,35 +19,29 @@ from lacoc_server.contest.standby.messages import AnyAsk
 from lacoc_server.contest.standby.other import NotThere, Other
 from lacoc_server.contest.standby.sealing import Sealing
 from lacoc_server.contest.standby.tenure import Tenure
-from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.record.files import packed_path, segment_path
 
 T = TypeVar("T")
 FILE = """
-[office]
-token = "{office}"
 [standby]
 office = "127.0.0.1:{port}"
-token = "{standby}"
 [stage.cup]
 format = "round-robin"
 [court.north]
 arena = "othello"
 listen = ["127.0.0.1:0"]
-referee.token = "{referee}"
 """
 PLAYED, OPEN = "20260501-100000-north-001", "20260501-100100-north-002"
 """Matches: one that was played and packed, and one in play."""
 
 
 def contest_text(port: int = 7446) -> str:
-    """Return a contest file with fresh tokens.
+    """Return a contest file.
 
     Args:
         port: where the office lets the second machine copy.
     """
-    tokens = {name: new_token() for name in ("office", "standby", "referee")}
-    return FILE.format(port=port, **tokens)
+    return FILE.format(port=port)
 
 
 def entry(bot: str) -> Entry:
@@ -69,10 +62,13 @@ class OfficeRoom:
     Args:
         folder: its folder; it is made.
         text: the contest file.
+        secrets: a file of tokens to begin with; None: it makes its own.
     """
 
-    def __init__(self, folder: Path, text: str) -> None:
+    def __init__(self, folder: Path, text: str, secrets: Path | None = None) -> None:
         folder.mkdir()
+        if secrets is not None:
+            shutil.copy(secrets, folder)
         self.file = folder / "contest.toml"
         self.file.write_text(text)
         self.where = ContestFolder(self.file)
@@ -81,7 +77,7 @@ class OfficeRoom:
         self.store = self.stack.enter_context(FactStore(self.where.facts))
         self.applications = self.stack.enter_context(Applications(self.where.applications))
         assert self.where.contest.standby is not None
-        self.sealing = Sealing(self.where.contest.standby.token)
+        self.sealing = Sealing(self.where.contest.secrets.standby)
         self.tenure = Tenure(self.where, generation(self.store.facts()))
         self.door = self.stack.enter_context(
             StandbyDoor(self.where, self.tenure, self.applications, self.sealing)
@@ -96,9 +92,8 @@ class OfficeRoom:
     def fill(self) -> None:
         """Keep something of everything."""
         files = {team: self.where.entries.save(entry(team)) for team in ("Ann", "Bob")}
-        tokens = TeamTokens(self.where.tokens)
         for team in files:
-            tokens.of(team)
+            self.where.contest.secrets.team(team)
         EventCode(self.where.event_code, "first").change()
         stand_in(self.where.stand_ins, "north")
         self.applications.put("Cat", entry("Cat"))
@@ -163,9 +158,10 @@ class Near(Other):
 
 
 def second(room: OfficeRoom, folder: Path) -> ContestFolder:
-    """Make the folder of the second machine, which has nothing but the contest file."""
+    """Make the folder of the second machine, which has the contest file and its secrets."""
     folder.mkdir()
-    shutil.copy(room.file, folder / "contest.toml")
+    for path in (room.file, room.where.secrets):
+        shutil.copy(path, folder)
     return ContestFolder(folder / "contest.toml")
 
 

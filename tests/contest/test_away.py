@@ -25,13 +25,10 @@ from lacoc_shared.record.reader import Record
 CONTEST = """
 [contest]
 name = "Away"
-[office]
-token = "token-of-the-office"
 [court.blue]
 arena = "othello"
 listen = ["127.0.0.1:{here}"]
 elsewhere = "tcp/127.0.0.1:{there}"
-referee.token = "token-of-the-referee"
 [stage.final]
 format = "single-knockout"
 games = 3
@@ -97,7 +94,9 @@ def test_a_match_goes_on_here_if_its_machine_is_gone(tmp_path: Path, processes: 
     for team, bot in {"Ann": "straight", "Bob": "nearest"}.items():
         organiser.enter(file, team, None, bot, "")
     there.mkdir()
+    ContestFolder(file).contest.secrets.referee("blue")
     shutil.copy(file, there)
+    shutil.copy(ContestFolder(file).secrets, there)
 
     office = start(processes, "contest", "run", str(file), "--until-over", "--speed", SPEED)
     words = ("--contest", str(there / "contest.toml"), "--speed", SPEED)

@@ -13,7 +13,6 @@ from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Closed, Drawn, Played, Withdrawn, new
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -23,8 +22,6 @@ from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.whereabouts import Known, Pace
 from lacoc_server.contest.verify.history import check_history
 from lacoc_shared.codec import encode
-from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import Refusal, SentFile
 from lacoc_shared.messages.desk import (
@@ -60,18 +57,14 @@ from lacoc_shared.words import say
 NOW_MS = 1_800_000_000_000
 KEY, CODE = "organiser", "K7QM3X"
 _FILE = """
-[office]
-token = "{token}"
 [stage.cup]
 format = "round-robin"
 [court.north]
 arena = "othello"
 listen = ["127.0.0.1:0"]
-referee.token = "{referee}"
 [court.south]
 arena = "othello"
 listen = ["127.0.0.1:0"]
-referee.token = "{other}"
 """
 
 
@@ -88,16 +81,15 @@ class Room:
 
     def __init__(self, folder: Path, more: str = "") -> None:
         self.file = folder / "contest.toml"
-        tokens = {name: new_token() for name in ("token", "referee", "other")}
-        self.file.write_text(_FILE.format(**tokens) + more)
+        self.file.write_text(_FILE + more)
         self.where = ContestFolder(self.file)
         self.store = FactStore(self.where.facts)
         note_plans(self.store, self.where.plans)
         self.applications = Applications(self.where.applications)
-        self.tokens = TeamTokens(self.where.tokens)
+        self.secrets = self.where.contest.secrets
         code = EventCode(self.where.event_code, CODE)
         store = FactStore(self.where.facts)
-        self.book = Book(self.where, store, self.applications, self.tokens, code)
+        self.book = Book(self.where, store, self.applications, code)
         courts = {"north": Seen(NOW_MS), "south": Seen(NOW_MS)}
         known = Known(courts, Pace(NOW_MS, 60_000), {})
         self.desk = Desk(self.book, KEY, lambda: known)
@@ -383,7 +375,7 @@ def test_a_stage_waits_for_the_organiser_s_draw(over: Room) -> None:
 
     If a correction has changed the teams meanwhile, nothing is drawn.
     """
-    office = Office(over.store, over.where.entries, over.tokens.of, {}, {})
+    office = Office(over.store, over.where.entries, over.secrets.team, {}, {})
     office.step()
     assert [view.name for view in office.contest.stages] == ["cup"]
     assert not office.over
@@ -414,7 +406,7 @@ def test_a_first_stage_can_wait_too(tmp_path: Path) -> None:
     room.where = ContestFolder(room.file)
     note_plans(room.store, room.where.plans)
     room.enter("Ann", "Ben")
-    office = Office(room.store, room.where.entries, room.tokens.of, {}, {}, draw_from_ms=None)
+    office = Office(room.store, room.where.entries, room.secrets.team, {}, {}, draw_from_ms=None)
     office.step()
     assert room.view.to_draw is None, "entries are open"
     room.ask(CloseEntries(secret=KEY))
@@ -463,7 +455,7 @@ def test_a_referee_sees_what_comes_and_what_a_result_changes(room: Room) -> None
     """The token of a court's referee shows the court's next games and the effect of a result."""
     room.enter("Ann", "Ben", "Cyd", "Dan")
     room.draw()
-    token = room.where.contest.courts["north"].referee.token
+    token = room.secrets.referee("north")
     assert room.ask(CourtDay(secret="x", court="north")) == Refusal(say("refused.no-referee-token"))
     assert room.ask(CourtDay(secret=token, court="south")) == Refusal(
         say("refused.no-referee-token")
@@ -516,16 +508,28 @@ def test_an_unchanged_view_is_not_sent_again(room: Room) -> None:
     assert answer.view is None
 
 
+def test_the_organiser_gets_the_tokens_of_open_seats(tmp_path: Path) -> None:
+    """In a contest with a stage of open matches each seat of each court has a token."""
+    room = Room(tmp_path, '[stage.friendly]\nformat = "open"\n')
+    answer = room.ask(Tokens(secret=KEY))
+    assert isinstance(answer, TokenList)
+    assert [(one.court, one.seat, one.token) for one in answer.seats] == [
+        (court, seat, room.secrets.seat(court, seat))
+        for court in ("north", "south")
+        for seat in ("left", "right")
+    ]
+
+
 def test_tokens_are_for_the_organiser_alone(room: Room) -> None:
     """The organiser gets the tokens of all teams of people and of referees; others get none."""
     room.enter("Ants")
     organiser.enter(room.file, "Bots", None, "planner", "")
     answer = room.ask(Tokens(secret=KEY))
     assert isinstance(answer, TokenList)
-    assert answer.teams == {"Ants": room.tokens.of("Ants")}
-    courts = contests.load(room.file).courts
-    assert answer.referees == {name: court.referee.token for name, court in courts.items()}
-    for secret in ("", CODE, room.tokens.of("Ants")):
+    assert answer.teams == {"Ants": room.secrets.team("Ants")}
+    assert answer.referees == {name: room.secrets.referee(name) for name in ("north", "south")}
+    assert answer.seats == ()
+    for secret in ("", CODE, room.secrets.team("Ants")):
         assert said(room.ask(Tokens(secret=secret))) == "desk.not-organiser"
 
 
@@ -536,13 +540,13 @@ def test_a_token_of_the_command_is_known_at_once(room: Room) -> None:
     own = room.ask(Own(secret=token))
     assert isinstance(own, OwnEntry)
     assert (own.team, own.state) == ("Ants", "in")
-    assert room.tokens.of("Ants") == token
+    assert room.secrets.team("Ants") == token
 
 
 def test_roles_hold(room: Room) -> None:
     """No role can do what only another role may do; after many wrong tokens one must wait."""
     room.enter("Ants", "Bees")
-    token = room.tokens.of("Ants")
+    token = room.secrets.team("Ants")
     before = (room.facts, room.applications.waiting)
     organisers = [
         Overview,

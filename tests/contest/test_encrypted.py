@@ -16,19 +16,15 @@ from lacoc_server.contest.certificate import make_certificate
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.live import venue
 from lacoc_server.contest.organiser import enter
-from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.network.session import open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import IN_PLAY, Phase
 
 CONTEST = """
-[office]
-token = "the token of the office"
 [court.north]
 arena = "othello"
 listen = ["127.0.0.1:{port}"]
-referee.token = "the whistle of north"
 [stage.league]
 format = "round-robin"
 arena = "othello"
@@ -69,7 +65,7 @@ def test_a_waiting_court_takes_a_renewed_certificate(file: Path, tmp_path: Path)
     """It starts again at the same port, and a client that was there comes back by itself."""
     opened = venue.court(ContestFolder(file), "north", tmp_path / "north", 1.0, print, here=True)
     with opened as at:
-        access = entrances.spectator_access(contests.load(file), None, None)
+        access = contests.load(file).access(contests.load(file).court()[0])
         with open_client(access.addresses, authority=access.authority) as session:
             view = Spectator(session, "north")
             before, court = serial(file, at), session.routers()
@@ -96,7 +92,7 @@ def test_a_renewal_disturbs_no_match(file: Path, tmp_path: Path) -> None:
         opened = json.loads(run.stdout.readline())
         at = opened["courts"]["north"]
         assert (at.partition("/")[0], opened["url"].partition(":")[0]) == ("tls", "https")
-        access = entrances.spectator_access(contests.load(file), None, None)
+        access = contests.load(file).access(contests.load(file).court()[0])
         with open_client(access.addresses, authority=access.authority) as session:
             view = Spectator(session, "north")
             until(lambda: view.poll() and view.frame and view.frame.phase in IN_PLAY)

@@ -9,14 +9,13 @@ from pathlib import Path
 
 import pytest
 from benchmarks import contest_played
-from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, TOKENS
+from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS
 
 from lacoc_client.film import contest as film_contest
 from lacoc_server.commands.contest.checking import NOT_PROVEN
 from lacoc_server.contest import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.facts import Closed, new
 from lacoc_server.contest.publish import GAMES, STANDINGS
 from lacoc_shared.mistakes import UserError
@@ -38,7 +37,8 @@ def files(folder: Path) -> dict[str, bytes]:
 def test_the_folder_has_no_token(copied: Path) -> None:
     """No file of the published folder has a token in its content or its name."""
     where = ContestFolder(copied)
-    secrets = [*TOKENS.values(), *(TeamTokens(where.tokens).of(team) for team in BOTS)]
+    kept = where.contest.secrets
+    secrets = [kept.office, kept.referee("main"), *map(kept.team, BOTS)]
     published = files(contest_played.publish(copied))
     for name, data in published.items():
         assert [one for one in secrets if one.encode() in data or one in name] == []

@@ -77,7 +77,7 @@ def test_everything_is_copied_and_stays_in_step(room: OfficeRoom, tmp_path: Path
         room.applications.drop("Cat")
         room.applications.put("Dan", entry("Dan"))
         room.where.stand_ins.unlink()
-        room.where.tokens.write_bytes(b"{}")
+        room.where.secrets.write_bytes(b"{}")
         follower.step()
         assert contents(where) == contents(room.where)
         room.play(2, OPEN)
@@ -88,7 +88,7 @@ def test_everything_is_copied_and_stays_in_step(room: OfficeRoom, tmp_path: Path
     with FactStore(where.facts) as store, Applications(where.applications) as applications:
         assert store.facts() == room.store.facts()
         assert applications.waiting == room.applications.waiting
-    assert stat.S_IMODE(os.stat(where.tokens).st_mode) == 0o600
+    assert stat.S_IMODE(os.stat(where.secrets).st_mode) == 0o600
 
 
 def test_a_copy_that_stops_at_any_moment_can_be_used(room: OfficeRoom, tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ class Restless(Near):
         answer = super().ask(request, kind)
         if isinstance(request, Step) and self.changes:
             self.changes -= 1
-            self.room.where.tokens.write_text(f'{{"Ann": "token {self.changes}"}}')
+            self.room.where.secrets.write_text(f'{{"Ann": "token {self.changes}"}}')
             self.room.store.append(new(Withdrawn, team="Ann", reason=str(self.changes)))
         return answer
 
@@ -138,6 +138,7 @@ class Restless(Near):
 def test_what_changes_in_a_step_is_copied_again(room: OfficeRoom, tmp_path: Path) -> None:
     """No fact is stored before all that was there when it was read has been copied whole."""
     where = second(room, tmp_path / "second")
+    where.secrets.unlink()
     restless = Restless(room)
     with following(where, restless) as follower:
         copy = follower.step()
@@ -145,7 +146,7 @@ def test_what_changes_in_a_step_is_copied_again(room: OfficeRoom, tmp_path: Path
     assert copy.facts == len(room.store.facts())
     assert contents(where) == contents(room.where)
     restless.changes = 100
-    room.where.tokens.write_text("{}")
+    room.where.secrets.write_text("{}")
     with following(where, restless) as follower, pytest.raises(UserError, match="again and again"):
         follower.step()
 
@@ -193,7 +194,7 @@ def test_a_contest_file_that_can_not_be_used_here_is_told(
         follower.step()
         assert capsys.readouterr().out.count("standby.bad-contest") == 1
         assert where.file.read_bytes() == before
-        assert where.tokens.exists()
+        assert where.secrets.exists()
         room.file.write_bytes(before + b"# later\n")
         follower.step()
         assert where.file.read_bytes() == before + b"# later\n"
@@ -219,11 +220,11 @@ def test_seals_open_with_the_token_for_their_purpose() -> None:
 def test_strangers_read_and_learn_nothing(room: OfficeRoom) -> None:
     """Without the token a request is refused; an answer shows no secret to whoever listens."""
     stranger = Sealing("the token of nobody")
-    asked = Part(generation=0, kind="file", name="tokens", offset=0)
+    asked = Part(generation=0, kind="file", name="secrets", offset=0)
     for payload in (b"", b"x" * 100, encode(asked), stranger.seal(encode(asked), REQUEST)):
         assert isinstance(room.door.judge(payload), Refusal)
     step = Step(generation=0, address="tcp/x:1", facts=0, last="", applications="")
-    secrets = [room.where.tokens.read_bytes(), room.where.event_code.read_bytes()]
+    secrets = [room.where.secrets.read_bytes(), room.where.event_code.read_bytes()]
     secrets += [token for secret in secrets for token in secret.split(b'"') if len(token) > 8]
     for one in (asked, step, replace(asked, name="contest")):
         answer = room.door.judge(room.sealing.seal(encode(one), REQUEST))
@@ -279,7 +280,7 @@ def test_a_move_of_the_office_changes_nothing_else() -> None:
 
 def test_an_office_that_comes_back_asks_first(room: OfficeRoom, tmp_path: Path) -> None:
     """A machine that knows who copied it finds the later office before it does anything."""
-    with OfficeRoom(tmp_path / "later", room.file.read_text()) as later:
+    with OfficeRoom(tmp_path / "later", room.file.read_text(), room.where.secrets) as later:
         later.store.append(new(TakenOver))
         later.tenure.generation = 1
         with DeskService(later.door.judge) as service:
@@ -329,11 +330,11 @@ def test_a_machine_takes_over_once(room: OfficeRoom, tmp_path: Path) -> None:
 def test_matches_that_no_call_knows_are_set_aside(room: OfficeRoom, tmp_path: Path) -> None:
     """No court goes on with a match that was called after the facts were copied.
 
-    A record without a header yet is left to the court.
+    A record without a header yet is left to the court, and so is an open match.
     """
     (*_, call) = (fact for fact in room.store.facts() if isinstance(fact, Called))
     records = tmp_path / "records"
-    for number, called in enumerate((call.id, "f99"), 1):
+    for number, called in enumerate((call.id, "f99", "open.1"), 1):
         assigned = Assigned(call=called, fixture=say("fixture.waiting"), seats=())
         setup = Setup(
             match_id=f"20260501-100000-north-00{number}",
@@ -356,6 +357,11 @@ def test_matches_that_no_call_knows_are_set_aside(room: OfficeRoom, tmp_path: Pa
         RecordWriter(records, header).leave()
     young = segment_path(records, OPEN, 0)
     young.write_bytes(b"no header")
-    kept, aside = sorted(path.name for path in records.iterdir() if path != young)
+    kept, aside, friendly = sorted(path.name for path in records.iterdir() if path != young)
     set_aside(records, room.store.facts())
-    assert {path.name for path in records.iterdir()} == {kept, f"{aside}.left", young.name}
+    assert {path.name for path in records.iterdir()} == {
+        kept,
+        f"{aside}.left",
+        friendly,
+        young.name,
+    }

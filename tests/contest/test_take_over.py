@@ -30,19 +30,14 @@ from lacoc_shared.record.reader import Record
 CONTEST = """
 [contest]
 name = "Two machines"
-[office]
-token = "token-of-the-office"
 [standby]
 office = "127.0.0.1:{door}"
-token = "token-of-the-standby"
 [court.blue]
 arena = "othello"
 listen = ["127.0.0.1:{blue}"]
-referee.token = "token-of-the-referee"
 [court.red]
 arena = "othello"
 listen = ["127.0.0.1:{red}"]
-referee.token = "token-of-red-referee"
 [stage.groups]
 format = "round-robin"
 settings.match = {{ duration_s = 24.0, countdown_s = 0.5, start = "ready" }}
@@ -102,6 +97,8 @@ def contest(folder: Path) -> Path:
 def second_machine(file: Path, folder: Path) -> Path:
     """Make the folder of the second machine; return its contest file."""
     folder.mkdir()
+    ContestFolder(file).contest.secrets.referee("blue")
+    shutil.copy(ContestFolder(file).secrets, folder)
     return Path(shutil.copy(file, folder))
 
 
@@ -152,7 +149,7 @@ def test_the_contest_goes_on_at_the_second_machine(tmp_path: Path, processes: Pr
     for process in everything_of(first):
         process.kill()
     before = facts(file)
-    tokens = ContestFolder(file).tokens.read_bytes()
+    tokens = ContestFolder(file).secrets.read_bytes()
     file.parent.rename(tmp_path / "gone")
 
     office = processes.start("run", second, "--take-over", *SPEED)
@@ -166,7 +163,7 @@ def test_the_contest_goes_on_at_the_second_machine(tmp_path: Path, processes: Pr
     moved = next(one for one in after if isinstance(one, TakenOver))
     copied = after[: moved.number - 1]
     assert copied == before[: len(copied)]
-    assert where.tokens.read_bytes() == tokens
+    assert where.secrets.read_bytes() == tokens
     assert not [one for one in after if isinstance(one, Recalled)]
     played = [one for one in after if isinstance(one, Played)]
     assert len({(one.pairing, one.game) for one in played}) == len(played) == 6

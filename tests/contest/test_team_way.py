@@ -3,6 +3,7 @@
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 from lacoc_process import run_lacoc, started
@@ -23,14 +24,11 @@ def write_contest(folder: Path) -> Path:
 [court.{name}]
 arena = "othello"
 listen = ["127.0.0.1:{free_port()}"]
-referee.token = "the whistle of {name}"
 """
         for name in ("north", "south")
     )
     file = folder / "contest.toml"
     file.write_text(f"""
-[office]
-token = "the token of the office"
 {courts}
 [stage.league]
 format = "round-robin"
@@ -49,33 +47,23 @@ settings.match.start = "ready"
 def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
     """With one token each, people and bots play all their matches, wherever they are called.
 
-    `lacoc play` is given only what `lacoc contest invite` printed. It says what comes next, plays
-    every match of its team on both courts, and ends when the contest is over.
+    `lacoc play` is given only the link that `lacoc contest invite` printed. It says what comes
+    next, plays every match of its team on both courts, and ends when the contest is over.
     """
-    file = write_contest(tmp_path)
-    invited = run_lacoc(
-        "contest", "invite", "--contest", str(file), "--json", "--host", "127.0.0.1"
-    )
-    lines = json.loads(invited.stdout)
-    assert list(lines) == list(PEOPLE)
+    file, port = write_contest(tmp_path), free_port()
+    pages = f'[contest]\npages = "http://127.0.0.1:{port}"\n'
+    file.write_text(file.read_text().replace("[contest]\n", pages))
+    invited = run_lacoc("contest", "invite", "--contest", str(file), "--json")
+    links = json.loads(invited.stdout)
+    assert list(links) == list(PEOPLE)
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    run = started("contest", "run", str(file), "--until-over", "--speed", "10", "--json", **streams)
+    words = ("contest", "run", str(file), "--listen", f"127.0.0.1:{port}", "--until-over")
+    run = started(*words, "--speed", "10", "--json", **streams)
     assert run.stdout is not None
     opened = json.loads(run.stdout.readline())
     assert list(opened["courts"]) == ["north", "south"]
-    players = []
-    for team in PEOPLE:
-        words = lines[team]["command"].split()[1:]
-        players.append(
-            started(
-                *words,
-                "--terminal",
-                "--ready",
-                stdin=subprocess.DEVNULL,
-                cwd=tmp_path,
-                **streams,
-            )
-        )
+    here: dict[str, Any] = {"stdin": subprocess.DEVNULL, "cwd": tmp_path, **streams}
+    players = [started("play", links[team], "--terminal", "--ready", **here) for team in PEOPLE]
     try:
         told = [player.communicate(timeout=LIMIT_S)[0] for player in players]
         end = json.loads(run.communicate(timeout=LIMIT_S)[0].splitlines()[-1])

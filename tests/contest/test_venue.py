@@ -11,13 +11,9 @@ from lacoc_server.contest.live import venue
 from lacoc_shared.words import Phrase, render
 
 COURT = """
-[office]
-token = "o-o-o-o-o-o-o"
 [court.red]
 arena = "othello"
 listen = ["127.0.0.1:{port}"]
-[court.red.referee]
-token = "r-r-r-r-r-r-r"
 """
 
 

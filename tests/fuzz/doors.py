@@ -36,6 +36,7 @@ from lacoc_shared.messages import (
     SeatRequest,
     SentFile,
 )
+from lacoc_shared.messages.office import open_match
 from lacoc_shared.seat import RESTART_KEY, Phase
 
 KEYS = Keys("main")
@@ -147,8 +148,11 @@ class Doors:
         self._session = _Session()
         real, court_network.open_court = court_network.open_court, lambda *_: self._session  # type: ignore[assignment,return-value]
         try:
-            self._inbox = Inbox(KEYS, SEATS, self._hashes, self._admission, bytes)
+            self._inbox = Inbox(KEYS, SEATS, self._admission, bytes)
             self._inbox._sessions = _Sessions(bytes)
+            self._inbox.admit(
+                open_match({seat: [one] for seat, one in self._hashes.items()}), (0, 1)
+            )
             self._desk = DecisionDesk([_hash(REFEREE)])
             self._network = CourtNetwork(KEYS, [], self._inbox, self._desk)
         finally:

@@ -151,19 +151,12 @@ legs_max = 6
 arena = "othello"
 listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]
 connect = "court.example.org:7448"
-seat.left.token = "left-token-of-main"
-seat.right.token = "right-token-of-main"
-referee.token = "referee-token-of-main"
 [court.main.settings.match]
 duration_s = 60.0
 levels = ["A", "B"]
 [court.second]
 arena = "games/tag"
 listen = ["0.0.0.0:7448"]
-[court.second.seat.runner]
-token = "runner-token-of-second"
-[court.second.referee]
-token = "referee-token-of-second"
 """
 
 
@@ -206,7 +199,7 @@ def write_found() -> None:
     write("robot", "found-deep-in-list", b"name = [{" + b"a." * 3000 + b"a = 1}]\n")
     write("robot", "found-dotted-key", b"a." * 15000 + b"a = 1\n")
     write("robot", "found-dotted-header", b"[" + b"a." * 15000 + b"a]\n")
-    base = b'[court.main]\narena = "othello"\nreferee.token = "abcdefghijklmnop"\n'
+    base = b'[court.main]\narena = "othello"\n'
     write("contest", "found-long-number", b"a = " + b"9" * 5000)
     write("contest", "found-deep", b"a = " + b"[" * 2000)
     write("contest", "found-nul-in-arena", base.replace(b"othello", b"a\\u0000/b"))

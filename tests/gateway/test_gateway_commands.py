@@ -75,11 +75,9 @@ def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
         assert stranger.welcome["prefill"] is None
     with PageClient(play.url, play.key) as page:
         assert page.welcome["home"] == "player"
-        assert page.welcome["prefill"] == {
-            "seat": "left",
-            "name": "Ants",
-            "has_token": True,
-        }
+        assert page.welcome["prefill"] == {"seat": "", "name": "Ants", "has_token": True}
+        there = page.ask("where", token=None)
+        assert (there["seat"], there["open"]) == ("left", True)
         assert page.files["locomotion"] == "LocoTra-data.txt"
         assert page.files["postures"] == page.files["robot"] == ""
         page.ask("join", seat="left", token=None, name="Ants")

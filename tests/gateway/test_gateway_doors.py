@@ -124,6 +124,12 @@ def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
         assert page.welcome["court"] == "main"
 
 
+def test_a_slash_at_the_end_leads_to_the_page(open_venue: Venue) -> None:
+    """The addresses on a page are relative, so it is shown without a slash."""
+    status, headers, _ = get(open_venue, "/play/?court=main")
+    assert (status, headers["Location"]) == (307, "../play?court=main")
+
+
 def test_without_a_token_a_page_only_watches(open_venue: Venue) -> None:
     """A page that shows no token can neither steer nor decide."""
     with PageClient(open_venue.url) as page:

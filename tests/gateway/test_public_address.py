@@ -256,7 +256,6 @@ def test_no_address_breaks(text: str) -> None:
 def test_a_contest_file_says_how_its_pages_are_reached(tmp_path: Path) -> None:
     """All mistakes about the public address are told at once; files stand beside the file."""
     text = '[contest]\npages = "{}"\n{}\n[court.main]\narena = "othello"\n'
-    text += 'referee.token = "the token of the referee"\n'
     file = tmp_path / "contest.toml"
     with pytest.raises(UserError) as refused:
         contests.loads(text.format("lacoc.example", 'proxies = ["caddy"]').encode(), file)

@@ -7,8 +7,9 @@ import subprocess
 from contextlib import ExitStack
 from pathlib import Path
 
+from contest_tokens import keep_tokens
 from court_process import environment
-from lacoc_process import Lacoc
+from lacoc_process import ALONE, Lacoc
 from page_client import PageClient
 from ports import free_port
 from waiting import LIMIT_S
@@ -63,21 +64,19 @@ class Venue:
         self.url = f"http://127.0.0.1:{self.web_port}"
         self.key = ""
         self.contest = folder / "contest.toml"
-        seats = "".join(f'[court.main.seat.{s}]\ntoken = "{t}"\n' for s, t in TOKENS.items())
         self.contest.write_text(
             f'[court.main]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{self.court_port}"]\n'
-            f'{seats}[court.main.referee]\ntoken = "{REFEREE}"\n'
         )
+        keep_tokens(self.contest, TOKENS, REFEREE)
 
     def court(self, *words: str) -> Process:
         """Start the court."""
-        contest = ("--contest", str(self.contest))
-        return self._started("serve", "--json", *contest, *words, name="court")
+        return self.started(ALONE, str(self.contest), "--json", *words, name="court")
 
     def web(self, *words: str) -> Process:
         """Start the gateway."""
         where = ("--contest", str(self.contest), "--listen", f"127.0.0.1:{self.web_port}")
-        web = self._started("web", "--json", *where, *words, name="web")
+        web = self.started("web", "--json", *where, *words, name="web")
         assert web.opened["url"] == self.url or "--pages" in words
         self.key = web.opened["key"]
         return web
@@ -101,7 +100,8 @@ class Venue:
         page.ask("enter", token=REFEREE, by=by)
         return page
 
-    def _started(self, *words: str, name: str) -> Process:
+    def started(self, *words: str, name: str) -> Process:
+        """Start a process; it ends with the test."""
         process = Process(self.folder, *words, name=name)
         self._stack.callback(process.close)
         return process

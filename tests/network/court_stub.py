@@ -4,7 +4,7 @@ import secrets
 import threading
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -33,6 +33,7 @@ from lacoc_shared.messages import (
     Sheet,
     SheetSeat,
 )
+from lacoc_shared.messages.office import open_match
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.network.certificate import Pair
 from lacoc_shared.seat import No, Phase
@@ -48,6 +49,16 @@ BOOK = SentFile("mine.xlsx", b"PK\x03\x04")
 """A workbook that nobody can read; it is refused as `WRONG` is."""
 SLOW = SentFile("slow.txt", b"20 20")
 """A file whose weighing in takes twenty beats."""
+
+
+_Inbox = TypeVar("_Inbox", bound=Inbox)
+
+
+def opened(inbox: _Inbox, hashes: Mapping[str, str] = HASHES) -> _Inbox:
+    """Open the seats of an inbox to everybody who has their tokens; return the inbox."""
+    match = open_match({seat: [one] for seat, one in hashes.items()})
+    inbox.admit(match, range(len(SEATS)))
+    return inbox
 
 
 class Scales:
@@ -105,7 +116,8 @@ class CourtStub:
     ) -> None:
         token_hashes = restored.pop("token_hashes", HASHES)
         self.scales = Scales()
-        inbox = Inbox(KEYS, SEATS, token_hashes, self.scales, secrets.token_bytes, **restored)
+        inbox = Inbox(KEYS, SEATS, self.scales, secrets.token_bytes, **restored)
+        opened(inbox, token_hashes)
         self._links = inbox.links
         self.beat = 0
         """The newest beat; its frame may not be sent yet."""

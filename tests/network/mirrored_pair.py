@@ -12,7 +12,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lacoc_process import Lacoc
+from contest_tokens import keep_tokens
+from lacoc_process import ALONE, Lacoc
 from page_client import PageClient
 from slow_link import SlowLink
 from waiting import LIMIT_S, until
@@ -47,9 +48,6 @@ input_delay = "{input_delay}"
 input_delay_max_ms = {most_ms}
 settings.match.duration_s = 3600.0
 settings.match.countdown_s = 0.1
-seat.left.token = "the token of left"
-seat.right.token = "the token of right"
-referee.token = "the token of the referee"
 """
 
 
@@ -235,9 +233,10 @@ def trips(health: Health) -> tuple[Trip, ...]:
 def _court(folder: Path, arena: str, input_delay: str, most_ms: int, stack: ExitStack) -> str:
     """Start a court that is stopped with the stack; return its address."""
     contest = folder / "contest.toml"
+    keep_tokens(contest, {seat: _TOKENS[seat] for seat in SEATS}, _TOKENS["the referee"])
     contest.write_text(_CONTEST.format(arena=arena, input_delay=input_delay, most_ms=most_ms))
-    words = ("--contest", str(contest), "--recordings", str(folder))
-    address: str = _started(stack, "serve", "--json", *words)["locators"][0]
+    words = (str(contest), "--json", "--recordings", str(folder))
+    address: str = _started(stack, ALONE, *words)["locators"][0]
     return address
 
 

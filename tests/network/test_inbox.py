@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 import pytest
-from court_stub import HASHES, KEYS, SEATS, TOKENS
+from court_stub import HASHES, KEYS, SEATS, TOKENS, opened
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -72,7 +72,7 @@ class Court(Inbox):
 
 
 def make(**more: Any) -> Court:
-    return Court(KEYS, SEATS, HASHES, check_files, secrets.token_bytes, **more)
+    return opened(Court(KEYS, SEATS, check_files, secrets.token_bytes, **more))
 
 
 def join_bytes(seat: int = LEFT, **changes: Any) -> bytes:
@@ -132,7 +132,7 @@ def test_a_join_waits_while_its_files_are_weighed_in() -> None:
     """While files are weighed in, the inbox returns a function that gives the outcome later."""
     whole = Join(protocol=PROTOCOL, token="", name="Blue", robot=CONTEST_ROBOT)
     answers = [None, None, (whole, ())]
-    inbox = Inbox(KEYS, SEATS, HASHES, lambda *_: answers.pop(0), secrets.token_bytes)
+    inbox = opened(Inbox(KEYS, SEATS, lambda *_: answers.pop(0), secrets.token_bytes))
     later = inbox.join(LEFT, join_bytes())
     assert callable(later)
     assert later() is None
@@ -149,7 +149,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
         if known:
             raise FileRefused([Mistake(file="robot.toml", found="a leap", expected="rest")])
 
-    inbox = Inbox(KEYS, SEATS, HASHES, weigh, secrets.token_bytes)
+    inbox = opened(Inbox(KEYS, SEATS, weigh, secrets.token_bytes))
     later = inbox.join(LEFT, join_bytes())
     assert callable(later)
     assert later() is None
@@ -248,7 +248,7 @@ def test_the_counts_of_refusals_are_the_teams_own() -> None:
 
 def test_a_seat_without_a_token_is_closed() -> None:
     """A seat that has no token in the contest can't be joined."""
-    inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)
+    inbox = opened(Inbox(KEYS, SEATS, check_files, secrets.token_bytes), {})
     assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
 
 
@@ -709,9 +709,10 @@ def test_an_assigned_seat_opens_for_its_team_alone() -> None:
         inbox.join(LEFT, join_bytes(token="Ants", locomotion=ants.locomotion)), JoinSeat
     )
     assert inbox.seated(LEFT).notes == ()
-    assert why_refused(inbox, TOKENS["left"]) == ("refused.wrong-token", False)
+    assert why_refused(inbox, TOKENS["left"]) == ("refused.other-match", True)
+    assert why_refused(inbox, "nobody") == ("refused.wrong-token", False)
     assert why_refused(inbox, "Bees") == ("refused.other-seat", True)
-    assert refusals(inbox) == {"wrong-token": 1, "other-match": 1}
+    assert refusals(inbox) == {"wrong-token": 1, "other-match": 2}
 
 
 def test_sessions_of_other_teams_end_with_the_next_assignment() -> None:
@@ -775,5 +776,5 @@ def test_nobody_joins_while_the_court_waits() -> None:
     inbox.admit(WAITING, [])
     for token in (TOKENS["left"], "Ants"):
         assert why_refused(inbox, token) == ("refused.waits-for-office", True)
-    inbox.admit(None, [])
+    opened(inbox)
     assert isinstance(inbox.join(LEFT, join_bytes()), JoinSeat)

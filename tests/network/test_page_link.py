@@ -66,7 +66,8 @@ def test_the_court_gets_the_frame_that_the_page_showed(court: CourtStub) -> None
                     await asyncio.sleep(0.005)
 
         way = Access(court="main", connect=court.address)
-        seat.join(wire.JoinAsk(id=1, seat="left", token=TOKENS["left"], name="Ants"), way)
+        ask = wire.JoinAsk(id=1, seat="left", token=TOKENS["left"], name="Ants")
+        seat.join(ask, way, lambda *_: None)
         await hears(lambda: court.beat > 60)
         await hears(lambda: court.network.seat_health(0.0)[0].session)
         seat.steer(wire.SawAsk(id=2, match=1, beat=17))

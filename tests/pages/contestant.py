@@ -32,9 +32,11 @@ class Contestant:
         self.url = url
         self.page: Page = open_page(**settings | options)
 
-    def open(self, path: str = "/play", key: str | None = None, query: str = "") -> None:
-        """Go to a path of the gateway; with `key`, the page key, the page may act."""
-        fragment = "" if key is None else f"#key={key}"
+    def open(
+        self, path: str = "/play", key: str | None = None, query: str = "", token: str = ""
+    ) -> None:
+        """Go to a path of the gateway, with the page key of its owner or with a token."""
+        fragment = f"#token={token}" if token else "" if key is None else f"#key={key}"
         self.page.goto(f"{self.url}{path}?q=low{query}{fragment}")
 
     def find(self, selector: str) -> Locator:
@@ -66,12 +68,14 @@ class Contestant:
     def phase(self, phase: Phase) -> None:
         self.sees(f'.score-bug .phase[data-phase="{int(phase)}"]')
 
-    def join(self, token: str, name: str = "Ants", seat: str = "left") -> None:
-        """Fill in the form for joining a match and send it."""
-        self.sees(".entrance .seat")
-        self.find(f".seats input[value={seat}]").check(force=True)
+    def join(self, token: str, name: str = "Ants") -> None:
+        """Type the token if the page asks for it; fill in the name and sit down."""
+        self.sees("#team-token, #join-name")
+        if self.find("#team-token").count():
+            self.page.fill("#team-token", token)
+            self.page.click("button[type=submit]")
+        self.sees(".own-seat")
         self.page.fill("#join-name", name)
-        self.page.fill("#join-token", token)
         self.page.click("button[type=submit]")
 
     def press(self, *keys: str) -> None:

@@ -39,12 +39,8 @@ TEXT = """
 [contest]
 name = "Tiny Cup"
 recordings = "recordings"
-[office]
-token = "o-o-o-o-o-o-o"
 [court.main]
 arena = "othello"
-[court.main.referee]
-token = "r-r-r-r-r-r-r"
 [stage.league]
 format = "round-robin"
 arena = "othello"

@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 from chromium import OpenPage
+from contest_tokens import keep_tokens
+from lacoc_process import ALONE
 from page_client import PageClient
 from playwright.sync_api import expect
 from ports import free_port
@@ -33,10 +35,10 @@ def write_contest(folder: Path, **settings: str) -> Path:
     parts = []
     for court, arena in zip(COURTS, ("othello", "flag-strike"), strict=True):
         parts += [f"[court.{court}]", f'arena = "{arena}"', settings.get(court, "")]
-        parts += [f'listen = ["tcp/127.0.0.1:{free_port()}"]', f'referee.token = "{REFEREE}"']
-        parts += [f'seat.{seat}.token = "{token}"' for seat, token in TOKENS.items()]
+        parts += [f'listen = ["tcp/127.0.0.1:{free_port()}"]']
     file = folder / "contest.toml"
     file.write_text("\n".join(parts) + "\n")
+    keep_tokens(file, TOKENS, REFEREE, COURTS)
     return file
 
 
@@ -49,12 +51,16 @@ def running(
     with ExitStack() as stack:
 
         def run(*words: str, name: str) -> Process:
-            process = Process(folder, *words, "--contest", str(file), "--json", name=name)
+            process = Process(folder, *words, "--json", name=name)
             stack.callback(process.close)
             return process
 
-        courts = {one: run("serve", "--court", one, name=one) for one in COURTS}
-        yield courts, run("web", "--listen", f"127.0.0.1:{free_port()}", name="web"), stack
+        courts = {one: run(ALONE, str(file), "--court", one, name=one) for one in COURTS}
+        yield (
+            courts,
+            run("web", "--contest", str(file), "--listen", f"127.0.0.1:{free_port()}", name="web"),
+            stack,
+        )
 
 
 def begin(url: str, key: str, court: str, stack: ExitStack) -> PageClient:

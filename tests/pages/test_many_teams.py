@@ -97,7 +97,7 @@ def test_contest(
 def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any) -> None:
     """/office shows two hundred entries, and the timetable of their first round."""
     file = tmp_path / "contest.toml"
-    run_lacoc("contest", "init", str(file), "--event", "--courts", "4")
+    run_lacoc("contest", "init", str(file), "--courts", "4")
     text = file.read_text().replace("0.0.0.0:", "127.0.0.1:").replace("groups = 2", "groups = 40")
     for port in range(7447, 7451):
         text = text.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")

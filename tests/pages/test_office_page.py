@@ -48,7 +48,7 @@ def running(folder: Path, *teams: str, waits: bool = False) -> Iterator[Event]:
         waits: whether the finals wait for the organiser's draw.
     """
     file = folder / "contest.toml"
-    run_lacoc("contest", "init", str(file), "--event", "--courts", "2")
+    run_lacoc("contest", "init", str(file), "--courts", "2")
     text = file.read_text().replace("0.0.0.0:", "127.0.0.1:").replace("groups = 2", "groups = 1")
     for port in ("7447", "7448"):
         text = text.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")

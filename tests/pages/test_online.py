@@ -34,7 +34,7 @@ class Place(NamedTuple):
 
     pages: str
     office: str
-    links: dict[str, dict[str, str]]
+    links: dict[str, str]
     inner: str
     """Where the gateway listens, "HOST:PORT"."""
 
@@ -63,12 +63,9 @@ def online(folder: Path, how: str) -> Iterator[Place]:
 name = "Spring Cup"
 pages = "{pages}/"
 {more}
-[office]
-token = "the-token-of-the-office"
 [court.north]
 arena = "othello"
 listen = ["127.0.0.1:{free_port()}"]
-referee.token = "the-token-of-the-referee"
 [stage.final]
 format = "round-robin"
 arena = "othello"
@@ -109,9 +106,7 @@ def test_a_contest_at_a_public_address(
     No page's console has an error, and no page or paper names another address.
     """
     with online(tmp_path, how) as place:
-        assert {one["link"].partition("#")[0] for one in place.links.values()} == {
-            f"{place.pages}/play"
-        }
+        assert {one.partition("#")[0] for one in place.links.values()} == {f"{place.pages}/play"}
 
         def opened(path: str = "/", **options: Any) -> Page:
             page = open_page(ignore_https_errors=True, **options)
@@ -127,7 +122,7 @@ def test_a_contest_at_a_public_address(
         players = []
         for team in TEAMS:
             player = Contestant(open_page, place.pages, ignore_https_errors=True)
-            player.page.goto(place.links[team]["link"])
+            player.page.goto(place.links[team])
             players.append(player)
         shows = [
             Show(opened(), place.pages, path) for path in ("/watch?q=low", "/overlay?court=north")

@@ -15,7 +15,6 @@ import pytest
 from contestant import Contestant, Sit, own_page
 from drop import drag_in, drop
 from page_client import PageClient
-from ports import free_port
 from show import violations
 from venue import TOKENS, Venue
 
@@ -29,11 +28,11 @@ pytestmark = pytest.mark.slow
 
 
 def opened(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
-    """Start a court and its gateway, and open a contestant's page with the page key."""
+    """Start a court and its gateway, and open the link of the left seat."""
     venue.court(*words)
     venue.web()
     page = sit(venue.url, **options)
-    page.open(key=venue.key)
+    page.open(token=TOKENS["left"])
     return page
 
 
@@ -66,15 +65,21 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The join form shows every mistake; the browser keeps the team's name but not the token."""
     venue.contest.write_text('[contest]\nname = "Autumn cup"\n' + venue.contest.read_text())
-    page = opened(venue, sit)
+    venue.court()
+    venue.web()
+    page = sit(venue.url)
+    page.open()
     page.sees(".entrance", "Autumn cup")
-    page.sees(".seat.on", "left")
+    page.page.fill("#team-token", "not-the-token")
+    page.page.click("button[type=submit]")
+    page.sees("#team-token-error", "token")
+    assert page.find("#team-token").get_attribute("aria-invalid") == "true"
+    page.page.fill("#team-token", TOKENS["left"])
+    page.page.click("button[type=submit]")
+    page.sees(".own-seat", "left")
     page.sees(".safety", "'lacoc play' on your own computer is safer")
     page.page.click("button[type=submit]")
     page.sees("#join-name-error", "1 to 24 characters")
-    page.join("not-the-token")
-    page.sees("#join-token-error", "This token is not valid for the left seat.")
-    assert page.find("#join-token").get_attribute("aria-invalid") == "true"
 
     angles = ["45"] * 16
     bad = tmp_path / "LocoTra-data-new.txt"
@@ -106,15 +111,14 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     page.page.reload()
     page.stands("seated")
     other = sit(venue.url)
-    other.open(key=venue.key)
-    other.sees(".seats [data-seat='0']", "Ants sits here")
-    other.sees(".seat.on", "right")  # a taken seat is not offered
+    other.open(token=TOKENS["right"])
+    other.sees(".own-seat[data-seat='1']", "free")
 
 
 def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The page tells files apart by their content, not by their names or encodings."""
     page = opened(venue, sit)
-    page.sees(".entrance .seat")
+    page.sees(".own-seat")
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
     assert sample.locomotion is not None
@@ -138,7 +142,7 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
 def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
     """Files may be dropped anywhere on the page, and the browser does not leave the page."""
     page = opened(venue, sit)
-    page.sees(".entrance .seat")
+    page.sees(".own-seat")
     sample = sample_gait_files("hexapod")
     assert sample.locomotion is not None
     drop(page.page, {"mine.txt": sample.locomotion.data, "mine.toml": b"name = 'My robot'"})
@@ -163,7 +167,7 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
 def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The page says that a dropped folder can't be read, and takes the file dropped with it."""
     page = opened(venue, sit)
-    page.sees(".entrance .seat")
+    page.sees(".own-seat")
     folder = tmp_path / "gaits"
     folder.mkdir()
     mine = tmp_path / "mine.toml"
@@ -206,15 +210,15 @@ def test_tabs_of_one_browser_have_their_own_files(
     right = sit(venue.url)
     right.page = left.page.context.new_page()
     console.watch(right.page)
-    right.open(key=venue.key)
+    right.open(token=TOKENS["right"])
     for page, seat in ((left, "left"), (right, "right")):
-        page.sees(".entrance .seat")
+        page.sees(".own-seat")
         page.misses(".files .name:not(.muted)")
         file = tmp_path / f"{seat}.txt"
         file.write_bytes(sample.data)
         page.find("input[type=file]").set_input_files(file)
         page.sees(".files li:nth-child(2)", file.name)
-        page.join(TOKENS[seat], seat.title(), seat)
+        page.join(TOKENS[seat], seat.title())
         page.stands("seated")
     left.page.reload()
     left.stands("seated")
@@ -223,8 +227,8 @@ def test_tabs_of_one_browser_have_their_own_files(
 
     left.page = left.page.context.new_page()  # a new tab, for the next team
     console.watch(left.page)
-    left.open(key=venue.key)
-    left.sees(".entrance .seat")
+    left.open(token=TOKENS["left"])
+    left.sees(".own-seat")
     left.misses(".files .name:not(.muted)")
 
 
@@ -232,47 +236,13 @@ def test_tabs_of_one_browser_have_their_own_files(
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
     """A page that kept a seat of another court does not ask for this seat; its user can join."""
     page = opened(venue, sit)
-    page.sees(".entrance .seat")
+    page.sees(".own-seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
     page.page.evaluate("(wish) => sessionStorage.setItem('lacoc.wish', wish)", json.dumps(wish))
     page.page.reload()
     page.stands("outside")
     page.join(TOKENS["left"])
     page.stands("seated")
-
-
-@pytest.mark.long
-def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """If there are several courts, the address or a list on the page chooses one."""
-    port = free_port()
-    contest = venue.contest.read_text()
-    side = contest.replace("court.main", "court.side").replace(str(venue.court_port), str(port))
-    venue.contest.write_text(contest + side.replace("othello", "flag-strike"))
-    venue.court("--court", "main")
-    venue.court("--court", "side")
-    venue.web()
-    page = sit(venue.url)
-    page.open(key=venue.key, query="&court=side")
-    page.sees(".seats legend", "Flag-Strike")
-    court = page.page.get_by_label("Court")
-    assert court.input_value() == "side"
-    page.join(TOKENS["left"])
-    page.stands("seated")
-    page.sees(".foot .who", "Court side")
-    page.sees(".score-bug")
-
-    other = sit(venue.url)
-    other.open(key=venue.key)
-    other.sees(".seats legend", "Robot-Othello")  # the contest's first court
-    other.sees(".seats [data-seat='0']", "free")
-    other.page.get_by_label("Court").select_option("side")
-    other.sees(".seats [data-seat='0']", "Ants sits here")
-    other.join(TOKENS["right"], "Bees", "right")
-    other.stands("seated")
-    page.sees(".score-bug", "Bees")
-    other.page.reload()
-    other.stands("seated")
-    other.sees(".foot .who", "Court side")
 
 
 @pytest.fixture
@@ -282,7 +252,7 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
     (tmp_path / "LocoTra-data.txt").write_bytes(sample.data)
-    words = ("--connect", court.opened["locators"][0], "--seat", "right", "--name", "Bees")
+    words = ("--connect", court.opened["locators"][0], "--name", "Bees")
     with own_page(tmp_path, "play", *words, "--token", TOKENS["right"]) as address:
         yield address
 
@@ -302,7 +272,7 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
     url, key = own
     page = sit(url)
     page.open(key=key)
-    page.sees(".seat.on", "right")
+    page.sees(".own-seat", "right")
     page.sees(".files", "LocoTra-data.txt (from this computer's folder)")
     assert page.find("#join-name").input_value() == "Bees"
     page.misses(".safety")
@@ -531,8 +501,6 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
     """In a Japanese browser the page and the court's messages are in Japanese."""
     page = opened(venue, sit, locale="ja-JP")
     page.sees(".entrance h1", "試合に参加")
-    page.join("not-the-token")
-    page.sees("#join-token-error", "トークン")
     page.join(TOKENS["left"])
     page.stands("seated")
     page.press("2")
@@ -561,7 +529,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
-    page.open(key=venue.key)
+    page.open(token=TOKENS["left"])
     page.join(TOKENS["left"])
     page.stands("seated")
     other = playing(venue, page)
@@ -609,7 +577,7 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
     court = venue.court()
     venue.web()
     page = sit(venue.url)
-    page.open(key=venue.key)
+    page.open(token=TOKENS["left"])
     page.join(TOKENS["left"])
     page.stands("seated")
     court.signal(signal.SIGSTOP)
@@ -690,10 +658,7 @@ def test_accessible(venue: Venue, sit: Sit) -> None:
     """Axe-core finds no serious mistake in the join form, the match and the dialogs."""
     pytest.importorskip("axe_core_python")
     page = opened(venue, sit)
-    page.sees(".entrance .seat")
-    assert violations(page.page) == []
-    page.join("not-the-token")
-    page.sees("#join-token-error", "token")
+    page.sees(".own-seat")
     assert violations(page.page) == []
     page.join(TOKENS["left"])
     page.stands("seated")
@@ -720,7 +685,8 @@ def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: 
             page.press("z")
             page.download(lambda: page.page.click("text=Save and leave"), tmp_path)
             page.page.click("text=Join a match")
-            page.join(TOKENS[seat], "Ants", seat)
+            page.page.click("text=Another token")
+            page.join(TOKENS[seat])
             page.stands("seated")
         page.page.click("button.ready")
         opponent = venue.contestant(other, "Bees")
@@ -775,7 +741,7 @@ def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
     venue.web()
     for locale, says in (("en-GB", "keeps only the last hour"), ("ja-JP", "最新の 1 時間")):
         page = sit(venue.url, locale=locale)
-        page.open(key=venue.key)
+        page.open()
         page.until("Boolean(window.__lacoc?.posData)")
         shown = pos_data(page, 1, (12, 18), frames, 100)
         assert shown["text"].splitlines() == [header, *rows[-100:]]

@@ -35,7 +35,6 @@ def contest(folder: Path) -> Iterator[dict[str, Any]]:
 [court.{name}]
 arena = "othello"
 listen = ["127.0.0.1:{free_port()}"]
-referee.token = "the whistle of {name}"
 """
         for name in ("north", "south")
     )
@@ -45,8 +44,6 @@ referee.token = "the whistle of {name}"
 name = "Spring Cup"
 pages = "http://{where}"
 least_rest_s = 3.0
-[office]
-token = "the token of the office"
 {courts}
 [stage.league]
 format = "swiss"
@@ -66,7 +63,7 @@ settings.match.start = "ready"
             opened = json.loads(run.stdout.readline())
             invite = ("contest", "invite", "--contest", str(file))
             lines = json.loads(run_lacoc(*invite, "--json").stdout)
-            yield opened | lines[PERSON]
+            yield opened | {"link": lines[PERSON]}
             assert run.wait(LIMIT_S) == 0
         finally:
             run.kill()

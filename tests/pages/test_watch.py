@@ -10,9 +10,16 @@ from playwright.sync_api import expect
 from ports import free_port
 from show import STALE, Show, decide, playing, violations
 from stand import pixels_of
-from venue import Venue
+from venue import TOKENS, Venue
 
+from lacoc_server.contest.live.court_link import CourtLink
+from lacoc_shared.contest.file import load
+from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.messages import Done
+from lacoc_shared.messages.office import AssignedSeat, Whereabouts
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 
@@ -106,10 +113,31 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
 @pytest.mark.long
 def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> None:
     """A team's own colour and pattern show beside its score and on the board (rules 4)."""
-    own = '[court.main.seat.right]\ncolour = "#cc3366"\npattern = "dots"\n'
-    text = venue.contest.read_text()
-    venue.contest.write_text(text.replace("[court.main.seat.right]\n", own))
-    venue.court()
+    venue.started("serve", "--json", "--contest", str(venue.contest), name="court")
+    plan = load(venue.contest)
+    hashes = {seat: (hash_token(token),) for seat, token in TOKENS.items()}
+    seats = (
+        AssignedSeat(id="left", token_hashes=hashes["left"]),
+        AssignedSeat(id="right", token_hashes=hashes["right"], colour="#cc3366", pattern="dots"),
+    )
+    address = plan.courts["main"].address()
+    told = {
+        hashes[seat][0]: Whereabouts(
+            team="",
+            state="court",
+            said=say("team.open-seat", court="main", seat=seat),
+            court="main",
+            address=address,
+            seat=seat,
+            call="open.1",
+            open=True,
+        )
+        for seat in TOKENS
+    }
+    with open_client([address]) as session:
+        link = CourtLink(session, "main", plan.secrets.office)
+        assert link.assign("open.1", say("fixture.open", stage=None), seats).wait() == Done()
+        assert link.tell(told).wait() == Done()
     venue.web()
     playing(venue)
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)

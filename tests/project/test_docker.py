@@ -19,7 +19,7 @@ import pytest
 import yaml
 from lacoc_process import Lacoc, run_lacoc
 from ports import free_port
-from waiting import LIMIT_S
+from waiting import LIMIT_S, until
 
 from lacoc_shared.contest import file as contests
 
@@ -55,28 +55,23 @@ def test_the_image_installs_what_a_court_needs() -> None:
 
 
 def test_the_services_hang_together() -> None:
-    """All services use one image, and clients connect to the port that the court opens."""
+    """All services use one image, and the last one opens court and pages."""
     assert {service["image"] for service in SERVICES.values()} == {"lacoc"}
-    assert SERVICES["court"]["ports"] == [f"{PORT}:{PORT}"]
-    assert SERVICES["web"]["ports"] == [f"{WEB_PORT}:{WEB_PORT}"]
-    assert SERVICES["web"]["command"][-1].endswith(f":{WEB_PORT}")
-    connects = {service["environment"].get("LACOC_CONNECT") for service in SERVICES.values()}
-    assert connects == {None, f"court:{PORT}"}
-    commands = [service["command"] for service in SERVICES.values()]
-    waiting = [command[0] for command in commands if "--wait" in command]
-    assert waiting == ["bot", "bot", "referee"]  # `web` always waits for its court
-    assert (ROOT / "docker" / SERVICES["court"]["build"]["context"]).resolve() == ROOT
-    assert order()[:2] == ["contest", "court"]
+    office = SERVICES["office"]
+    assert office["ports"] == [f"{PORT}:{PORT}", f"{WEB_PORT}:{WEB_PORT}"]
+    assert office["command"][-1].endswith(f":{WEB_PORT}")
+    assert (ROOT / "docker" / office["build"]["context"]).resolve() == ROOT
+    assert order() == ["contest", "ants", "bees", "office"]
 
 
 @pytest.mark.slow
 def test_the_composition_plays(tmp_path: Path) -> None:
-    """When the services start in their order, a match begins."""
+    """When the services start in their order, the two bots are called to the court, and play."""
     port, web_port = str(free_port()), str(free_port())
 
     def here(text: str) -> str:
         """Replace a container's folders, hosts and ports with those of this machine."""
-        text = text.replace("/contest/", f"{tmp_path}/").replace("court:", "127.0.0.1:")
+        text = text.replace("/contest/", f"{tmp_path}/")
         return text.replace(PORT, port).replace(WEB_PORT, web_port)
 
     with ExitStack() as running:
@@ -95,15 +90,14 @@ def test_the_composition_plays(tmp_path: Path) -> None:
                 assert process.wait(LIMIT_S) == 0
                 file = tmp_path / "contest.toml"
                 file.write_text(here(file.read_text()))
-            if "service_healthy" in conditions:
-                wait_until_healthy([here(word) for word in service["healthcheck"]["test"]])
-        heard = wait_for(lines, "Play begins.", timeout_s=60)
-        with urllib.request.urlopen(f"http://127.0.0.1:{web_port}/watch", timeout=LIMIT_S) as page:
+        wait_until_healthy([here(word) for word in SERVICES["office"]["healthcheck"]["test"]])
+        heard = wait_for(lines, "The contest is open", timeout_s=60)
+        with urllib.request.urlopen(
+            f"http://127.0.0.1:{web_port}/contest", timeout=LIMIT_S
+        ) as page:
             assert b"LACOC" in page.read()
-
-    assert any("takes the left seat" in line for line in heard)
-    assert any("takes the right seat" in line for line in heard)
-    assert any("compose" in line for line in heard)  # the name of the referee who started the match
+        until(lambda: [*(tmp_path / "recordings").glob("*.live.mcap")])
+    assert any("Bees" in line for line in heard)
 
 
 def test_the_contest_online_is_the_one_of_its_page(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from contest_tokens import keep_tokens
 from ports import free_port
 from running import served
 from waiting import LIMIT_S
@@ -25,14 +26,15 @@ from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
-OFFICE = "the token of the office"
-WHISTLE = "the token of the referee"
 SEATS = ("left", "right")
 QUICK = {"match": {"countdown_s": 0.1, "duration_s": 1.0, "start": "ready"}}
 """Settings of a match of one second without a referee."""
 FIXTURE = say(
     "fixture.game", match=say("fixture.semi-final", stage=None, number=1), game=2, games=3
 )
+
+OFFICE = "the token of the office"
+WHISTLE = "the token of the referee"
 
 _calls = itertools.count(1)
 
@@ -149,17 +151,15 @@ class Office:
 
 
 def write_office_contest(path: Path) -> Path:
-    """Write the contest file of one court and its office; the seats have no tokens."""
+    """Write the contest file of one court and its office."""
     path.write_text(f"""
-[office]
-token = "{OFFICE}"
 
 [court.main]
 arena = "othello"
 listen = ["tcp/127.0.0.1:{free_port()}"]
 settings.match.countdown_s = 0.1
-referee.token = "{WHISTLE}"
 """)
+    keep_tokens(path, {}, WHISTLE)
     return path
 
 
@@ -167,5 +167,8 @@ referee.token = "{WHISTLE}"
 def office_of(contest: Path, folder: Path, *words: str) -> Iterator[Office]:
     """Run a contest's court until the block ends; give an `Office` that is linked to the court."""
     address = contest.read_text().partition('listen = ["')[2].partition('"')[0]
-    with served(contest, folder, *words) as process, open_client([address]) as session:
+    with (
+        served(contest, folder, *words, office=True) as process,
+        open_client([address]) as session,
+    ):
         yield Office(session, process)

@@ -41,7 +41,7 @@ class Hall:
         self.process = stack.enter_context(served(self.contest, folder / "recordings"))
         self.session = stack.enter_context(open_client([self.court.address()]))
         self.view = Spectator(self.session, name)
-        self.referee = RefereeClient(self.session, name, self.court.referee.token)
+        self.referee = RefereeClient(self.session, name, self.plan.secrets.referee(name))
 
     def lacoc(self, *words: str, before: tuple[str, ...] = ()) -> subprocess.Popen[bytes]:
         """Start a `lacoc` command in a process that is killed when the test ends."""
@@ -66,8 +66,8 @@ class Hall:
             "    return lambda f: Key(Level.LOCOMOTION, 2 + f.clock_ticks // 25 % 2)\n"
         )
         where = ("--connect", connect or self.court.address(), "--court", "main")
-        token = self.court.seat[seat].token
-        words = ("bot", "walker.py", *where, "--seat", seat, "--token", token, "--name", seat)
+        token = self.plan.secrets.seat("main", seat)
+        words = ("bot", "walker.py", *where, "--token", token, "--name", seat)
         return self.lacoc(*words, before=before)
 
     def until(self, true: Callable[[], bool]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from lacoc_process import started
+from lacoc_process import ALONE, started
 from ports import free_port
 from waiting import LIMIT_S
 
@@ -29,26 +29,30 @@ def write_contest(path: Path) -> Path:
 arena = "othello"
 listen = ["tcp/127.0.0.1:{free_port()}"]
 settings.match.countdown_s = 0.2
-seat.left.token = "the token of left"
-seat.right.token = "the token of right"
-referee.token = "the token of the referee"
 """)
     return path
 
 
 @contextmanager
 def served(
-    contest: Path, folder: Path, *words: str, before: Sequence[str] = ()
+    contest: Path,
+    folder: Path,
+    *words: str,
+    before: Sequence[str] = (),
+    office: bool = False,
 ) -> Iterator[subprocess.Popen[str]]:
-    """Run `lacoc serve` until the block ends, and give its process once the court is open.
+    """Run a court until the block ends, and give its process once it is open.
 
     Args:
         contest: the contest file.
         folder: the folder for the court's records.
         words: more words for the command line of `lacoc serve`.
         before: words of a command that runs another one; the court's command line follows them.
+        office: whether the court waits for an office; else it is started alone, with the tokens and
+            entries of the contest file.
     """
-    serve = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder), *words]
+    court = ["serve", "--contest", str(contest)] if office else [ALONE, str(contest)]
+    serve = [*court, "--json", "--recordings", str(folder), *words]
     process = started(*serve, before=before, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
@@ -84,17 +88,18 @@ class Party:
     """A court's contestants, joined and ready, and its referee, in one network session."""
 
     def __init__(self, session: Session, contest: Path) -> None:
-        name, court = load(contest).court()
+        plan = load(contest)
+        name, _ = plan.court()
         self.session = session
         self.controllers = [
-            Controller(session, name, seat, holder.token, f"Team {seat}")
-            for seat, holder in court.seat.items()
+            Controller(session, name, seat, plan.secrets.seat(name, seat), f"Team {seat}")
+            for seat in ("left", "right")
         ]
         for controller in self.controllers:
             controller.join()
             controller.ready()
         self.left = self.controllers[0]
-        self.referee = RefereeClient(session, name, court.referee.token)
+        self.referee = RefereeClient(session, name, plan.secrets.referee(name))
 
     @property
     def view(self) -> Spectator:

@@ -43,7 +43,11 @@ def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
 
 
 def join(
-    seat: int, team: str | None = None, robot: str = "hexapod", robot_file: bytes | None = None
+    seat: int,
+    team: str | None = None,
+    robot: str = "hexapod",
+    robot_file: bytes | None = None,
+    token_hash: str = "",
 ) -> JoinSeat:
     """Return a team's join with the files of a sample robot, or with `robot_file` for its robot."""
     (name, data), gait = _files(robot)
@@ -52,7 +56,7 @@ def join(
         team or ("Ants", "Bees")[seat],
         SentFile(name, robot_file or data),
         *gait,
-        token_hash="",
+        token_hash=token_hash,
     )
 
 

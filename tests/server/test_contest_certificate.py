@@ -8,7 +8,6 @@ import pytest
 from typer.testing import CliRunner
 
 from lacoc_server.commands.contest.app import app
-from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.certificate import Certificate
@@ -26,7 +25,7 @@ def run(*args: str) -> str:
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / "contest.toml"
-    run("init", str(path), "--event")
+    run("init", str(path))
     return path
 
 
@@ -48,7 +47,7 @@ def test_one_command_encrypts_a_contest(file: Path) -> None:
     assert names(file) >= {("DNS", "court.example.org"), ("IP Address", "192.168.1.20")}
     assert contest.public.pair is not None
     Certificate(contest.public.pair)
-    access = entrances.spectator_access(contest, None, None)
+    access = contest.access(contest.court()[0])
     assert access.authority == (file.parent / "tls/authority.pem").read_text()
     assert "PRIVATE" not in access.authority
 
@@ -103,7 +102,7 @@ def test_the_entries_go_into_any_contest_file(tmp_path: Path) -> None:
     ):
         file = tmp_path / f"{number}" / "contest.toml"
         file.parent.mkdir()
-        court = f'[court.main]\narena = "othello"\nreferee.token = "{"r" * 26}"\n'
+        court = '[court.main]\narena = "othello"\n'
         file.write_bytes(f"{head}{court}".encode())
         if head.startswith("contest."):
             with pytest.raises(UserError, match=r"below a line \[contest\]"):
@@ -163,6 +162,6 @@ def test_an_authority_that_can_not_be_read_is_said(file: Path) -> None:
     run("certificate", str(file))
     (file.parent / "tls/authority.pem").unlink()
     with pytest.raises(UserError, match=r"authority\.pem can't be read"):
-        entrances.spectator_access(contests.load(file), None, None)
+        contests.load(file).access(contests.load(file).court()[0])
     with pytest.raises(UserError, match="not an address"):
         run("certificate", str(file), "--host", "no host")

@@ -10,10 +10,9 @@ import pytest
 import trustme
 from typer.testing import CliRunner
 
-from lacoc_arenas import arena as arenas
 from lacoc_server.commands import serve
 from lacoc_server.commands.contest.app import app
-from lacoc_server.contest.kept.plans import game, plans
+from lacoc_server.contest.kept.plans import game, open_stage, plans
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 
@@ -25,81 +24,59 @@ def run(*args: str) -> str:
     return result.stdout
 
 
-@pytest.mark.parametrize(
-    ("arena", "seats"),
-    [
-        ("othello", ["left", "right"]),
-        ("flag-strike", ["left", "right"]),
-        ("practice", ["solo"]),
-    ],
-)
-def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: list[str]) -> None:
-    """The file that `init` writes passes `check` and has the seats of its arena."""
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str) -> None:
+    """The file that `init` writes passes `check`; courts and stages play the arena."""
     file = tmp_path / "contest.toml"
-    run("init", str(file), "--arena", arena)
+    run("init", str(file), "--arena", arena, "--courts", "2")
 
     assert "has no mistakes" in run("check", str(file))
-    court = contests.load(file).courts["main"]
-    assert court.arena == arena
-    assert list(court.seat) == seats
+    contest = contests.load(file)
+    assert {one.arena for one in contest.courts.values()} == {arena}
+    assert {plan.arena for plan in plans(contest, file)} == {arena}
 
 
-def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> None:
-    """A new file has mode 0600, because it holds tokens; an older file is renamed and kept."""
+def test_a_new_file_has_no_secret_and_keeps_the_older(tmp_path: Path) -> None:
+    """All tokens are in a file of mode 0600; an older contest file is renamed and kept."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     first = file.read_text()
-    run("init", str(file))
+    run("init", str(file), "--courts", "2")
 
-    assert stat.S_IMODE(file.stat().st_mode) == 0o600
     assert (tmp_path / "contest.1.toml").read_text() == first
     assert file.read_text() != first
+    assert stat.S_IMODE(file.stat().st_mode) & 0o044 == 0o044
+    kept = tmp_path / "contest.secrets.json"
+    assert stat.S_IMODE(kept.stat().st_mode) == 0o600
+    tokens = json.loads(kept.read_text())
+    assert {*tokens} == {
+        "office",
+        "standby",
+        "organiser",
+        *(f"referee.main{n}" for n in ("", "-1", "-2")),
+    }
+    assert not any(token in file.read_text() for token in tokens.values())
 
 
-def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
-    """Rules 4: a seat's colour and pattern in the contest file replace the arena's.
-
-    The other seat keeps the arena's look. A colour that is no code such as #009e73 is refused.
-    """
+def test_a_contest_of_open_matches_is_written(tmp_path: Path) -> None:
+    """`init --open` plans no draw: one stage, in which whoever has a link plays."""
     file = tmp_path / "contest.toml"
-    run("init", str(file))
-    text = file.read_text()
-    own = '[court.main.seat.right]\ncolour = "#009e73"\npattern = "dots"\n'
-    file.write_text(text.replace("[court.main.seat.right]\n", own))
+    run("init", str(file), "--open", "--arena", "flag-strike")
     assert "has no mistakes" in run("check", str(file))
-    court = contests.load(file).courts["main"]
-    left, right = arenas.load(court.arena, court.settings, court.looks).seats
-    assert (right.colour, right.pattern) == ("#009e73", "dots")
-    assert left == arenas.load(court.arena).seats[0]
-    file.write_text(text.replace("[court.main.seat.right]\n", own.replace("#009e73", "green")))
-    with pytest.raises(UserError, match=r"court\.main\.seat\.right"):
-        contests.load(file)
-
-
-def test_show_as_json(tmp_path: Path) -> None:
-    """`show --json` gives a command line for each seat, for the referee and for spectators.
-
-    The command line of a seat has the host that `--host` names, and the seat's token.
-    """
-    file = tmp_path / "contest.toml"
-    run("init", str(file), "--court", "hall")
-    lines = json.loads(run("show", str(file), "--json", "--host", "10.0.0.1"))
-
-    left = contests.load(file).courts["hall"].seat["left"].token
-    assert list(lines["hall"]) == ["left", "right", "referee", "spectators"]
-    assert lines["hall"]["left"] == (
-        f"lacoc play --court hall --connect tcp/10.0.0.1:7447 --seat left --token {left}"
-    )
+    contest = contests.load(file)
+    assert plans(contest, file) == []
+    stage = open_stage(contest, file)
+    assert stage is not None
+    assert (stage.name, stage.arena) == ("friendly", "flag-strike")
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ('arena = "othello"', 'arena = "chess"', "no arena .chess."),
-        ("# duration_s = 120.0", 'duration_s = "long"', "duration_s"),
-        ("# duration_s = 120.0", "duratoin_s = 1.0", "duratoin_s"),
+        ("# settings.match.duration_s = 120.0", 'settings.match.duration_s = "long"', "duration_s"),
+        ("# settings.match.duration_s = 120.0", "settings.match.duratoin_s = 1.0", "duratoin_s"),
         ("# legs_max = 8", "legs_maxx = 8", "legs_maxx"),
-        ("[court.main.seat.left]", "[court.main.seat.middle]", "left and right.*middle and right"),
     ],
 )
 def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, said: str) -> None:
@@ -125,16 +102,16 @@ def test_check_finds_all_mistakes_at_once(tmp_path: Path) -> None:
     file.write_text(text + '\n[stage.show]\nformat = "cup"\n')
     with pytest.raises(UserError) as caught:
         run("check", str(file))
-    limit, court, stage = str(caught.value).splitlines()
+    limit, court, *_, stage = str(caught.value).splitlines()
     assert "legs_maxx" in limit
     assert court.startswith('[court.main]: There is no arena "chess".')
     assert "[stage.show]" in stage
 
 
-def test_the_length_of_an_events_games_is_a_commented_line(tmp_path: Path) -> None:
-    """The lines of `init --event` that set the length are right if they are uncommented."""
+def test_the_length_of_the_games_is_a_commented_line(tmp_path: Path) -> None:
+    """The lines of `init` that set the length are right if they are uncommented."""
     file = tmp_path / "contest.toml"
-    run("init", str(file), "--event")
+    run("init", str(file))
     assert "has no mistakes" in run("check", str(file))
     line = "settings.match.duration_s = 120.0"
     text = file.read_text()
@@ -168,17 +145,15 @@ def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """The line with a court's address does not call the match new, as it may be a resumed one."""
-    entry = contests.throwaway("othello").courts["main"]
     at = ("tcp/127.0.0.1:7447",)
-    serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)
+    serve._open_doors("main", "m-1", at, metrics=None, tokens=None, json=False)
     said = capsys.readouterr().out
     assert said == "Court main is open at tcp/127.0.0.1:7447: match m-1.\n"
 
 
 def test_a_court_without_a_contest_file_may_have_any_name() -> None:
     """`serve --court bar` without a contest file makes a contest whose only court is "bar"."""
-    contest, made_here = serve._contest(None, "othello", None, "bar")
-    assert made_here
+    contest = serve._alone("othello", None, "bar")
     assert contest.court("bar")[0] == "bar"
     assert list(contest.courts) == ["bar"]
 
@@ -200,7 +175,7 @@ def test_the_certificate_of_the_pages_is_looked_at(
     made = trustme.CA().issue_cert(name, not_after=datetime.now(UTC) + timedelta(days=days))
     (tmp_path / "a.pem").write_bytes(made.cert_chain_pems[0].bytes())
     (tmp_path / "b.pem").write_bytes(made.private_key_pem.bytes())
-    run("init", str(file), "--event", "--pages", "https://lacoc.example.org")
+    run("init", str(file), "--pages", "https://lacoc.example.org")
     text = file.read_text("utf-8")
     for entry, pem in (("certificate", "a.pem"), ("private_key", "b.pem")):
         text = re.sub(rf"# {entry} = .*", f'{entry} = "{pem}"', text)

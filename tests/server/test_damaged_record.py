@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 import pytest
-from lacoc_process import run_lacoc
+from lacoc_process import ALONE, run_lacoc
 from running import served, write_contest
 from stage import FORWARD, LEFT, QUICK, RIGHT, X, decide, join, key, setup
 from typer.testing import CliRunner
@@ -216,8 +216,7 @@ def test_a_record_of_another_version_is_refused(
     with pytest.raises(UserError) as refused:
         unfinished(folder, "main", OTHELLO)
     assert words in str(refused.value)
-    serve = ["serve", "--contest", str(contest), "--recordings", str(folder)]
-    done = run_lacoc(*serve)
+    done = run_lacoc(ALONE, str(contest), "--recordings", str(folder))
     assert done.returncode == 2
     assert words in " ".join(done.stderr.split())
     assert "--fresh" in done.stderr

@@ -163,8 +163,8 @@ def sync(descriptor):
     fsync(descriptor)
 
 os.fsync = sync
-sys.argv = sys.argv[5:]
-runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
+module, sys.argv = sys.argv[5], sys.argv[5:]
+runpy.run_module(module, run_name="__main__", alter_sys=True)
 """
 """A program that runs `lacoc`; while a flag file exists, `fsync` fails or takes seconds longer."""
 
@@ -260,7 +260,7 @@ def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) ->
 def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:
     """A court does not start on a full disk; it says why and leaves no empty record."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
-    words = ["serve", "--contest", str(contest), "--recordings", str(folder)]
+    words = [str(contest), "--recordings", str(folder)]
     done = subprocess.run(
         [
             "sh",
@@ -269,7 +269,7 @@ def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:
             "sh",
             sys.executable,
             "-m",
-            "lacoc_shared",
+            "benchmarks.alone",
             *words,
         ],
         capture_output=True,

@@ -203,8 +203,8 @@ if what == "beat":
     Match.beat = failing_beat
 else:
     subprocess.Popen.__init__ = failing_start
-sys.argv = sys.argv[5:]
-runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
+module, sys.argv = sys.argv[5], sys.argv[5:]
+runpy.run_module(module, run_name="__main__", alter_sys=True)
 """
 """A program that runs `lacoc`; while a flag file exists, beats or starts of processes fail."""
 

@@ -51,12 +51,13 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
 @pytest.mark.long
 def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
     """From LOBBY to FINISHED, only the seat's own token takes back a killed controller's seat."""
+    secrets = hall.plan.secrets
     with open_client([hall.court.address()]) as session:
 
         def lose_and_guess(bot: subprocess.Popen[bytes]) -> None:
             """Kill the left seat's program; check that no wrong token takes its seat."""
             hall.loses(bot.kill)
-            for token in (hall.court.seat["right"].token, hall.court.referee.token, "guess", ""):
+            for token in (secrets.seat("main", "right"), secrets.referee("main"), "guess", ""):
                 thief = Controller(session, "main", "left", token, "Thieves")
                 with pytest.raises(UserError, match="not valid for the left seat"):
                     thief.join()
@@ -135,7 +136,7 @@ def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall.bot("right")
     hall.play()
     keys, decision = Keys("main"), Adjust(seat="left", points=3)
-    token = hall.court.referee.token
+    token = hall.plan.secrets.referee("main")
     request = DecisionRequest(token=token, by="Kubota", reason="a test", decision=decision)
     os.kill(hall.process.pid, signal.SIGSTOP)
     try:
@@ -214,7 +215,9 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     watchers = [
         hall.lacoc("watch", "--json", "--hz", "50", *where),
         hall.lacoc("web", "--contest", str(hall.contest), "--listen", f"127.0.0.1:{free_port()}"),
-        hall.lacoc("referee", "log", "--follow", *where),
+        hall.lacoc(
+            "referee", "log", "--follow", "--token", hall.plan.secrets.referee("main"), *where
+        ),
     ]
     hall.play()
     hall.walks()

@@ -26,6 +26,7 @@ from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.decisions import Abort, Next, Start
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SeatFrame, SentFile, Sheet
+from lacoc_shared.messages.office import open_match
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase, SeatFlag
@@ -66,15 +67,16 @@ def room(tmp_path: Path) -> Iterator[Room]:
     arena = arenas.load("othello", {"match": {"countdown_s": 0.02}})
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), arena.match.open_levels)
-    hashes = {seat: hash_token(token) for seat, token in TOKENS.items()}
-    inbox = Inbox(Keys("main"), list(TOKENS), hashes, admission, secrets.token_bytes)
+    opened = open_match({seat: [hash_token(token)] for seat, token in TOKENS.items()})
+    inbox = Inbox(Keys("main"), list(TOKENS), admission, secrets.token_bytes)
     desk = DecisionDesk([hash_token(WHISTLE)])
     over = threading.Event()
     with (
         CourtNetwork(Keys("main"), ["tcp/127.0.0.1:0"], inbox, desk) as network,
         ExitStack() as stack,
     ):
-        court = Court(CourtSettings("main", arena, {}, tmp_path / "recordings"), network)
+        settings = CourtSettings("main", arena, {}, tmp_path / "recordings", assigned=opened)
+        court = Court(settings, network)
         thread = threading.Thread(target=court.run, args=(over.is_set,))
         thread.start()
         stack.callback(thread.join)

@@ -9,14 +9,15 @@ from typing import Any
 
 import pytest
 from lacoc_process import Lacoc, run_lacoc
-from running import frame, party, phase, served, until, write_contest
+from running import frame, phase, until
 from waiting import LIMIT_S
 
 from lacoc_client.controller import Controller
-from lacoc_shared.contest.file import load
+from lacoc_client.team_way import where
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
+from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow
@@ -85,16 +86,15 @@ def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
     assert "--fresh' opens a new match" in said
 
 
-def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: Path) -> None:
-    """A token that was replaced in the contest file no longer opens the seat (docs/security.md)."""
-    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
-    name, court = load(contest).court()
-    with served(contest, folder) as process, party(contest):
-        process.kill()
-        process.wait()
-    contest.write_text(contest.read_text().replace("the token of left", "another token of left"))
-    with served(contest, folder), open_client([court.address()]) as session:
-        lost = Controller(session, name, "left", "the token of left", "Thief")
-        with pytest.raises(UserError, match="not valid for the left seat"):
-            lost.join()
-        Controller(session, name, "left", "another token of left", "Team left").join()
+def test_a_court_alone_says_where_its_seat_is(tmp_path: Path) -> None:
+    """Whoever asks with a token of a court without an office is told its open seat."""
+    with opened(tmp_path) as court, open_client([court["locators"][0]]) as session:
+        there = where(session, court["court"], court["tokens"]["solo"])
+        assert (there.state, there.seat, there.team, there.open) == ("court", "solo", "", True)
+        assert there.address == ""
+        with pytest.raises(UserError, match="token"):
+            where(session, court["court"], court["referee"])
+    (segment,) = tmp_path.glob("*.live.mcap")
+    assigned = Record.read([segment]).header.setup.assigned
+    assert assigned is not None
+    assert assigned.is_alone

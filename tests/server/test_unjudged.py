@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from stage import LEFT, RIGHT, Script, ScriptedPhysics, decide, join, key
+from msgspec.structs import replace
+from stage import LEFT, RIGHT, Script, ScriptedPhysics, decide, join, key, setup
 from verdicts import verdict
 
 from lacoc_arenas import arena as arenas
@@ -13,15 +14,19 @@ from lacoc_server.court import court as court_module
 from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.inbox import Door
 from lacoc_server.doors.network import Arrival
+from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import unfinished
 from lacoc_server.journal.verdict import Kind
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
+from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import Done, Event, Outcome, SeatHealth
+from lacoc_shared.messages.office import open_match
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import NOBODY, Phase
@@ -31,6 +36,8 @@ P = Phase
 LONG = 200
 """Four seconds, in beats."""
 TROUBLE = say("record.disk-trouble", file="m.mcap", why="Input/output error")
+
+HASH = hash_token("a token")
 
 
 class Quiet:
@@ -83,7 +90,8 @@ class Held:
     def open(self) -> None:
         left = unfinished(self.folder, "main", self.ground) if self.folder else None
         self.network = Quiet(len(self.ground.seats))
-        settings = CourtSettings("main", self.ground, {}, self.folder)
+        tokens = {seat.id: [HASH] for seat in self.ground.seats}
+        settings = CourtSettings("main", self.ground, {}, self.folder, assigned=open_match(tokens))
         self.court = Court(settings, self.network, left)  # type: ignore[arg-type]
 
     def kill(self) -> None:
@@ -108,7 +116,7 @@ class Held:
 
     def begin(self) -> None:
         for seat in range(len(self.ground.seats)):
-            self.beat(join(seat))
+            self.beat(join(seat, token_hash=HASH))
             self.beat(ReadySeat(seat, True))
         self.run(3)
         assert self.match.phase is P.PLAYING
@@ -127,7 +135,7 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
     held.open()
     assert held.run(LONG).phase is P.HALTED, "nobody may find a match already running"
     ticks = held.match.ticks
-    held.beat(join(LEFT))
+    held.beat(join(LEFT, token_hash=HASH))
     assert held.run(30).phase is P.PLAYING
     assert held.match.ticks > ticks
     held.beat(key(LEFT, 2, seq=9))
@@ -140,13 +148,13 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
 def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:
     """A killed match with a referee stays HALTED, even when both contestants are back."""
     held = Held("othello", tmp_path, {"match": {"countdown_s": 0.02}})
-    held.beat(join(LEFT), join(RIGHT))
+    held.beat(join(LEFT, token_hash=HASH), join(RIGHT, token_hash=HASH))
     held.beat(ReadySeat(LEFT, True), ReadySeat(RIGHT, True))
     held.beat(decide(d.Start()))
     held.run(3)
     held.kill()
     held.open()
-    held.beat(join(LEFT), join(RIGHT))
+    held.beat(join(LEFT, token_hash=HASH), join(RIGHT, token_hash=HASH))
     assert held.run(LONG).phase is P.HALTED
     held.kill()
 
@@ -251,3 +259,24 @@ def test_a_disk_that_reports_errors_halts_the_match_once(
     assert held.match.phase is P.PLAYING
     assert held.decided == ["halt", "resume"]
     held.kill()
+
+
+def test_a_match_of_an_older_court_goes_on(tmp_path: Path) -> None:
+    """Its setup says nothing of seats; the match after it is one that the court assigned itself."""
+    ground = arenas.load("practice")
+    name = MatchName.new(tmp_path, "main", 1)
+    old = replace(setup("practice"), match_id=str(name), settings=ground.settings)
+    journal = Journal(Match(old, World), tmp_path)
+    journal.beat([join(0, token_hash=HASH)])
+    journal.beat([ReadySeat(0, True)])
+    journal.leave()
+    held = Held("practice", tmp_path)
+    assert held.match.assigned is None
+    assert held.match.setup.match_id == str(name)
+    held.beat(decide(d.Abort()))
+    held.beat(decide(d.Next()))
+    held.run(2)
+    assert held.match.setup.match == 2
+    assert held.match.assigned is not None
+    assert held.match.assigned.is_alone
+    assert held.match.seats[0].team == "Ants"

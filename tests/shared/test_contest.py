@@ -1,16 +1,10 @@
 """Tests of the contest file, and of which source gives an option its value."""
 
 from pathlib import Path
-from typing import Annotated
 
 import pytest
-import typer
-from typer.testing import CliRunner
 
-from lacoc_shared.command import options
-from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 
 GOOD = """
@@ -25,12 +19,6 @@ silent_s = 2
 [court.main]
 arena = "othello"
 listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]
-[court.main.seat.left]
-token = "left-token-of-main"
-[court.main.seat.right]
-token = "right-token-of-main"
-[court.main.referee]
-token = "referee-token-of-main"
 [court.main.settings.match]
 duration_s = 60.0
 """
@@ -39,10 +27,6 @@ SECOND = """
 arena = "games/tag"
 listen = ["0.0.0.0:7448"]
 connect = "court.example.org:7448"
-[court.second.seat.runner]
-token = "runner-token-of-second"
-[court.second.referee]
-token = "referee-token-of-second"
 """
 
 
@@ -71,14 +55,14 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
     assert contest.courts["second"].connect == "tcp/court.example.org:7448"
 
 
-def test_an_office_opens_the_seats_of_its_courts(file: Path) -> None:
-    """With an office the seats need no tokens."""
-    office = '[office]\ntoken = "token-of-the-office"\n'
-    court = '[court.main]\narena = "othello"\nreferee.token = "referee-token-of-main"\n'
-    file.write_text(office + court)
-    contest = contests.load(file)
-    assert contest.office is not None
-    assert (contest.office.token, contest.courts["main"].seat) == ("token-of-the-office", {})
+def test_empty_tables_are_courts_with_ports_of_their_own(file: Path) -> None:
+    """A court needs no entry: it plays Othello, and listens on this machine alone."""
+    file.write_text("[court.red]\n[court.blue]\n")
+    courts = contests.load(file).courts
+    assert {name: (one.arena, one.listen) for name, one in courts.items()} == {
+        "red": ("othello", ("tcp/127.0.0.1:7447",)),
+        "blue": ("othello", ("tcp/127.0.0.1:7448",)),
+    }
 
 
 def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
@@ -103,16 +87,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
             "arena = 3",
             r"court.main.arena\]: expected text in quotes, found a whole number",
         ),
-        ('arena = "othello"', "", r"\[court.main\].*entry \"arena\" is missing"),
         ("arena =", "aren =", r"no entry \"aren\".*Allowed entries: arena, listen"),
-        ('token = "left-token-of-main"', "token = 5", r"court.main.seat.left.token"),
-        (
-            'token = "left-token-of-main"',
-            'token = "short"',
-            r"seat.left.token.*a length of at least 12",
-        ),
-        ("right-token-of-main", "left-token-of-main", r"court.main.*same token"),
-        ("referee-token-of-main", "left-token-of-main", r"court.main.*same token"),
         (
             "legs_max = 6",
             'legs_max = "6"',
@@ -130,7 +105,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         (
             "[contest]",
             "[contst]",
-            r"no entry \"contst\".*contest, limits, health, office, standby, court",
+            r"no entry \"contst\".*contest, limits, health, standby, court",
         ),
         ('arena = "othello"', 'arena = "a\\u0000/b"', "is not a path"),
         ('robot = "robots/own.toml"', 'robot = "~nobody-here/b"', "is not a path"),
@@ -142,12 +117,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         ("silent_s = 2", "faults = -1", r"health.faults.*expected a whole number of at least 0"),
         ("silent_s = 2", "silent_s = nan", r"health.silent_s"),
         ("silent_s = 2", "silent = 1", r"no entry \"silent\".*silent_s"),
-        ("[limits]", '[office]\ntoken = "short"\n[limits]', r"office\.token.*at least 12"),
-        (
-            "[limits]",
-            '[office]\ntoken = "left-token-of-main"\n[limits]',
-            r"\[office\]: two entries have the same token",
-        ),
+        ("[limits]", '[office]\ntoken = "a secret of old"\n[limits]', r'no entry "office"'),
         (GOOD, "[contest]\n", r"entry \"court\" is missing"),
         (GOOD, "court = 1\n", r"\[court\]: expected a table, found a whole number"),
         (GOOD, "[court]\nmain = 1\n", r"\[court.main\]: expected a table, found a whole number"),
@@ -172,7 +142,6 @@ def test_all_wrong_entries_are_named_at_once(file: Path) -> None:
         ("[contest]", '[contest]\nleast_rest_s = "60"\nrebot = "a"\nentries_close = "noon"'),
         ("legs_max = 6", "legs_max = nan"),
         ('arena = "othello"', 'arena = 3\ninput_delay = "fair"\ninput_delay_max_ms = 5'),
-        ("left-token-of-main", "short"),
         ("silent_s = 2", "silent = 1"),
     ):
         assert old in wrong
@@ -186,14 +155,13 @@ def test_all_wrong_entries_are_named_at_once(file: Path) -> None:
         "contest.entries_close",
         "contest.least_rest_s",
         "contest",
-        "court.main.seat.left.token",
         "court.main.arena",
         "court.main.input_delay",
         "court.main.input_delay_max_ms",
         "limits.legs_max",
         "health",
     ]
-    assert lines[5].endswith('"fair" is not possible; choose none or equal.')
+    assert lines[4].endswith('"fair" is not possible; choose none or equal.')
 
 
 @pytest.mark.parametrize(
@@ -240,47 +208,42 @@ def test_only_a_missing_file_is_to_be_written(file: Path) -> None:
         contests.load(file)
 
 
-def test_a_line_with_a_token_is_not_shown(file: Path) -> None:
-    """The message about a line that has a token gives the line's number alone."""
-    file.write_text('[office]\ntoken = "secret-of-the-office\n')
-    with pytest.raises(UserError, match=r"\(line 2\)") as caught:
-        contests.load(file)
-    assert "secret" not in str(caught.value)
-
-
 TWO = """
 [court.main]
 arena = "othello"
 {main}
-referee.token = "referee-token-of-main"
 [court.second]
 arena = "othello"
 {second}
-referee.token = "referee-token-of-second"
 """
 
 
 @pytest.mark.parametrize(
     ("main", "second"),
     [
-        ("", ""),
-        ('listen = ["0.0.0.0"]', ""),
+        ("", 'listen = ["127.0.0.1"]'),
+        ('listen = ["0.0.0.0:7448"]', ""),
         ('listen = ["10.0.0.7:7450", "127.0.0.1"]', 'listen = ["[::]:7447"]'),
-        ('connect = "one.example"', ""),
-        ('connect = "one.example"', 'connect = "one.example:7448"'),
+        ('listen = ["0.0.0.0:7448"]\nconnect = "one.example"', ""),
+        (
+            'listen = ["0.0.0.0:7448"]\nconnect = "one.example"',
+            'connect = "one.example:7448"',
+        ),
     ],
 )
 def test_two_courts_at_one_port_are_named(file: Path, main: str, second: str) -> None:
     """Two courts that would use the same port are refused; the message suggests a free port."""
     file.write_text(TWO.format(main=main, second=second))
-    with pytest.raises(UserError, match=r'court\.second.*"main" listens at .*:7447 too.*:744[89]'):
+    with pytest.raises(
+        UserError, match=r'court\.second.*"main" listens at .*:744[78] too.*:744[789]'
+    ):
         contests.load(file)
 
 
 @pytest.mark.parametrize(
     ("main", "second"),
     [
-        ("", 'listen = ["127.0.0.1:7448"]'),
+        ("", ""),
         ('listen = ["127.0.0.1:0"]', 'listen = ["0.0.0.0:0"]'),
         ('listen = ["10.0.0.7"]', 'listen = ["10.0.0.8"]'),
         (
@@ -302,38 +265,27 @@ ELSEWHERE = TWO.format(
 
 def test_a_court_elsewhere_has_two_addresses(file: Path) -> None:
     """Clients look for it on its machine first, then where the office runs it instead."""
-    file.write_text('[office]\ntoken = "token-of-the-office"\n' + ELSEWHERE)
+    file.write_text(ELSEWHERE)
     contest = contests.load(file)
-    access = entrances.spectator_access(contest, "second", None)
-    assert access.addresses == ["tcp/10.0.0.8:7450", "tcp/127.0.0.1:7448"]
-    assert entrances.spectator_access(contest, "second", "10.9.9.9").addresses == [
-        "tcp/10.9.9.9:7447"
-    ]
+    assert contest.access("second").addresses == ["tcp/10.0.0.8:7450", "tcp/127.0.0.1:7448"]
 
 
 def test_mistakes_with_courts_elsewhere_are_told(file: Path) -> None:
-    """They need an office, and each needs an address of its own."""
-    file.write_text(ELSEWHERE)
-    with pytest.raises(UserError, match=r"\[court\.main\]: only an office can run"):
-        contests.load(file)
-    same = ELSEWHERE.replace("10.0.0.8:7450", "10.0.0.7")
-    file.write_text('[office]\ntoken = "token-of-the-office"\n' + same)
+    """Each needs an address of its own."""
+    file.write_text(ELSEWHERE.replace("10.0.0.8:7450", "10.0.0.7"))
     with pytest.raises(UserError, match=r'court\.second.*"main" is elsewhere at .*:7447 too'):
         contests.load(file)
 
 
 STANDBY = """
-[office]
-token = "token-of-the-office"
 [standby]
 office = "{office}"
-token = "{token}"
 """
 
 
-def test_a_second_machine_has_an_address_and_a_token(file: Path) -> None:
+def test_a_second_machine_has_an_address(file: Path) -> None:
     """The office lets it copy at the same port of every address of its own machine."""
-    text = STANDBY.format(office="10.0.0.7:7440", token="token-of-the-standby")
+    text = STANDBY.format(office="10.0.0.7:7440")
     file.write_text(text + TWO.format(main="", second='listen = ["127.0.0.1:7448"]'))
     found = contests.load(file).standby
     assert found is not None
@@ -343,17 +295,14 @@ def test_a_second_machine_has_an_address_and_a_token(file: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("[standby]\noffice = '10.0.0.7:1'\ntoken = 'token-of-standby'\n", "only an office can be"),
-        (STANDBY.format(office="10.0.0.7:7448", token="token-of-standby"), '"second" listens at'),
-        (STANDBY.format(office="10.0.0.7:1", token="token-of-the-office"), "own token"),
-        (STANDBY.format(office="10.0.0.7:1", token="referee-token-of-main"), "own token"),
-        (STANDBY.format(office="x y", token="token-of-standby"), r"\[standby\]"),
-        (STANDBY.format(office="tls/10.0.0.7:1", token="token-of-standby"), r"\[standby\]"),
-        (STANDBY.format(office="10.0.0.7:1", token="short"), r"standby\.token"),
+        (STANDBY.format(office="10.0.0.7:7448"), '"second" listens at'),
+        (STANDBY.format(office="x y"), r"\[standby\]"),
+        (STANDBY.format(office="tls/10.0.0.7:1"), r"\[standby\]"),
+        (STANDBY.format(office="10.0.0.7:1") + "token = 'a'\n", r'no entry "token"'),
     ],
 )
 def test_mistakes_with_a_second_machine_are_told(file: Path, text: str, said: str) -> None:
-    """It needs an office, a port that no court has, and a token that is sent nowhere else."""
+    """It needs an address, with a port that no court has."""
     file.write_text(text + TWO.format(main="", second='listen = ["127.0.0.1:7448"]'))
     with pytest.raises(UserError, match=said):
         contests.load(file)
@@ -375,20 +324,6 @@ def test_a_file_saved_by_an_editor_that_writes_a_mark_loads(file: Path) -> None:
     assert contests.load(file).name == "Spring"
 
 
-def test_a_throwaway_contest_has_fresh_tokens(file: Path) -> None:
-    """A court without a contest file gets new tokens, different for each seat and the referee."""
-    one, other = contests.throwaway("othello"), contests.throwaway("othello")
-    tokens = [
-        token
-        for contest in (one, other)
-        for court in contest.courts.values()
-        for token in (court.referee.token, *(holder.token for holder in court.seat.values()))
-    ]
-
-    assert list(one.courts) == ["main"]
-    assert len(set(tokens)) == 6
-
-
 def test_the_only_court_needs_no_name(file: Path) -> None:
     """A contest's only court needs no name; an error about a court's name lists all courts."""
     assert contests.load(file).court()[0] == "main"
@@ -398,84 +333,3 @@ def test_the_only_court_needs_no_name(file: Path) -> None:
     for name in (None, "third"):
         with pytest.raises(UserError, match="main, second"):
             contest.court(name)
-
-
-def test_access_without_a_file(file: Path) -> None:
-    """Without a contest file, address and token come from options; errors name a missing option."""
-    access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
-
-    assert access == Access(court="main", connect="tcp/10.0.0.7:7447", seat="left", token="t" * 20)
-    assert entrances.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
-    with pytest.raises(
-        UserError, match=r"left seat.*--contest.*--token.*LACOC_CONTEST.*LACOC_TOKEN"
-    ):
-        entrances.seat_access(None, None, None, "left", None)
-    with pytest.raises(UserError, match="--seat"):
-        entrances.seat_access(None, None, None, None, "t" * 20)
-    with pytest.raises(UserError, match=r"referee.*--contest.*LACOC_CONTEST"):
-        entrances.referee_access(None, None, None, None)
-    with pytest.raises(UserError, match="not an address"):
-        entrances.spectator_access(None, None, "http://x")
-
-
-def test_access_from_a_file(file: Path) -> None:
-    """Options that are not given come from the contest file; given options override the file."""
-    file.write_text(GOOD + SECOND)
-    contest = contests.load(file)
-
-    left = entrances.seat_access(contest, "main", None, "left", None)
-    assert (left.connect, left.token) == ("tcp/127.0.0.1:7447", "left-token-of-main")
-    runner = entrances.seat_access(contest, "second", None, None, None)
-    assert (runner.connect, runner.seat) == ("tcp/court.example.org:7448", "runner")
-    given = entrances.seat_access(contest, "main", "10.0.0.7", "left", "another-token-here")
-    assert (given.connect, given.token) == ("tcp/10.0.0.7:7447", "another-token-here")
-    assert entrances.referee_access(contest, "main", None, None).token == "referee-token-of-main"
-    with pytest.raises(UserError, match="middle"):
-        entrances.seat_access(contest, "main", None, "middle", None)
-
-
-def test_join_lines_name_the_host(file: Path) -> None:
-    """Command lines have the court's `connect` address, or a given host instead of 0.0.0.0."""
-    file.write_text(GOOD + SECOND)
-    contest = contests.load(file)
-
-    main = entrances.join_lines("main", contest.courts["main"], "10.0.0.7")
-    second = entrances.join_lines("second", contest.courts["second"], "10.0.0.7")
-
-    assert main["left"] == (
-        "lacoc play --court main --connect tcp/10.0.0.7:7447 --seat left --token left-token-of-main"
-    )
-    assert "referee-token-of-main" in main["referee"]
-    assert "token" not in main["spectators"]
-    assert "tcp/court.example.org:7448" in second["runner"]
-
-
-@pytest.mark.parametrize(
-    ("line", "environment", "expected"),
-    [
-        (["--connect", "1.1.1.1"], {"LACOC_CONNECT": "2.2.2.2"}, "tcp/1.1.1.1:7447"),
-        ([], {"LACOC_CONNECT": "2.2.2.2"}, "tcp/2.2.2.2:7447"),
-        ([], {"LACOC_CONNECT": ""}, "tcp/127.0.0.1:9999"),
-        ([], {}, "tcp/127.0.0.1:9999"),
-        (["--no-file"], {}, "tcp/127.0.0.1:7447"),
-    ],
-)
-def test_precedence(
-    file: Path, line: list[str], environment: dict[str, str], expected: str
-) -> None:
-    """An option comes from the command line, else environment, else contest file, else default."""
-    file.write_text(GOOD.replace('"0.0.0.0"', '"127.0.0.1:9999"'))
-    app = typer.Typer()
-
-    @app.command()
-    def command(
-        connect: options.Connect = None,
-        contest: options.ContestFile = None,
-        no_file: Annotated[bool, typer.Option("--no-file")] = False,
-    ) -> None:
-        found = contests.load(contest) if contest and not no_file else None
-        print(entrances.spectator_access(found, None, connect).connect)
-
-    result = CliRunner().invoke(app, line, env={"LACOC_CONTEST": str(file), **environment})
-
-    assert result.output.strip() == expected

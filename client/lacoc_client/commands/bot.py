@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -43,11 +43,18 @@ def bot_command(
             "'ghost:RECORD.mcap:left', which presses the keys of a recorded match again."
         ),
     ],
-    contest: options.ContestFile = None,
+    link: options.Link = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
-    seat: options.SeatName = None,
     token: options.Token = None,
+    authority: Annotated[
+        Path | None,
+        typer.Option(
+            envvar="LACOC_AUTHORITY",
+            metavar="FILE",
+            help="With --connect: certificate of the private authority of an encrypted court.",
+        ),
+    ] = None,
     arena: Annotated[
         str | None,
         typer.Option(
@@ -75,28 +82,54 @@ def bot_command(
 ) -> None:
     """Let a bot hold a seat: it joins, says ready and plays, match after match.
 
-    With the token of a team and without --seat it goes from court to court, wherever the office of
-    the contest calls the team, until the contest is over for it.
+    With the link of a team it goes from court to court, wherever the office of the contest calls
+    the team, until the contest is over for it. At an open seat it plays with its own name and
+    files.
 
-    The bot ends with Ctrl-C. At a single seat it also ends when it loses the seat, or when the
-    court has been gone for two minutes (or for the time of --wait, if that is longer). Your own bot
-    is a Python file with a function bot(sheet, seat). This function returns another function, which
+    The bot ends with Ctrl-C. At an open seat it also ends when it loses the seat, or when the court
+    has been gone for two minutes (or for the time of --wait, if that is longer). Your own bot is a
+    Python file with a function bot(sheet, seat). This function returns another function, which
     takes a frame and returns a key.
     """
-    if (any_seat := entrance.team(contest, court, connect, seat, token)) is not None:
-        _follow(name, any_seat, court is None, arena, wait)
-        return
-    access = entrance.seat(contest, court, connect, seat, token)
+    access = entrance.contestant(link, court, connect, token, authority)
+    bring = partial(_brings, name, robot, gait or [])
+    with stop_signals() as stopping:
+        patience = Patience(wait, stopping)
+        with TeamWay(
+            access, any_court=court is None, patience=patience, tell=screen.show, stopping=stopping
+        ) as way:
+            while (there := way.next()) is not None:
+                if there.open:
+                    _sit(name, way.access(there), arena, team, bring, patience, stopping)
+                    return
+                try:
+                    over = _play_match(name, way, there, arena, stopping)
+                except (NotConnected, NoCourt, NotNow) as error:
+                    screen.note(error.phrase)
+                    over = False
+                if stopping():
+                    return
+                if over:
+                    way.played(there.call)
+                else:
+                    way.again()
+
+
+def _sit(
+    name: str,
+    access: Access,
+    arena: str | None,
+    team: str | None,
+    bring: Callable[[list[Phrase]], tuple[SeatFiles, str]],
+    patience: Patience,
+    stopping: Callable[[], bool],
+) -> None:
+    """Play at an open seat, match after match."""
     notes: list[Phrase] = []
-    files, own_team = _brings(name, robot, gait or [], notes)
+    files, own_team = bring(notes)
     for note in notes:
         screen.show(note)
-    with ExitStack() as stack:
-        stopping = stack.enter_context(stop_signals())
-        patience = Patience(wait, stopping)
-        session = stack.enter_context(
-            patience.until(lambda: open_client(access.addresses, authority=access.authority))
-        )
+    with open_client(access.addresses, authority=access.authority) as session:
         controller = patience.until(
             lambda: Controller(
                 session,
@@ -113,33 +146,10 @@ def bot_command(
         for hint in hints:
             screen.show(hint)
         try:
-            _play(controller, player, stopping, max(_GONE_S, wait or 0.0))
+            _play(controller, player, stopping, max(_GONE_S, patience.wait_s or 0.0))
         finally:
             if controller.hold is Hold.HELD:
                 _leave(controller)
-
-
-def _follow(
-    name: str, access: Access, any_court: bool, arena: str | None, wait: float | None
-) -> None:
-    """Play all matches of a team, at whichever court the office calls it to."""
-    with stop_signals() as stopping:
-        patience = Patience(wait, stopping)
-        with TeamWay(
-            access, any_court=any_court, patience=patience, tell=screen.show, stopping=stopping
-        ) as way:
-            while (there := way.next()) is not None:
-                try:
-                    over = _play_match(name, way, there, arena, stopping)
-                except (NotConnected, NoCourt, NotNow) as error:
-                    screen.note(error.phrase)
-                    over = False
-                if stopping():
-                    return
-                if over:
-                    way.played(there.call)
-                else:
-                    way.again()
 
 
 def _play_match(

@@ -11,11 +11,13 @@ from rich.text import Text
 
 from lacoc_client.commands import entrance
 from lacoc_client.doctor import machine as doctor
-from lacoc_client.doctor.link import link
+from lacoc_client.doctor.link import link as look_at
 from lacoc_client.doctor.machine import Finding, Status
 from lacoc_client.doctor.pages import pages, plain_courts
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.access import Access
+from lacoc_shared.contest.courts import LOOPBACK
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
@@ -32,6 +34,7 @@ _HOST_PORT = re.compile(r"(?:\w+/)?(?P<host>\[[^\]]+\]|[^:/]+):(?P<port>\d{1,5})
 
 @app.command(name="doctor")
 def doctor_command(
+    link: options.Link = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -61,23 +64,26 @@ def doctor_command(
 ) -> None:
     """Check whether this machine is ready: packages, ports, graphics, clock, disk.
 
-    With --connect or --contest this command also checks the connection to a court, or
-    to each court of the contest: whether the court answers, how long a request takes, and how many
-    frames arrive. If the contest file says where everybody opens the pages, this command opens them
-    there as a browser does. With --court it checks only that court. A court of the contest file
-    that does not run yet is only a note. Every finding is ok, a note or a problem; notes and
+    With a link, --connect or --contest this command also checks the connection to each court:
+    whether the court answers, how long a request takes, and how many frames arrive. If the contest
+    file says where everybody opens the pages, this command opens them there as a browser does. With
+    --court it checks only that court. A court of the contest file that does not run yet is only a
+    note. Every finding is ok, a note or a problem; notes and
     problems say what to do. The exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
     planned = [*plan.courts] if plan and court is None else [court]
-    asked = planned if connect is None else [court]
-    ways = [entrance.spectator(contest, one, connect) for one in (asked if plan or connect else ())]
+    ways: list[Access] = []
+    if link is not None or connect is not None:
+        ways = [*entrance.courts(link, court, connect).values()]
+    elif plan is not None:
+        ways = [plan.access(plan.court(one)[0]) for one in planned]
     folder = recordings or (plan.recordings if plan else Path("recordings"))
     findings = list(_look(plan, planned, web, folder, seconds))
     if plan is not None and plan.public.pages:
         findings += [*plain_courts(plan.public, plan.courts), *pages(plan.public, plan.given_name)]
     for way in ways:
-        findings += link(way, seconds, planned=plan is not None and not connect)
+        findings += look_at(way, seconds, planned=plan is not None and not (link or connect))
     if json:
         screen.print_json([finding.in_words() for finding in findings])
     else:
@@ -95,7 +101,7 @@ def _look(
 ) -> Iterator[Finding]:
     yield from doctor.packages()
     if plan is None:
-        yield doctor.court_port(*_host_port(contests.LOOPBACK), None)
+        yield doctor.court_port(*_host_port(LOOPBACK), None)
     for name, entry in map(plan.court, courts) if plan else ():
         authority = plan.public.read_authority() if plan else ""
         for address in entry.listen:

@@ -1,98 +1,130 @@
-"""Finds the way to a court from the options of a command."""
+"""Finds the way to courts: from a link, or from the address of a court that was started alone."""
 
 from pathlib import Path
 
-from lacoc_shared.contest import entrances
-from lacoc_shared.contest import file as contests
+from lacoc_client.link.event import find
 from lacoc_shared.contest.access import Access
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import endpoint
+from lacoc_shared.words import say
+
+MAIN = "main"
+"""Name of a court to which nobody gave one."""
+
+_HERE = "127.0.0.1"
 
 
-def seat(
-    contest: Path | None,
+def courts(
+    link: str | None,
     court: str | None,
     connect: str | None,
-    seat: str | None,
-    token: str | None,
+    token: str | None = None,
+    authority: Path | None = None,
+) -> dict[str, Access]:
+    """Find the ways to all courts of a link or to the named one, with the token of who goes there.
+
+    Args:
+        link: a link, or the address of pages.
+        court: the court's name; without it, that of the link counts.
+        connect: address of a court, without a link.
+        token: the token, without a link.
+        authority: file with the certificate of a private authority, without a link.
+
+    Returns:
+        An access for each court, by its name.
+
+    Raises:
+        UserError: if both a link and an address are given; if something is wrong with them; if the
+            pages of the link do not answer; or if there is no such court.
+    """
+    if link is None:
+        return {court or MAIN: _alone(court or MAIN, connect or _HERE, token or "", authority)}
+    if connect is not None or token is not None:
+        raise UserError(say("link.or-address"))
+    found = find(link)
+    there, name = found.courts, court or found.link.court
+    if name and name not in there:
+        raise UserError(say("gateway.no-court", court=name, courts=[*there]))
+    return {
+        one: Access(
+            court=one,
+            connect=first,
+            others=tuple(others),
+            token=found.link.token,
+            authority=found.event.authority,
+        )
+        for one, (first, *others) in there.items()
+        if name in ("", one)
+    }
+
+
+def one_court(
+    link: str | None, court: str | None, connect: str | None, token: str | None = None
 ) -> Access:
-    """Find the way to a seat; see `entrances.seat_access`.
+    """Find the way to one court; arguments as in `courts`.
 
     Raises:
-        UserError: if the contest file is wrong, or something is missing.
+        UserError: if a link leads to several courts and none is named; also for the reasons of
+            `courts`.
     """
-    return entrances.seat_access(_load(contest), court, connect, seat, token)
+    found = courts(link, court, connect, token)
+    if len(found) > 1:
+        raise UserError(say("entrance.which-court", courts=[*found]))
+    return next(iter(found.values()))
 
 
-def team(
-    contest: Path | None,
-    court: str | None,
-    connect: str | None,
-    seat: str | None,
-    token: str | None,
-) -> Access | None:
-    """Find the way to a court for a team that has a token but names no seat.
-
-    Teams have such tokens in a contest with an office; the office says where each team plays.
-    None: a seat is named or is the only one, or there is no token.
+def referee(link: str | None, court: str | None, connect: str | None, token: str | None) -> Access:
+    """Find the way of a referee to a court; arguments as in `courts`.
 
     Raises:
-        UserError: if the contest file is wrong.
+        UserError: if there is no token; also for the reasons of `one_court`.
     """
-    if seat is not None or token is None:
-        return None
-    plan = _load(contest)
-    if plan is not None:
-        name, entry = plan.court(court or plan.asked)
-        if len(entry.seat) == 1:
-            return None
-        court = name
-    return entrances.spectator_access(plan, court, connect).of_seat("", token)
+    return with_token(one_court(link, court, connect, token))
 
 
-def perhaps_seat(
-    contest: Path | None,
+def contestant(
+    link: str | None,
     court: str | None,
     connect: str | None,
-    seat: str | None,
     token: str | None,
+    authority: Path | None = None,
 ) -> Access:
-    """Find the way to a court, with seat and token if they are known; a page asks for the rest.
+    """Find the way of a contestant or a bot to any court, which says where its seat is.
+
+    Args:
+        link: as in `courts`, as all others.
+        court: the court to ask.
+        connect: address of a court.
+        token: the token.
+        authority: file of a private authority.
 
     Raises:
-        UserError: if the contest file is wrong.
+        UserError: if there is no token; also for the reasons of `courts`.
     """
-    plan = _load(contest)
-    access = entrances.spectator_access(plan, court, connect)
-    seats = plan.court(court)[1].seat if plan else {}
-    if seat is None and len(seats) == 1:
-        seat = next(iter(seats))
-    if token is None and seat in seats:
-        token = seats[seat].token
-    return access.of_seat(seat or "", token or "")
+    first, *others = courts(link, court, connect, token, authority).values()
+    addresses = [*first.others, *(at for one in others for at in one.addresses)]
+    return with_token(first.with_others(addresses))
 
 
-def referee(
-    contest: Path | None,
-    court: str | None,
-    connect: str | None,
-    token: str | None,
-) -> Access:
-    """Find the way to a court for its referee; see `entrances.referee_access`.
+def with_token(access: Access) -> Access:
+    """Return an access that has a token.
 
     Raises:
-        UserError: if the contest file is wrong, or something is missing.
+        UserError: if it has none.
     """
-    return entrances.referee_access(_load(contest), court, connect, token)
+    if not access.token:
+        raise UserError(say("entrance.no-token"))
+    return access
 
 
-def spectator(contest: Path | None, court: str | None, connect: str | None) -> Access:
-    """Find the way to a court for a spectator; see `entrances.spectator_access`.
-
-    Raises:
-        UserError: if the contest file is wrong.
-    """
-    return entrances.spectator_access(_load(contest), court, connect)
+def _alone(court: str, connect: str, token: str, authority: Path | None) -> Access:
+    trusted = "" if authority is None else _read(authority)
+    return Access(court=court, connect=endpoint(connect), token=token, authority=trusted)
 
 
-def _load(path: Path | None) -> Contest | None:
-    return None if path is None else contests.load(path)
+def _read(authority: Path) -> str:
+    try:
+        return authority.read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError) as error:
+        why = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise UserError(say("public.no-authority", file=str(authority), why=why)) from None

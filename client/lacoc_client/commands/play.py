@@ -5,7 +5,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-import msgspec
 import typer
 from rich.console import Group
 from rich.text import Text
@@ -16,7 +15,7 @@ from lacoc_client.controller import Controller
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.own_files import OwnFiles
 from lacoc_client.stopping import stop_signals
-from lacoc_client.team_way import TeamWay, is_gone, is_over, office_court
+from lacoc_client.team_way import TeamWay, is_gone, is_over
 from lacoc_client.terminal.keys import Keys, open_keys
 from lacoc_client.terminal.play import TerminalPlay, keys_table
 from lacoc_client.terminal.words import played
@@ -25,7 +24,6 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.contest.access import Access
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages.office import Whereabouts
-from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.words import render, say
 
@@ -58,10 +56,9 @@ _SHEET_S = 2.0
 
 @app.command(name="play")
 def play_command(
-    contest: options.ContestFile = None,
+    link: options.Link = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
-    seat: options.SeatName = None,
     token: options.Token = None,
     name: TeamName = "",
     robot: Robot = None,
@@ -76,8 +73,9 @@ def play_command(
 ) -> None:
     """Hold a seat and steer your robot with the keyboard.
 
-    In a contest with an office your team has one token: give it without --seat. You are told when
-    and where you play next, and go from court to court until the contest is over for your team.
+    Your link says who you are. In a contest you are told when and where you play next, and go from
+    court to court until the contest is over for your team. At an open seat you play with your own
+    name and files.
 
     A page opens in your browser; only this machine can open it. The page already has what you give
     here, and you can enter the rest there.
@@ -92,22 +90,14 @@ def play_command(
     robot wait until the match is played. The last key of the pipe stays pressed until the match is
     over.
     """
-    any_seat = entrance.team(contest, court, connect, seat, token)
-    if terminal and any_seat is not None:
-        follow(any_seat, court is None, ready=ready)
-        return
     if terminal:
-        access = entrance.seat(contest, court, connect, seat, token)
-        files = own_files(robot, gait or []).files
-        play(access, name or render(say("page.team", seat=access.seat)), files, ready=ready)
+        access = entrance.contestant(link, court, connect, token)
+        follow(access, court is None, name, lambda: own_files(robot, gait or []).files, ready=ready)
         return
-    at_office = None if any_seat is None else _at_office(any_seat, court is None)
-    if at_office is not None:
-        access, prefill = at_office, Prefill(token=at_office.token)
-    else:
-        access = entrance.perhaps_seat(contest, court, connect, seat, token)
-        prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
-    home = player_home(access, prefill, "player", None)
+    courts = entrance.courts(link, court, connect, token)
+    first = next(iter(courts.values()))
+    prefill = Prefill("", first.token, name, own_files(robot, gait or []))
+    home = player_home(courts, prefill, "player", None)
     pages.show_page(home, f"/play#key={home.key}", browser, json)
 
 
@@ -151,26 +141,26 @@ def play(
             TerminalPlay(controller, keys, Path()).run(stopping)
 
 
-def _at_office(access: Access, any_court: bool) -> Access | None:
-    """Find a court with an office for the page of a team; None: there is none now."""
-    try:
-        with open_client(access.addresses, authority=access.authority) as session:
-            court = office_court(session, access.court, any_court=any_court)
-    except UserError:
-        return None
-    return msgspec.structs.replace(access, court=court)
-
-
-def follow(access: Access, any_court: bool, *, ready: bool) -> None:
-    """Play all matches of a team at the terminal, at whichever court the office calls it to.
+def follow(
+    access: Access,
+    any_court: bool,
+    name: str,
+    bring: Callable[[], SeatFiles],
+    *,
+    ready: bool,
+) -> None:
+    """Play at the terminal at whichever court the token's seat is.
 
     Args:
-        access: the way to any court of the contest, with the team's token.
+        access: the way to any court of the event, with the token.
         any_court: whether nobody named the court.
+        name: name of a team at an open seat; "": that of the seat.
+        bring: returns the files of a team at an open seat.
         ready: say ready at once, in each match.
 
     Raises:
-        UserError: if no team has the token, or the seat is lost for good.
+        FileRefused: if the court finds mistakes in the files.
+        UserError: if the token opens nothing, or the seat is lost for good.
     """
     with stop_signals() as stopping, open_keys() as keys:
         way = TeamWay(
@@ -182,8 +172,12 @@ def follow(access: Access, any_court: bool, *, ready: bool) -> None:
         )
         with way:
             while not stopping() and (there := way.next()) is not None:
+                team, files = there.team, SeatFiles()
+                if there.open:
+                    team = name or render(say("page.team", seat=there.seat))
+                    files = bring()
                 try:
-                    if not _play_match(way, there, keys, stopping, ready=ready):
+                    if not _play_match(way, there, team, files, keys, stopping, ready=ready):
                         return
                 except (NotConnected, NoCourt, NotNow) as error:
                     screen.note(error.phrase)
@@ -191,18 +185,26 @@ def follow(access: Access, any_court: bool, *, ready: bool) -> None:
 
 
 def _play_match(
-    way: TeamWay, there: Whereabouts, keys: Keys, stopping: Callable[[], bool], *, ready: bool
+    way: TeamWay,
+    there: Whereabouts,
+    team: str,
+    files: SeatFiles,
+    keys: Keys,
+    stopping: Callable[[], bool],
+    *,
+    ready: bool,
 ) -> bool:
-    """Play one match of a team at the terminal; return whether the team goes on."""
+    """Play one match at the terminal, or at an open seat all; return whether the team goes on."""
     access = way.access(there)
     with open_client(access.addresses, authority=access.authority) as session:
-        controller = _seated(session, access, there.team, SeatFiles(), ready=ready)
+        controller = _seated(session, access, team, files, ready=ready)
         view = controller.view
 
         def is_left() -> bool:
             return is_over(view, there.call) or is_gone(view)
 
-        goes_on = TerminalPlay(controller, keys, Path(), is_left).run(stopping)
+        left = None if there.open else is_left
+        goes_on = TerminalPlay(controller, keys, Path(), left).run(stopping)
         if goes_on and is_over(view, there.call):
             way.played(there.call)
         return goes_on

@@ -56,7 +56,7 @@ def practice_command(
             play(access, name or "Practice", files.files, ready=True, greeting=greeting)
             return
         prefill = Prefill(access.seat, access.token, name or "Practice", files)
-        home = player_home(access, prefill, "practice", recordings)
+        home = player_home({access.court: access}, prefill, "practice", recordings)
         pages.show_page(home, f"/practice#key={home.key}", browser, json)
 
 

@@ -6,6 +6,7 @@ new subcommand here, with its arguments.
 
 import getpass
 import inspect
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -16,6 +17,7 @@ import typer
 from msgspec.structs import FieldInfo
 from rich.table import Table
 from rich.text import Text
+from typer.core import TyperGroup
 
 from lacoc_client.asking import NoAnswer, Patience
 from lacoc_client.commands import entrance
@@ -41,10 +43,24 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEAT_S, Phase, SeatFlag
 from lacoc_shared.words import Phrase, render, say
 
+
+class _Referee(TyperGroup):
+    """Takes a link before the subcommand: `lacoc referee LINK start`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Keep the link for the subcommand; a link alone shows how the match stands."""
+        if args and "://" in args[0]:
+            os.environ["LACOC_LINK"] = args[0]
+            args = args[1:] or ["status"]
+        return super().parse_args(ctx, args)
+
+
 app = typer.Typer(
+    cls=_Referee,
     help="Referee a match: decide, read the log, see how well the court runs.\n\n"
-    "'status' says which decisions are possible now, and why the others are not. The "
-    "record keeps every decision with the referee's name and the reason.",
+    "Begin with your link, in quotes: lacoc referee LINK start. 'status' says which decisions are "
+    "possible now, and why the others are not. The record keeps every decision with the referee's "
+    "name and the reason.",
     no_args_is_help=True,
 )
 
@@ -121,7 +137,7 @@ _COMMON: dict[str, tuple[Any, Any]] = {
         ],
         None,
     ),
-    "contest": (options.ContestFile, None),
+    "link": (options.LinkOption, None),
     "court": (options.CourtName, None),
     "connect": (options.Connect, None),
     "token": (options.Token, None),
@@ -191,14 +207,14 @@ for _name, _kind in DECISIONS.items():
 
 @app.command(rich_help_panel="Look")
 def status(
-    contest: options.ContestFile = None,
+    link: options.LinkOption = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
     token: _TokenUnused = None,
     json: options.Json = False,
 ) -> None:
     """Show phase, clock, score, connections, and which decisions are possible."""
-    access = entrance.spectator(contest, court, connect)
+    access = entrance.one_court(link, court, connect, None if link else token)
     with open_client(access.addresses, authority=access.authority) as session:
         view = Spectator(session, access.court)
         frame, health = _look(view)
@@ -211,7 +227,7 @@ def status(
 
 @app.command(rich_help_panel="Look")
 def log(
-    contest: options.ContestFile = None,
+    link: options.LinkOption = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
     token: _TokenUnused = None,
@@ -221,7 +237,7 @@ def log(
     json: options.Json = False,
 ) -> None:
     """List the events of the match with their numbers; with --json, one on each line."""
-    access = entrance.spectator(contest, court, connect)
+    access = entrance.one_court(link, court, connect, None if link else token)
     with open_client(access.addresses, authority=access.authority) as session:
         view = Spectator(session, access.court)
         events = _history(view)
@@ -258,7 +274,7 @@ def outlook(
             metavar="SEAT", help="Put the robot of this seat back at its start place before."
         ),
     ] = None,
-    contest: options.ContestFile = None,
+    link: options.LinkOption = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
     token: options.Token = None,
@@ -276,7 +292,7 @@ def outlook(
         decision = TakeBack(take_back)
     elif restart is not None:
         decision = Restart(restart)
-    access = entrance.referee(contest=contest, court=court, connect=connect, token=token)
+    access = entrance.referee(link, court, connect, token)
     with open_client(access.addresses, authority=access.authority) as session:
         view = Spectator(session, access.court)
         found = RefereeClient(session, access.court, access.token).look_ahead(decision, seconds)

@@ -31,7 +31,7 @@ _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 @app.command(name="watch")
 def watch_command(
-    contest: options.ContestFile = None,
+    link: options.Link = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
     terminal: pages.Terminal = False,
@@ -61,10 +61,13 @@ def watch_command(
     A page opens in your browser. In the terminal and with --json the command ends when the result
     is official or the match is void. Anybody may watch without a token.
     """
-    access = entrance.spectator(contest, court, connect)
     if not (terminal or board or json):
-        pages.show_page(Home({access.court: access}, "player"), "/watch", browser)
+        courts = entrance.courts(link, court, connect)
+        pages.show_page(
+            Home({name: at.watching() for name, at in courts.items()}, "player"), "/watch", browser
+        )
         return
+    access = entrance.one_court(link, court, connect)
     with (
         open_client(access.addresses, authority=access.authority) as session,
         stop_signals() as stopping,

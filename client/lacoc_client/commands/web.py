@@ -1,11 +1,13 @@
 """`lacoc web`: serve the pages of a contest's courts to everybody at the venue."""
 
-from contextlib import nullcontext
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
+from urllib.parse import urlsplit
 
 import typer
 
+from lacoc_client.commands import entrance
 from lacoc_client.commands.pages import public_address
 from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
@@ -13,13 +15,16 @@ from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home
 from lacoc_client.gateway.site import site
 from lacoc_client.gateway.wire import JOIN_BYTES
+from lacoc_client.link.event import find
+from lacoc_client.link.mirror import SheetMirror
 from lacoc_client.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
+from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.access import Access
-from lacoc_shared.contest.entrances import spectator_access
 from lacoc_shared.contest.file import Contest
+from lacoc_shared.network.address import host as address_host
+from lacoc_shared.network.public import is_loopback
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
@@ -27,6 +32,7 @@ app = typer.Typer()
 
 @app.command(name="web")
 def web_command(
+    link: options.Link = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -75,55 +81,109 @@ def web_command(
     metrics: options.Metrics = None,
     json: options.Json = False,
 ) -> None:
-    """Serve the pages: spectators, broadcast, contestants, referee, replays.
+    """Serve the pages of courts: spectators, broadcast, contestants, referee, replays.
+
+    'lacoc contest run' does this by itself. With a link to its pages, this command serves them once
+    more, for a larger crowd, from a machine without any secret. With --connect it serves the pages
+    of a court that was started alone.
 
     Everybody who can reach this machine may watch. Who has the token of a seat or of a referee can
     play or referee. The pages wait for a court that is not running yet.
     """
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
-    home = Home(
-        courts=_courts(plan, court, connect),
-        contest=plan.given_name if plan else "",
-        sheet=contests.sheet_path(contest) if contest else None,
-        recordings=recordings or (plan.recordings if plan else Path("recordings")),
-        keeps_back=plan is not None and plan.replays != "at-once",
-        desk=office is not None,
-        viewers_most=viewers,
-        exporter=exporter,
-    )
     own = None if plan is None else plan.public
     public = public_address(pages, certificate, private_key, proxy, own)
     port = server.listen(listen, public)
     address = port.url
+    with ExitStack() as stack:
+        if exporter is not None:
+            stack.enter_context(exporter)
+        home = Home(
+            recordings=recordings or (plan.recordings if plan else Path("recordings")),
+            keeps_back=plan is not None and plan.replays != "at-once",
+            desk=office is not None,
+            viewers_most=viewers,
+            exporter=exporter,
+            **_shown(stack, link, plan, contest, court, connect, urlsplit(address).hostname or ""),
+        )
+        has_contest = home.sheet is not None
 
-    def ready() -> None:
-        built = PageFiles().built
-        first = "contest" if plan is not None and plan.office is not None else "watch"
-        shown = browser and built and open_browser(f"{address}/{first}")
-        if json:
-            opened = {"kind": "open", "url": address, "key": home.key, "built": built}
-            opened |= {"shown": shown, "metrics": None if exporter is None else exporter.url}
-            screen.print_json(opened)
-        else:
-            _tell(home, address, office=first == "contest")
-            if exporter is not None:
-                screen.note(say("command.metrics-at", where=exporter.url))
-        if not built:
-            screen.warn(render(NOT_BUILT))
-        log.start(json)
+        def ready() -> None:
+            built = PageFiles().built
+            first = "contest" if has_contest else "watch"
+            shown = browser and built and open_browser(f"{address}/{first}")
+            if json:
+                opened = {"kind": "open", "url": address, "key": home.key, "built": built}
+                opened |= {"shown": shown, "metrics": None if exporter is None else exporter.url}
+                screen.print_json(opened)
+            else:
+                _tell(home, address, office=has_contest)
+                if exporter is not None:
+                    screen.note(say("command.metrics-at", where=exporter.url))
+            if not built:
+                screen.warn(render(NOT_BUILT))
+            log.start(json)
 
-    with exporter or nullcontext():
-        desk = None if office is None else DeskSite(office, address)
+        desk = (
+            None
+            if office is None
+            else DeskSite(office, address, plan.public.fingerprint if plan else "")
+        )
         server.run(site(home, PageFiles(), desk), port, ready, DESK_BYTES if desk else JOIN_BYTES)
 
 
-def _courts(plan: Contest | None, court: str | None, connect: str | None) -> dict[str, Access]:
-    """Find the access to the named court, or to all courts of the contest."""
-    if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
-        access = spectator_access(plan, court, connect)
-        return {access.court: access}
-    return {name: spectator_access(plan, name, None) for name in plan.courts}
+def _shown(
+    stack: ExitStack,
+    link: str | None,
+    plan: Contest | None,
+    file: Path | None,
+    court: str | None,
+    connect: str | None,
+    host: str,
+) -> dict[str, Any]:
+    """Return what the settings of the gateway say of its courts and their contest."""
+    if link is not None:
+        found = find(link)
+        event = found.event
+        sheet = stack.enter_context(Scratch("mirror")) / "contest.json"
+        stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
+        courts = entrance.courts(link, court, connect)
+        told = {name: event.courts[name] for name in courts}
+        return {
+            "courts": {name: access.watching() for name, access in courts.items()},
+            "contest": event.name,
+            "sheet": sheet,
+            "told": told,
+            "authority": event.authority,
+        }
+    if plan is None or file is None:
+        courts = entrance.courts(None, court, connect)
+        told = {name: tuple(access.addresses) for name, access in courts.items()}
+        return {"courts": courts, "told": told}
+    names = [plan.court(court)[0]] if court else [*plan.courts]
+    return {
+        "courts": {name: plan.access(name) for name in names},
+        "contest": plan.given_name,
+        "sheet": contests.sheet_path(file),
+        "told": {name: _told(plan, name, host) for name in names},
+        "authority": plan.public.read_authority(),
+    }
+
+
+def _told(plan: Contest, court: str, host: str) -> tuple[str, ...]:
+    """Return the addresses of a court for others; none if it listens to its own machine only.
+
+    Args:
+        plan: the contest file.
+        court: the court's name.
+        host: the host of the pages: whoever opens them on this machine finds its courts there, too.
+    """
+    entry = plan.courts[court]
+    found = [entry.address(plan.own_host), entry.stand_in(plan.own_host)]
+    return tuple(
+        one for one in found if one and (is_loopback(host) or not is_loopback(address_host(one)))
+    )
 
 
 def _tell(home: Home, address: str, *, office: bool) -> None:

@@ -15,8 +15,8 @@ from websockets.typing import Origin
 
 from lacoc_client.doctor.machine import Finding, Status
 from lacoc_client.gateway.guard import name_of
-from lacoc_client.gateway.site import Health
-from lacoc_shared.contest.file import Court
+from lacoc_client.gateway.health import Health
+from lacoc_shared.contest.courts import Court
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.network.public import PublicAddress, is_loopback
 from lacoc_shared.words import say

@@ -90,6 +90,13 @@ class Courts:
         """Return whether a court has accepted a token."""
         return token is not None and _digest(token) in self._accepted
 
+    def threads_for(self, token: str) -> Threads:
+        """Return the threads that show a token to a court.
+
+        Whoever comes back does not wait behind people who try tokens.
+        """
+        return self.threads if self.has_accepted(token) else self.strangers
+
     def owns(self, key: str | None) -> bool:
         """Return whether a page key is the one of this gateway."""
         return key is not None and hmac.compare_digest(

@@ -67,6 +67,9 @@ class Home:
     """The page key: a page with it belongs to the person who started the gateway."""
 
 
-def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:
-    """Return the settings of a gateway for one person at one court."""
-    return Home({access.court: access.watching()}, kind, "", prefill, recordings)
+def player_home(
+    courts: Mapping[str, Access], prefill: Prefill, kind: Kind, recordings: Path | None
+) -> Home:
+    """Return the settings of a gateway for one person, whose way leads to these courts."""
+    watching = {name: access.watching() for name, access in courts.items()}
+    return Home(watching, kind, "", prefill, recordings)

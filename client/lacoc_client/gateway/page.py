@@ -15,7 +15,7 @@ from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.page_requests import serve_requests
 from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.programme import Programme
-from lacoc_client.gateway.referees import Referees, as_referee
+from lacoc_client.gateway.referees import Referees
 from lacoc_client.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
@@ -107,9 +107,9 @@ class Page:
                 self._acting()[1].take_over(viewer)
                 answers.reply(asked.id, {})
             case wire.DecideAsk():
-                answers.later(asked.id, self._decide(asked, self._acting()[1]))
+                answers.later(asked.id, self._decide(asked, *self._acting()))
             case wire.OutlookAsk():
-                answers.later(asked.id, self._look_ahead(asked, self._acting()[1]))
+                answers.later(asked.id, self._look_ahead(asked, *self._acting()))
         return True
 
     async def _watch(self, asked: wire.Watch) -> bool:
@@ -189,15 +189,10 @@ class Page:
 
     async def _proven_join(self, asked: wire.JoinAsk, feed: CourtFeed) -> Any:
         """Join with a token that no court has accepted yet: a seat of its own is dear."""
-        await feed.joined()
-        played = feed.picture.played()
-        if played is None or played.fixture is not None:
-            await self._ask_where(asked.token or "", feed)
+        await self._ask_where(asked.token or "", feed)
         joined = asyncio.get_running_loop().create_future()
         self._seat.join(asked, feed.access, partial(in_future, joined))
-        found = await joined
-        self._accepted(asked.token or "")
-        return found
+        return await joined
 
     async def _where(self, asked: wire.WhereAsk, feed: CourtFeed) -> Any:
         own = self._home.prefill if self._viewer.is_own else None
@@ -214,8 +209,10 @@ class Page:
         if not token:
             raise UserError(say("gateway.no-token"))
         session = await feed.joined()
-        found = await self._courts.strangers.run(lambda: where(session, feed.court, token))
+        threads = self._courts.threads_for(token)
+        found = await threads.run(lambda: where(session, feed.court, token))
         self._accepted(token)
+        self._seat.brings = found.open
         return found
 
     def _accepted(self, token: str) -> None:
@@ -244,45 +241,42 @@ class Page:
         by = asked.by.strip()
         if not (by and by.isprintable()):
             raise UserError(say("gateway.who-are-you"))
-        if feed.session is None:
-            raise UserError(say("gateway.court-not-there", court=feed.court))
-        access = feed.access.of_referee(asked.token)
         # One at a time, so that a page that tries wrong tokens uses one thread, not many.
         if self._entering.locked():
             raise UserError(TOO_MUCH)
         async with self._entering:
-            await self._show_token(access, feed, referees)
+            await self._show_token(asked.token, feed)
         self._accepted(asked.token)
         if referees is self._referees:  # the page may have gone to another court
-            referees.enter(self._viewer, access, by)
+            referees.enter(self._viewer, asked.token, by)
             self._log(f"{by} sits down as a referee.", "referee", by=by)
         return {}
 
-    async def _show_token(self, access: Access, feed: CourtFeed, referees: Referees) -> None:
-        courts = self._courts
-        # A referee who comes back does not wait behind people who try tokens.
-        threads = courts.threads if referees.knows(access) else courts.strangers
+    async def _show_token(self, token: str, feed: CourtFeed) -> None:
+        client = self._client(feed, token)
         try:
-            await threads.run(lambda: as_referee(access, RefereeClient.enter))
+            await self._courts.threads_for(token).run(client.enter)
         except NoCourt:
             raise
         except UserError as error:
             # The court sends frames to this gateway, so it is there: the token must be wrong.
             raise wire.TokenRefused(*error.said) if feed.connected else error from None
 
-    async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
-        access, by = referees.acting(self._viewer)
+    def _client(self, feed: CourtFeed, token: str) -> RefereeClient:
+        if feed.session is None:
+            raise UserError(say("gateway.court-not-there", court=feed.court))
+        return RefereeClient(feed.session, feed.court, token)
+
+    async def _decide(self, asked: wire.DecideAsk, feed: CourtFeed, referees: Referees) -> Any:
+        token, by = referees.acting(self._viewer)
+        client = self._client(feed, token)
         return await self._courts.threads.run(
-            lambda: as_referee(
-                access, lambda client: client.decide(asked.decision, asked.reason, by)
-            )
+            lambda: client.decide(asked.decision, asked.reason, by)
         )
 
-    async def _look_ahead(self, asked: wire.OutlookAsk, referees: Referees) -> Any:
-        access, _ = referees.acting(self._viewer)
-        return await self._courts.threads.run(
-            lambda: as_referee(access, lambda client: client.look_ahead(asked.decision, _LOOKS_S))
-        )
+    async def _look_ahead(self, asked: wire.OutlookAsk, feed: CourtFeed, referees: Referees) -> Any:
+        client = self._client(feed, referees.acting(self._viewer)[0])
+        return await self._courts.threads.run(lambda: client.look_ahead(asked.decision, _LOOKS_S))
 
     def _log(self, text: str, kind: str, **particulars: object) -> None:
         """Log a line about this page; while the page is at no court, log nothing."""

@@ -40,6 +40,8 @@ class PageSeat:
         self._log = log
         self._thread: SeatThread | None = None
         self._joins = 0
+        self.brings = True
+        """Whether a join brings files: an office has frozen those of its teams."""
         self._hold = ("", "")
         """The seat and its hold, as last logged."""
 
@@ -115,7 +117,9 @@ class PageSeat:
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill if self._viewer.is_own else None
         if prefill is not None and (not token or not prefill.token):
-            own, theirs = files, prefill.files.files if prefill.files else SeatFiles()
+            own, theirs = files, SeatFiles()
+            if prefill.files is not None and self.brings:
+                theirs = prefill.files.files
             if own.postures is None and own.locomotion is None:
                 files = SeatFiles(own.robot or theirs.robot, theirs.postures, theirs.locomotion)
             token, name = token or prefill.token, name or prefill.name

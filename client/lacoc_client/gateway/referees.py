@@ -1,49 +1,22 @@
 """The referees of a court at this gateway: one page acts, the others watch."""
 
-from collections.abc import Callable
-from typing import TypeVar
-
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
-from lacoc_client.referee import RefereeClient
-from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.session import open_client
 from lacoc_shared.words import say
-
-T = TypeVar("T")
-
-
-def as_referee(access: Access, do: Callable[[RefereeClient], T]) -> T:
-    """Call a function with a referee's own connection to a court.
-
-    The connection exists for this call only. Decisions are rare, and so a gateway never keeps a
-    connection that can decide.
-
-    Raises:
-        UserError: if the court refuses, or does not let the referee in.
-    """
-    with open_client(access.addresses, authority=access.authority) as session:
-        return do(RefereeClient(session, access.court, access.token))
 
 
 class Referees:
     """The pages that have entered with a referee's token; used from the event loop only."""
 
     def __init__(self) -> None:
-        self._entered: dict[Viewer, tuple[Access, str]] = {}
+        self._entered: dict[Viewer, tuple[str, str]] = {}
         self._acting: Viewer | None = None
-        self._taken: set[Access] = set()
 
-    def knows(self, access: Access) -> bool:
-        """Return whether the court has accepted this token before."""
-        return access in self._taken
-
-    def enter(self, viewer: Viewer, access: Access, by: str) -> None:
+    def enter(self, viewer: Viewer, token: str, by: str) -> None:
         """Add a page that has entered with a token; it acts if no other page does."""
-        self._entered[viewer] = (access, by)
-        self._taken.add(access)
+        self._entered[viewer] = (token, by)
         self._act(self._acting or viewer)
 
     def take_over(self, viewer: Viewer) -> None:
@@ -56,8 +29,8 @@ class Referees:
             raise UserError(say("gateway.enter-first"))
         self._act(viewer)
 
-    def acting(self, viewer: Viewer) -> tuple[Access, str]:
-        """Return the access and the name with which a page decides.
+    def acting(self, viewer: Viewer) -> tuple[str, str]:
+        """Return the token and the name with which a page decides.
 
         Raises:
             UserError: if the page does not act.

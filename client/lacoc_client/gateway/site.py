@@ -9,7 +9,7 @@ from typing import Protocol
 import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
@@ -25,6 +25,7 @@ from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.forks import ForkAsk, Forks, bots
 from lacoc_client.gateway.guard import answer, language_of, machine_of
+from lacoc_client.gateway.health import Health
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
@@ -47,19 +48,6 @@ KEY_HEADER = "X-Lacoc-Key"
 """HTTP header with the page key, or with a token that a court has accepted."""
 
 _MCAP = "application/octet-stream"
-
-
-class Health(msgspec.Struct, frozen=True, kw_only=True):
-    """What a gateway says of itself to whoever watches over it."""
-
-    version: str
-    """Version of LACOC."""
-    contest: str
-    """Name of the contest; "" if there is none."""
-    host: str
-    """The request's `Host`, which a proxy may have replaced."""
-    unnamed_proxy: bool
-    """Whether a proxy says who asks and is not believed: all then seem to be one machine."""
 
 
 class More(Protocol):
@@ -247,6 +235,12 @@ def page_routes(
             return answer(request.scope, NOT_BUILT, 503)
         return file_response(request, file, ASK_AGAIN)
 
+    async def without_slash(request: Request) -> Response:
+        """Lead to the page itself: the addresses on it are relative to what stands beside it."""
+        url = request.url
+        name = url.path.rstrip("/").rpartition("/")[2]
+        return RedirectResponse(f"../{name}" + (f"?{url.query}" if url.query else ""))
+
     async def asset(request: Request) -> Response:
         name = request.path_params["name"]
         file = await asyncio.to_thread(files.find, f"assets/{name}")
@@ -273,6 +267,7 @@ def page_routes(
     return [
         Route("/healthz", healthz),
         *(Route(path, index) for path in paths),
+        *(Route(f"{path}/", without_slash) for path in paths if path != "/"),
         Route("/assets/{name:path}", asset),
         *others,
         Route("/{name}", top_file),

@@ -3,7 +3,6 @@
 It is public: whoever can open the pages may read it at `event.json`.
 """
 
-import hashlib
 import ssl
 import urllib.error
 import urllib.request
@@ -12,10 +11,11 @@ from typing import NamedTuple
 
 import msgspec
 
-from lacoc_client.link.link import Link
+from lacoc_shared.contest.link import Link
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
+from lacoc_shared.network.certificate import fingerprint
 from lacoc_shared.words import Phrase, say
 
 PATH = "event.json"
@@ -75,15 +75,6 @@ def find(text: str) -> Found:
         raise UserError(say("link.other-authority", url=link.pages))
     event = _read(link, _fetched(link, ssl.create_default_context(cadata=claimed)))
     return Found(link, msgspec.structs.replace(event, authority=claimed))
-
-
-def fingerprint(certificate: str) -> str:
-    """Return the fingerprint of a certificate (PEM): SHA-256, hexadecimal.
-
-    Raises:
-        ValueError: if it is none.
-    """
-    return hashlib.sha256(ssl.PEM_cert_to_DER_cert(certificate)).hexdigest()
 
 
 def _fingerprint(link: Link, certificate: str) -> str:

@@ -14,7 +14,7 @@ from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Ask, Ping, Unreadable
 from lacoc_client.office.desk import DeskLine
 from lacoc_client.office.hand_ins import HandIns
-from lacoc_client.office.links import Links, TeamLink, qr_code, referee_link, team_link
+from lacoc_client.office.links import LinkMaker, Links, TeamLink, qr_code
 from lacoc_shared import codec
 from lacoc_shared.messages.desk import REPLY_MAX_BYTES, Own, OwnEntry, TokenList, Tokens
 from lacoc_shared.mistakes import UserError
@@ -81,7 +81,7 @@ class DeskPage:
         desk: the connection to the desk.
         guesses: slows down whoever shows wrong secrets.
         hand_ins: counts how often files are handed in.
-        address: address of the pages, as other machines can open it.
+        make: makes links.
     """
 
     def __init__(
@@ -90,14 +90,14 @@ class DeskPage:
         desk: DeskLine,
         guesses: Guesses,
         hand_ins: HandIns,
-        address: str,
+        make: LinkMaker,
     ) -> None:
         self._websocket = websocket
         self._desk = desk
         self._guesses = guesses
         self._hand_ins = hand_ins
         self._machine = websocket.client.host if websocket.client is not None else ""
-        self._address = address
+        self._make = make
         self._answers = Answers(Viewer(websocket.state.socket), lambda *_: None)
 
     async def serve(self) -> None:
@@ -118,7 +118,7 @@ class DeskPage:
             case LinkAsk():
                 self._answers.later(asked.id, self._link(asked.token))
             case AddressAsk():
-                self._answers.reply(asked.id, {"address": self._address})
+                self._answers.reply(asked.id, {"address": self._make.address})
             case LinksAsk():
                 self._answers.later(asked.id, self._links(asked.secret, asked.team))
         return True
@@ -130,7 +130,7 @@ class DeskPage:
     async def _link(self, token: str) -> TeamLink:
         answer = await self._asked(codec.encode(Own(secret=token)))
         entry = codec.decode(answer, OwnEntry, REPLY_MAX_BYTES)
-        return team_link(entry.team, self._address, entry.token)
+        return self._make.team(entry.team, entry.token)
 
     async def _links(self, secret: str, wanted: str) -> Links:
         answer = await self._asked(codec.encode(Tokens(secret=secret)))
@@ -138,18 +138,23 @@ class DeskPage:
         return await asyncio.to_thread(self._made, tokens, wanted)
 
     def _made(self, tokens: TokenList, wanted: str) -> Links:
-        enter = f"{self._address}/enter"
+        enter = f"{self._make.address}/enter"
         teams = tuple(
-            team_link(team, self._address, token)
+            self._make.team(team, token)
             for team, token in tokens.teams.items()
             if wanted in ("", team)
         )
         referees = tuple(
-            referee_link(court, self._address, token)
+            self._make.referee(court, token)
             for court, token in tokens.referees.items()
             if not wanted
         )
-        return Links(enter=enter, enter_qr=qr_code(enter), teams=teams, referees=referees)
+        seats = tuple(
+            self._make.seat(one.court, one.seat, one.token) for one in tokens.seats if not wanted
+        )
+        return Links(
+            enter=enter, enter_qr=qr_code(enter), teams=teams, referees=referees, seats=seats
+        )
 
     async def _asked(self, request: bytes) -> bytes:
         try:

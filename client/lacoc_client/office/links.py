@@ -7,6 +7,8 @@ from typing import Any
 import msgspec
 import segno
 
+from lacoc_shared.contest.link import Link
+
 _BORDER = 4
 """Width of the white edge that scanners need, in squares of the code."""
 
@@ -29,32 +31,63 @@ class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
     """The link as a QR code: a picture in SVG."""
 
 
+class SeatLink(msgspec.Struct, frozen=True, kw_only=True):
+    """The link of a seat in open matches."""
+
+    court: str
+    seat: str
+    """The arena's name of the seat."""
+    link: str
+    qr: str
+    """The link as a QR code: a picture in SVG."""
+
+
 class Links(msgspec.Struct, frozen=True, kw_only=True):
-    """Links of teams and referees, and the address at which teams enter."""
+    """Links of teams, referees and open seats, and the address at which teams enter."""
 
     enter: str
     enter_qr: str
     """That address as a QR code: a picture in SVG."""
     teams: tuple[TeamLink, ...]
     referees: tuple[RefereeLink, ...]
+    seats: tuple[SeatLink, ...] = ()
 
 
-def team_link(team: str, address: str, token: str) -> TeamLink:
-    """Make the link of a team.
+class LinkMaker:
+    """Makes the links of an event.
 
     Args:
-        team: name of the team.
         address: address of the pages, such as "http://192.168.1.20:8080".
-        token: the team's token.
+        authority: fingerprint of the event's own authority; "": it has none.
     """
-    link = f"{address}/play#token={token}"
-    return TeamLink(team=team, link=link, qr=qr_code(link))
 
+    def __init__(self, address: str, authority: str = "") -> None:
+        self.address = address
+        self._authority = authority
 
-def referee_link(court: str, address: str, token: str) -> RefereeLink:
-    """Make the link of a court's referee; arguments as in `team_link`, with the desk's token."""
-    link = f"{address}/referee?court={court}#token={token}"
-    return RefereeLink(court=court, link=link, qr=qr_code(link))
+    def team(self, team: str, token: str) -> TeamLink:
+        """Make the link of a team with its token."""
+        link = self._play(token)
+        return TeamLink(team=team, link=link, qr=qr_code(link))
+
+    def seat(self, court: str, seat: str, token: str) -> SeatLink:
+        """Make the link of an open seat with its token."""
+        link = self._play(token)
+        return SeatLink(court=court, seat=seat, link=link, qr=qr_code(link))
+
+    def referee(self, court: str, token: str) -> RefereeLink:
+        """Make the link of a court's referee with the desk's token."""
+        link = Link(
+            pages=self.address,
+            page="referee",
+            court=court,
+            token=token,
+            authority=self._authority,
+        ).text
+        return RefereeLink(court=court, link=link, qr=qr_code(link))
+
+    def _play(self, token: str) -> str:
+        return Link(pages=self.address, page="play", token=token, authority=self._authority).text
 
 
 @lru_cache(maxsize=1024)  # one takes some milliseconds, and a large contest has hundreds

@@ -9,6 +9,7 @@ from lacoc_client.gateway.guesses import Guesses
 from lacoc_client.office.desk import DeskLine
 from lacoc_client.office.desk_page import DeskPage
 from lacoc_client.office.hand_ins import HandIns
+from lacoc_client.office.links import LinkMaker
 from lacoc_shared.messages.desk import DESK_MAX_BYTES
 
 DESK_BYTES = DESK_MAX_BYTES + 1024
@@ -21,24 +22,23 @@ class DeskSite:
     Args:
         desk: address of the office's desk.
         address: address of the pages, as other machines can open it.
+        authority: fingerprint of the event's own authority; "": it has none.
     """
 
     paths: Sequence[str] = ("/office", "/enter")
 
-    def __init__(self, desk: str, address: str) -> None:
+    def __init__(self, desk: str, address: str, authority: str = "") -> None:
         self._line = DeskLine(desk)
         self._guesses = Guesses()
         self._hand_ins = HandIns()
-        self._address = address
+        self._make = LinkMaker(address, authority)
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
         """The route of the pages' requests."""
 
         async def page(websocket: WebSocket) -> None:
-            await DeskPage(
-                websocket, self._line, self._guesses, self._hand_ins, self._address
-            ).serve()
+            await DeskPage(websocket, self._line, self._guesses, self._hand_ins, self._make).serve()
 
         return [WebSocketRoute("/office/ws", page)]
 

@@ -87,7 +87,7 @@ def demo_command(
             show_live = not headless and not in_browser and sys.stdout.isatty()
             needed = []
             for seat, bot in (("left", left), ("right", right)):
-                join = ("--arena", arena, "--seat", seat, *where)
+                join = ("--arena", arena, *where)
                 bot_process = _process("bot", bot, *join, token=court.tokens[seat])
                 needed.append(processes.enter_context(bot_process))
             for decision, wait_s in (("start", _READY_S), ("official", _DAY_S)):

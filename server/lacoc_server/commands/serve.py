@@ -2,6 +2,7 @@
 
 import secrets
 import signal
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,7 +10,6 @@ from typing import Annotated, Any
 import typer
 
 from lacoc_arenas import arena as arenas
-from lacoc_arenas.arena import Arena
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_server.court.assigning import Preparation
@@ -22,16 +22,20 @@ from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk
-from lacoc_server.journal.recovery import last_result, unfinished
+from lacoc_server.doors.team_desk import TeamDesk, alone
+from lacoc_server.journal.recovery import Unfinished, last_result, unfinished
 from lacoc_server.match.entry import Admission
 from lacoc_shared.command import child, log, options, screen
 from lacoc_shared.command.metrics import Exporter
-from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.courts import LOOPBACK
+from lacoc_shared.contest.courts import Court as CourtEntry
 from lacoc_shared.contest.file import Contest
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.secrets import Secrets
+from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
+from lacoc_shared.messages.office import TOKENS_MOST, WAITING, open_match
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint, own_address
 from lacoc_shared.words import say
@@ -86,28 +90,32 @@ def serve_command(
     Without a contest file the court makes its own tokens and prints the command line for each
     contestant and for the referee. Ctrl-C closes the court; the record is finished first.
 
-    With an office in the contest file, the court plays only what the office assigns.
+    With a contest file the court plays only what the office assigns: 'lacoc contest run' starts it.
 
     If the court was killed in a match, start it again in the same way. The match is then halted,
     and goes on where it stopped, with its seats, clock and score. A match without a referee resumes
     by itself when a contestant is back. Without a contest file both the new tokens and the old ones
     open the seats.
     """
-    plan, made_here = _contest(contest, arena, listen, court)
+    if contest is None:
+        plan = _alone(arena, listen, court)
+    elif arena is None:
+        plan = contests.load(contest)
+    else:
+        raise UserError(say("serve.contest-or-arena"))
     name, entry = plan.court(court)
     own_settings = _overrides(entry.settings, seconds)
-    loaded = arenas.load(entry.arena, own_settings, entry.looks)
-    if plan.office is None:
-        _check_seats(name, entry, loaded)
+    loaded = arenas.load(entry.arena, own_settings)
+    seats = [seat.id for seat in loaded.seats]
     keys = Keys(name)
     folder = recordings or plan.recordings
     left = None if fresh else unfinished(folder, name, loaded)
-    over = last_result(folder, name, loaded) if plan.office and not (left or fresh) else None
+    over = last_result(folder, name, loaded) if contest and not (left or fresh) else None
     levels = {*loaded.match.open_levels}
     if left is not None:
         levels |= {*left.match.rules.open_levels}  # the match that goes on keeps its own levels
         screen.note(say("serve.goes-on", match=left.match.setup.match_id))
-        if left.match.assigned is None and left.match.setup.settings != loaded.settings:
+        if not left.match.by_office and left.match.setup.settings != loaded.settings:
             screen.note(say("serve.old-settings"))
         if left.cut:
             screen.note(left.cut)
@@ -119,46 +127,60 @@ def serve_command(
         Limits.of(plan.limits),
         levels,
     )
-    desk = DecisionDesk([hash_token(entry.referee.token)])
+    whistle = plan.secrets.referee(name) if contest else new_token()
+    tokens = {} if contest else {seat: new_token() for seat in seats}
+    settings = CourtSettings(
+        name,
+        loaded,
+        plan.limits,
+        folder,
+        assigned=WAITING if contest else open_match(_opening(tokens, left)),
+        speed=speed,
+        health=plan.health,
+    )
     addresses = (endpoint(listen, plan.public.protocol),) if listen else entry.own_listen
     with ExitStack() as opened:
         weighing = opened.enter_context(Weighing(admission))
         inbox = Inbox(
             keys,
-            [seat.id for seat in loaded.seats],
-            {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
+            seats,
             weighing,
             secrets.token_bytes,
             last_seqs=left.last_seqs if left else None,
             joined=left.token_hashes if left else (),
-            # With a contest file only its tokens count: an organiser replaces a lost token there.
-            former=left.token_hashes if left and made_here else None,
             most_delay_ms=entry.most_delay_ms,
         )
         office = None
-        if plan.office is not None:
-            prepare = Preparation(entry.arena, own_settings, inbox.seats, admission, weighing.aside)
+        if contest:
+            prepare = Preparation(entry.arena, own_settings, seats, admission, weighing.aside)
             copying = Copying(folder, name, weighing.aside)
-            office = OfficeDesk(hash_token(plan.office.token), inbox.seats, prepare, copying)
+            office = OfficeDesk(hash_token(plan.secrets.office), seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         outlooks = Outlooks(weighing.aside)
         pair = plan.public.pair
         renewal = None if pair is None else opened.enter_context(Renewal(pair, name))
         network = opened.enter_context(
-            CourtNetwork(keys, addresses, inbox, desk, pair, office, outlooks)
+            CourtNetwork(
+                keys,
+                addresses,
+                inbox,
+                DecisionDesk([hash_token(whistle)]),
+                pair,
+                office,
+                outlooks,
+                TeamDesk(alone(name, settings.assigned)),
+            )
         )
-        settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
         running = Court(settings, network, left or over, office, outlooks)
         if exporter is not None:
             exporter.registry.register(running.metrics)
         stop = _stop_on_signal()
         _open_doors(
             name,
-            entry,
             running.match_id,
             network.locators,
             metrics=None if exporter is None else exporter.url,
-            made_here=made_here,
+            tokens=None if contest else (tokens, whistle),
             json=json,
         )
         log.start(json)
@@ -174,18 +196,22 @@ def serve_command(
         raise typer.Exit(child.NOT_AGAIN)
 
 
-def _contest(
-    path: Path | None, arena: str | None, listen: str | None, court: str | None
-) -> tuple[Contest, bool]:
-    """Load the contest, or make one for this run; also return whether it was made here."""
-    if path is not None:
-        if arena is not None:
-            raise UserError(say("serve.contest-or-arena"))
-        return contests.load(path), False
-    name = arena or "othello"
-    seats = [seat.id for seat in arenas.load(name).seats]
-    listen_at = (listen or contests.LOOPBACK,)
-    return contests.throwaway(name, seats, listen_at, court or contests.MAIN), True
+def _alone(arena: str | None, listen: str | None, court: str | None) -> Contest:
+    """Return what a contest file would say of a court that is started without one."""
+    entry = CourtEntry(arena=arena or "othello", listen=(endpoint(listen or LOOPBACK),))
+    nobody = Secrets(Path())  # nobody asks it: the tokens are of this run alone
+    return Contest(courts={court or contests.MAIN: entry}, secrets=nobody)
+
+
+def _opening(tokens: Mapping[str, str], left: Unfinished | None) -> dict[str, list[str]]:
+    """Return the hashes of all tokens that open a seat: the new one, and those before a restart."""
+    found = {seat: [hash_token(token)] for seat, token in tokens.items()}
+    if left is not None:
+        for one in left.match.assigned.seats if left.match.assigned else ():
+            found[one.id] += one.token_hashes
+        for seat, held in left.token_hashes.items():
+            found[seat].append(held)
+    return {seat: [*dict.fromkeys(hashes)][:TOKENS_MOST] for seat, hashes in found.items()}
 
 
 def _overrides(settings: dict[str, Any], seconds: float | None) -> dict[str, Any]:
@@ -194,47 +220,39 @@ def _overrides(settings: dict[str, Any], seconds: float | None) -> dict[str, Any
     )
 
 
-def _check_seats(name: str, entry: contests.Court, arena: Arena) -> None:
-    there, wanted = set(entry.seat), {seat.id for seat in arena.seats}
-    if there != wanted:
-        raise UserError(
-            say(
-                "serve.other-seats",
-                court=name,
-                tokens=sorted(there),
-                arena=arena.name,
-                seats=sorted(wanted),
-            )
-        )
-
-
 def _open_doors(
     name: str,
-    entry: contests.Court,
     match_id: str,
     locators: tuple[str, ...],
     *,
     metrics: str | None,
-    made_here: bool,
+    tokens: tuple[dict[str, str], str] | None,
     json: bool,
 ) -> None:
     if json:
         opened: dict[str, Any] = {"kind": "open", "court": name, "match_id": match_id}
         opened |= {"locators": locators, "metrics": metrics}
-        if made_here:
-            opened["tokens"] = {seat: holder.token for seat, holder in entry.seat.items()}
-            opened["referee"] = entry.referee.token
+        if tokens is not None:
+            opened["tokens"], opened["referee"] = tokens
         screen.print_json(opened)
         return
     screen.show(say("serve.open", court=name, at=locators, match=match_id))
     if metrics is not None:
         screen.note(say("command.metrics-at", where=metrics))
-    if made_here:
-        open_court = contests.Court(
-            arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee
-        )
-        for who, line in entrances.join_lines(name, open_court, own_address()).items():
+    if tokens is not None:
+        address = CourtEntry(listen=locators).address(own_address())
+        for who, line in _lines(name, address, *tokens).items():
             screen.show(say("serve.enter", who=who, command=line))
+
+
+def _lines(court: str, address: str, seats: Mapping[str, str], referee: str) -> dict[str, str]:
+    """Return the command lines for a court: by seat, for "referee" and for "spectators"."""
+    where = f"--court {court} --connect {address}"
+    return {
+        **{seat: f"lacoc play {where} --token {token}" for seat, token in seats.items()},
+        "referee": f"lacoc referee status {where} --token {referee}",
+        "spectators": f"lacoc watch {where}",
+    }
 
 
 def _stop_on_signal() -> list[int]:

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from lacoc_robots.library import robot_folder
 from lacoc_server.contest import organiser
-from lacoc_shared.contest.tokens import new_token
 
 TEAMS = (
     ("Ants", "planner", "hexapod"),
@@ -39,8 +38,6 @@ _COURT = """
 [court.{name}]
 arena = "{arena}"
 listen = ["127.0.0.1:{port}"]
-[court.{name}.referee]
-token = "{token}"
 """
 
 
@@ -57,9 +54,8 @@ def write_contest(folder: Path, arena: str, seconds: float) -> Path:
         OSError: if the contest file can't be written.
     """
     text = '[contest]\nname = "Bots\' Cup"\nrecordings = "recordings"\n'
-    text += f'\n[office]\ntoken = "{new_token()}"\n'
     for name, port in zip(COURTS, _free_ports(len(COURTS)), strict=True):
-        text += _COURT.format(name=name, arena=arena, port=port, token=new_token())
+        text += _COURT.format(name=name, arena=arena, port=port)
     text += _STAGES.format(arena=arena, seconds=float(seconds))
     file = folder / "contest.toml"
     file.write_text(text, encoding="utf-8")

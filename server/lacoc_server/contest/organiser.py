@@ -14,7 +14,6 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
@@ -204,11 +203,9 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
         team: name of a team; None: all teams in the contest that are not bots.
 
     Raises:
-        UserError: if the contest has no office, or no such team, or a token can't be written.
+        UserError: if there is no such team, or a token can't be written.
     """
     where = ContestFolder(file)
-    if where.contest.office is None:
-        raise UserError(say("contest.no-office", file=str(file)))
     with FactStore(where.facts) as store:
         teams = compute(store.facts(), FORMATS).teams
     names = [one.name for one in teams]
@@ -217,8 +214,9 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
     people = [one.name for one in teams if not (one.gone or one.bot)]
     if team is None and not people:
         raise UserError(say("contest.no-people"))
-    kept = TeamTokens(where.tokens)
-    return {name: kept.of(name) for name in ([team] if team is not None else people)}
+    return {
+        name: where.contest.secrets.team(name) for name in ([team] if team is not None else people)
+    }
 
 
 def play_headless(
@@ -246,7 +244,7 @@ def play_headless(
     """
     where = ContestFolder(file)
     with where.alone(), FactStore(where.facts) as store:
-        prepare(where, store)
+        prepare(where, store, headless=True)
         for plan in where.plans:
             if not game(plan).match.duration_s:
                 raise UserError(say("contest.no-end", stage=plan.stage))
@@ -283,23 +281,26 @@ def publish_to(file: Path, folder: Path) -> None:
         publish.publish(where, store.facts(), folder)
 
 
-def prepare(where: ContestFolder, store: FactStore, *, entering: bool = False) -> None:
+def prepare(
+    where: ContestFolder, store: FactStore, *, entering: bool = False, headless: bool = False
+) -> None:
     """Append the plans of the contest file, and check that a contest can be played.
 
     Args:
         where: the contest.
         store: its facts.
         entering: whether teams may still come.
+        headless: whether there are no courts, which could play open matches.
 
     Raises:
         UserError: if the file has no stage, a stage that is drawn has changed there, or there are
             too few teams.
     """
-    if not where.plans:
+    if not where.plans and (headless or where.open_stage is None):
         raise UserError(say("contest.no-stages", file=str(where.file)))
     note_plans(store, where.plans)
     contest = compute(store.facts(), FORMATS)
-    if not (entering and not contest.closed):
+    if where.plans and not (entering and not contest.closed):
         check_teams(where, contest)
 
 

@@ -97,7 +97,9 @@ class Preparation:
 
 
 def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str]) -> list[JoinSeat]:
-    """Return a join with the assigned files for each team that keeps its seat in the next match.
+    """Return a join for each team that keeps its seat in the next match.
+
+    It has the assigned files; in an open seat it stays as it is.
 
     Args:
         joins: the joins of the match before.
@@ -106,14 +108,19 @@ def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str])
     """
     kept = ((join, assigned.seat(seats[join.seat])) for join in joins)
     return [
-        frozen_join(join.seat, seat, join.token_hash)
+        frozen_join(join.seat, seat, join.token_hash) if seat.team else join
         for join, seat in kept
         if seat is not None and join.token_hash in seat.token_hashes
     ]
 
 
 def _weighed(seat: AssignedSeat, admission: Admission) -> AssignedSeat | Refusal:
-    """Weigh in the files of a team; return its seat with the robot file filled in."""
+    """Weigh in the files of a team; return its seat with the robot file filled in.
+
+    An open seat stays as it is: its files are weighed in when somebody joins.
+    """
+    if not seat.team:
+        return seat
     robot, postures, locomotion = seat.files
     join = Join(
         protocol=PROTOCOL,

@@ -33,7 +33,7 @@ from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Abort, Halt
 from lacoc_shared.inputs import THE_COURT, Advice, Decide, Input, JoinSeat
 from lacoc_shared.messages import Health, HealthVerdict, Outcome
-from lacoc_shared.messages.office import WAITING
+from lacoc_shared.messages.office import WAITING, Assigned
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
 from lacoc_shared.record.matches import MatchName
@@ -57,6 +57,9 @@ class CourtSettings:
     """Contest limits for robots, where they differ from the defaults of rules 1."""
     recordings: Path | None
     """Folder of the records; None: no record."""
+    assigned: Assigned = WAITING
+    """What is played when no office has assigned anything: nothing, or at a court that was started
+    alone an open match, again and again."""
     speed: float = 1.0
     """Multiple of real time: at 1 a beat takes 20 ms, at 2 it takes 10 ms."""
     health: HealthLimits = field(default_factory=HealthLimits)
@@ -122,7 +125,7 @@ class Court:
             network.publish_sheet(left.match.sheet())
             for event in left.events:
                 network.publish_event(event)
-        self._admit([*range(len(self._journal.match.seats))])
+        self._network.admit(self._assigned, [*range(len(self._journal.match.seats))])
 
     @property
     def match_id(self) -> str:
@@ -159,7 +162,7 @@ class Court:
         finally:
             take_turns()
         match = self._journal.match
-        if match.assigned is not None and not match.is_over:
+        if match.by_office and not match.is_over:
             self._journal.leave()
         else:
             self._close()
@@ -246,21 +249,17 @@ class Court:
         self._close()
         self._journal = following
         heap.give_back()  # return the memory of the last match's models
-        joins, assigned = match.next_joins(), following.match.assigned
-        if assigned is not None:
-            joins = staying(joins, assigned, [seat.id for seat in following.match.seats])
-            self._log.assigned(self.match_id, assigned)
+        joins = staying(match.next_joins(), self._assigned, [seat.id for seat in match.seats])
+        if not self._assigned.is_alone:
+            self._log.assigned(self.match_id, self._assigned)
         self._inputs = list(joins)
-        self._admit([join.seat for join in joins])
+        self._network.admit(self._assigned, [join.seat for join in joins])
 
-    def _admit(self, staying: Sequence[int]) -> None:
-        """Open the seats to the teams of an assigned match.
-
-        Sessions of the seats in `staying` go on; all other sessions end.
-        """
-        assigned = self._journal.match.assigned
-        if assigned is not None:
-            self._network.admit(assigned, staying)
+    @property
+    def _assigned(self) -> Assigned:
+        """What is assigned; a court that was started alone takes its newest tokens, too."""
+        assigned, own = self._journal.match.assigned, self._settings.assigned
+        return own if assigned is None or assigned.is_alone else assigned
 
     @property
     def _wanted(self) -> Wanted[Prepared] | None:
@@ -293,11 +292,9 @@ class Court:
 
     def _open(self, number: int, prepared: Prepared | None) -> Journal:
         settings = self._settings
-        arena, limits, assigned = settings.arena, settings.limits, None
+        arena, limits, assigned = settings.arena, settings.limits, settings.assigned
         if prepared is not None:
             arena, limits, assigned = prepared.arena, prepared.limits, prepared.assigned
-        elif self._office is not None:
-            assigned = WAITING
         setup = Setup(
             match_id=str(MatchName.new(settings.recordings, settings.name, number)),
             court=settings.name,
@@ -307,7 +304,7 @@ class Court:
             limits=dict(limits),
             assigned=assigned,
         )
-        folder = None if assigned is not None and assigned.waits else settings.recordings
+        folder = None if assigned.waits else settings.recordings
         return self._journal_of(Match(setup, World, arena.folder), folder)
 
     def _journal_of(

@@ -28,7 +28,7 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
     """
     if match.phase is Phase.FINISHED:
         return [_decide(Official())]
-    if match.phase is Phase.OFFICIAL and match.assigned is not None:
+    if match.phase is Phase.OFFICIAL and match.by_office:
         return []  # the office says what is played next
     if match.phase is Phase.OFFICIAL:
         is_read = len(match.seats) == 1 or match.beats - match.entered_beat >= _RESULT_BEATS

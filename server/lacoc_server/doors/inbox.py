@@ -136,14 +136,10 @@ class Inbox:
     Args:
         keys: key expressions of the court; seals cover them.
         seats: the seats' names, in the arena's order.
-        token_hashes: hash of each seat's token, by the seat's name; a seat without one can't be
-            joined.
         check_files: weighs a join's files in.
         random_bytes: returns as many random bytes as asked, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
-        former: for a restarted court that made new tokens, hash of the token with which each seat
-            was taken before, by seat; it opens the seat too.
         most_delay_ms: longest delay that makes the links equal; 0: links are not made equal.
     """
 
@@ -151,20 +147,15 @@ class Inbox:
         self,
         keys: Keys,
         seats: Sequence[str],
-        token_hashes: Mapping[str, str],
         check_files: CheckFiles,
         random_bytes: Callable[[int], bytes],
         *,
         last_seqs: Mapping[str, int] | None = None,
         joined: Collection[str] = (),
-        former: Mapping[str, str] | None = None,
         most_delay_ms: int = 0,
     ) -> None:
         self._keys = keys
-        hashes = (token_hashes, former or {})
-        self._openings = Openings(
-            {name: [by_seat[name] for by_seat in hashes if name in by_seat] for name in seats}
-        )
+        self._openings = Openings()
         self._check_files = check_files
         self._seats = [
             _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
@@ -191,11 +182,11 @@ class Inbox:
         """
         self._held, self._has_begun = held, has_begun
 
-    def admit(self, assigned: Assigned | None, staying: Collection[int]) -> None:
-        """Open the seats for the teams of a match; call it with each match that the court opens.
+    def admit(self, assigned: Assigned, staying: Collection[int]) -> None:
+        """Open the seats of a match; call it with each match that the court opens.
 
         Args:
-            assigned: what the office assigned; None: the court's own tokens open the seats.
+            assigned: what is assigned.
             staying: the seats whose sessions go on. All others end.
         """
         self._openings.admit(assigned)
@@ -243,8 +234,8 @@ class Inbox:
             join = codec.decode(payload, Join, JOIN_MAX_BYTES)
         except codec.BadMessage as error:
             return seat.refuse(Why.BAD_BYTES, say("refused.bad-join", error=str(error)))
-        token_hash = self._openings.hash_of(seat.name, join.token)
-        if token_hash is None:
+        opened = self._openings.opened(seat.name, join.token)
+        if opened is None:
             why, said = self._openings.why_closed(seat.name, join.token)
             return seat.refuse(why, said, again=why is Why.OTHER_MATCH)
         if not seat.joins.take(1, self._now_s):
@@ -257,7 +248,8 @@ class Inbox:
         if not all(0 < len(one.name) <= FILE_NAME_MAX and one.name.isprintable() for one in files):
             return seat.refuse(Why.BAD_NAME, say("refused.file-name", most=FILE_NAME_MAX))
         join = msgspec.structs.replace(join, name=self._own_name(seat, name))
-        if (assigned := self._openings.team(seat.name)) is not None:
+        assigned, token_hash = opened
+        if assigned.team:
             return self._frozen(seat, join, assigned, token_hash)
         return self._weighed(seat, join, token_hash) or partial(
             self._weighed, seat, join, token_hash

@@ -14,6 +14,7 @@ from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox
 from lacoc_server.doors.office_desk import Answer, OfficeDesk
 from lacoc_server.doors.outbox import Outbox
+from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
 from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, Keys
@@ -75,6 +76,7 @@ class CourtNetwork:
         certificate: what proves the court's name; None: nothing is encrypted.
         office_desk: checks what comes from the office; None: the court has no office.
         look_ahead: answers referees who ask for an outlook; None: nobody answers them.
+        team_desk: answers whoever asks where to play, at a court without an office.
 
     Raises:
         UserError: if the court can't listen on an address.
@@ -89,10 +91,12 @@ class CourtNetwork:
         certificate: Pair | None = None,
         office_desk: OfficeDesk[Any] | None = None,
         look_ahead: LookAhead | None = None,
+        team_desk: TeamDesk | None = None,
     ) -> None:
         self._inbox = inbox
         self._decision_desk = decision_desk
         self._office_desk = office_desk
+        self._team_desk = (team_desk or TeamDesk()) if office_desk is None else office_desk.teams
         self._session = session = open_court(listen, certificate, office_desk is not None)
         self._outbox = Outbox()
         self._frame = session.publisher(keys.frame)
@@ -115,7 +119,7 @@ class CourtNetwork:
             self._desks.append((session.desk(keys.outlook, _DESK), judge))
         if office_desk is not None:
             self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
-            self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(office_desk)))
+        self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk)))
         self._waiting: dict[Desk, tuple[Request, _Later]] = {}
         """The request at each desk that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
@@ -135,8 +139,8 @@ class CourtNetwork:
         self._outbox.close()
         self._session.close()
 
-    def admit(self, assigned: Assigned | None, staying: Collection[int]) -> None:
-        """Open the seats for the teams of a match; see `Inbox.admit`."""
+    def admit(self, assigned: Assigned, staying: Collection[int]) -> None:
+        """Open the seats of a match; see `Inbox.admit`."""
         self._inbox.admit(assigned, staying)
 
     def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
@@ -242,9 +246,9 @@ class CourtNetwork:
     @property
     def dropped(self) -> dict[str, int]:
         """Number of refusals that belong to no seat, by `Why`."""
-        refused = self._decision_desk.refused
+        refused = self._decision_desk.refused + self._team_desk.refused
         if self._office_desk is not None:
-            refused = refused + self._office_desk.refused + self._office_desk.teams.refused
+            refused = refused + self._office_desk.refused
         return dict(refused)
 
     def _serve_fetches(self) -> None:
@@ -312,8 +316,8 @@ def _office_judge(desk: OfficeDesk[Any]) -> _Judge:
     return judge
 
 
-def _team_judge(desk: OfficeDesk[Any]) -> _Judge:
-    return lambda request: desk.teams.where(request.payload)
+def _team_judge(desk: TeamDesk) -> _Judge:
+    return lambda request: desk.where(request.payload)
 
 
 def _empty(ring: Ring) -> list[bytes]:

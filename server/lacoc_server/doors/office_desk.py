@@ -211,7 +211,8 @@ class OfficeDesk(Generic[T]):
         if sorted(seats) != sorted(self._seats):
             return say("refused.assigned-seats", found=seats[:20], seats=self._seats)
         hashes = [one for seat in assign.seats for one in {*seat.token_hashes}]
-        if len({*hashes}) < len(hashes) or len({seat.team for seat in assign.seats}) < len(seats):
+        teams = [seat.team for seat in assign.seats if seat.team]
+        if len({*hashes}) < len(hashes) or len({*teams}) < len(teams):
             return say("refused.same-team-twice")
         return next(filter(None, map(_wrong_name, assign.seats)), None)
 
@@ -221,7 +222,7 @@ class OfficeDesk(Generic[T]):
 
 
 def _wrong_name(seat: AssignedSeat) -> Phrase | None:
-    if not _is_name(seat.team, NAME_MAX) or seat.team != seat.team.strip():
+    if (seat.team and not _is_name(seat.team, NAME_MAX)) or seat.team != seat.team.strip():
         return say("refused.team-name", most=NAME_MAX, name=printable(seat.team))
     if not all(_is_name(file.name, FILE_NAME_MAX) for file in seat.files if file is not None):
         return say("refused.file-name", most=FILE_NAME_MAX)

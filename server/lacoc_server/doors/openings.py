@@ -1,52 +1,44 @@
-"""Which tokens open which seat of a court: its own ones, or those of the match that is assigned.
+"""Which tokens open which seat of a court: those of the match that is assigned.
 
-Pure. The tokens of an assigned match belong to teams, and open a seat with the files that the
-office froze.
+Pure. A token of a team opens its seat with the files that the office froze. Whoever has the token
+of an open seat brings a name and files.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 
 from lacoc_server.doors.sessions import Why
 from lacoc_shared import seal
 from lacoc_shared.inputs import JoinSeat
-from lacoc_shared.messages.office import Assigned, AssignedSeat
+from lacoc_shared.messages.office import WAITING, Assigned, AssignedSeat
 from lacoc_shared.words import Phrase, say
 
 
 class Openings:
-    """The tokens of all seats.
+    """The tokens of all seats; nothing opens one before the first match."""
 
-    Args:
-        own: hashes of the court's own tokens, by seat.
-    """
+    def __init__(self) -> None:
+        self._assigned = self._before = WAITING
+        """What is assigned, and what was before: its teams are told more than that a token is
+        wrong."""
 
-    def __init__(self, own: Mapping[str, Collection[str]]) -> None:
-        self._own = own
-        self._assigned: Assigned | None = None
-        self._before: Assigned | None = None
-        """What was assigned before, so that its teams are told more than that a token is wrong."""
-
-    def admit(self, assigned: Assigned | None) -> None:
-        """Take what the office assigned; None: the court's own tokens open the seats."""
+    def admit(self, assigned: Assigned) -> None:
+        """Take what is assigned."""
         self._assigned, self._before = assigned, self._assigned
 
-    def team(self, seat: str) -> AssignedSeat | None:
-        """Return the team that the office seated; None: it seated none."""
-        return None if self._assigned is None else self._assigned.seat(seat)
-
-    def hash_of(self, seat: str, token: str) -> str | None:
-        """Return the hash of a token that opens a seat; None: it does not open it."""
-        assigned = self.team(seat)
-        own = self._own.get(seat, ()) if self._assigned is None else ()
-        return _opening(token, own if assigned is None else assigned.token_hashes)
+    def opened(self, seat: str, token: str) -> tuple[AssignedSeat, str] | None:
+        """Return a seat that a token opens, and the token's hash; None: it does not open it."""
+        assigned = self._assigned.seat(seat)
+        token_hash = None if assigned is None else _opening(token, assigned.token_hashes)
+        return None if assigned is None or token_hash is None else (assigned, token_hash)
 
     def why_closed(self, seat: str, token: str) -> tuple[Why, Phrase]:
         """Say why a token does not open a seat; a team of the contest is told what to do."""
-        if self._assigned is not None and self._assigned.waits:
+        if self._assigned.waits:
             return Why.OTHER_MATCH, say("refused.waits-for-office")
-        if (found := next(_teams(self._assigned, token), None)) is not None:
+        found = next(_opened(self._assigned, token), None)
+        if found is not None and found.team:
             return Why.OTHER_MATCH, say("refused.other-seat", team=found.team, seat=found.id)
-        if any(_teams(self._before, token)):
+        if found is None and any(_opened(self._before, token)):
             return Why.OTHER_MATCH, say("refused.other-match", seat=seat)
         return Why.WRONG_TOKEN, say("refused.wrong-token", seat=seat)
 
@@ -64,9 +56,9 @@ def frozen_join(index: int, assigned: AssignedSeat, token_hash: str) -> JoinSeat
     return JoinSeat(index, assigned.team, robot, postures, locomotion, token_hash)
 
 
-def _teams(assigned: Assigned | None, token: str) -> Iterator[AssignedSeat]:
+def _opened(assigned: Assigned, token: str) -> Iterator[AssignedSeat]:
     """Yield the seats that a token opens in an assigned match."""
-    for seat in assigned.seats if assigned is not None else ():
+    for seat in assigned.seats:
         if _opening(token, seat.token_hashes) is not None:
             yield seat
 

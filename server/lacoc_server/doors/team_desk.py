@@ -1,7 +1,8 @@
-"""The door for teams that ask where they play; it answers with what the office told the court.
+"""The door for whoever asks where to play; it answers with what the office told the court.
 
-Pure. The court answers, not the office itself: nobody but the court may answer requests at its
-address, so nobody can collect the tokens of teams by answering in the office's name.
+A court that was started alone tells where its own seats are. Pure. The court answers, not the
+office itself: nobody but the court may answer requests at its address, so nobody can collect the
+tokens of teams by answering in the office's name.
 """
 
 import hmac
@@ -12,17 +13,23 @@ from lacoc_server.doors.sessions import Why
 from lacoc_shared import codec, seal
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES
 from lacoc_shared.messages import Refusal
-from lacoc_shared.messages.office import Where, Whereabouts
+from lacoc_shared.messages.office import Assigned, Where, Whereabouts
 from lacoc_shared.words import say
 
 
 class TeamDesk:
-    """Keeps what the office told last, and shows each team its own part of it."""
+    """Keeps what the office told last, and shows each asker its own part of it.
 
-    def __init__(self) -> None:
+    Args:
+        teams: what is known from the beginning, by the hash of the token; None: the office has to
+            tell it.
+    """
+
+    def __init__(self, teams: Mapping[str, Whereabouts] | None = None) -> None:
         self._teams: Mapping[str, Whereabouts] | None = None
-        """By the hash of the team's token; None: the office has told nothing yet."""
         self._salts: tuple[bytes, ...] = ()
+        if teams is not None:
+            self.tell(teams)
         self.refused: Counter[str] = Counter()
         """Number of refusals by `Why`."""
 
@@ -56,3 +63,26 @@ class TeamDesk:
             self.refused[Why.WRONG_TOKEN.value] += 1
             return Refusal(say("refused.no-team-token"))
         return found[0]
+
+
+def alone(court: str, assigned: Assigned) -> dict[str, Whereabouts] | None:
+    """Return where the open seats of a court are that was started alone; None: it was not.
+
+    Args:
+        court: the court's name.
+        assigned: what the court assigns itself.
+    """
+    if not assigned.is_alone:
+        return None
+    return {
+        token_hash: Whereabouts(
+            team="",
+            state="court",
+            said=say("team.open-seat", court=court, seat=seat.id),
+            court=court,
+            seat=seat.id,
+            open=True,
+        )
+        for seat in assigned.seats
+        for token_hash in seat.token_hashes
+    }

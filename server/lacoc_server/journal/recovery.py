@@ -117,7 +117,8 @@ def last_result(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     packed = packed_path(folder, str(name))
     try:
         record = Record.read([packed] if packed.exists() else segments.values())
-        if record.header.setup.assigned is None:
+        assigned = record.header.setup.assigned
+        if assigned is None or assigned.is_alone:
             return None
         _check_origin(record, name, arena)
         resumed = resume(record, folder=arena.folder)
@@ -139,8 +140,8 @@ def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
         raise UserError(
             say("resume.other-match", match=setup.match_id[:80], court=setup.court[:40])
         )
-    is_assigned = setup.assigned is not None and is_installed(setup.arena)
-    if not (is_assigned or arena.plays(setup.arena)):
+    by_office = setup.assigned is not None and not setup.assigned.is_alone
+    if not ((by_office and is_installed(setup.arena)) or arena.plays(setup.arena)):
         raise UserError(say("resume.other-arena", played=setup.arena[:80], arena=arena.name[:80]))
 
 

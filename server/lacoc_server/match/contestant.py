@@ -43,11 +43,13 @@ def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
 
 
 def _is_assigned(match: MatchState, seat: Seat, item: JoinSeat) -> bool:
-    """Return whether the office lets this team sit here with these files, or has no say."""
+    """Return whether this team may sit here with these files; in an open seat everybody may."""
     if match.assigned is None:
         return True
     found = match.assigned.seat(seat.id)
-    return found is not None and (found.team, found.files) == (item.team, _files(item))
+    if found is None or not found.team:
+        return found is not None
+    return (found.team, found.files) == (item.team, _files(item))
 
 
 def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:

@@ -328,7 +328,7 @@ def _missing(match: MatchState) -> Phrase | None:
 
 
 def _by_office(match: MatchState) -> Phrase | None:
-    return None if match.assigned is None else say("why.office-opens-next")
+    return say("why.office-opens-next") if match.by_office else None
 
 
 def _no_clock(match: MatchState) -> Phrase | None:

@@ -84,7 +84,7 @@ class MatchState:
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.assigned = setup.assigned
-        """What the office assigned; None: the court opened the match itself."""
+        """What was assigned; None: an older court opened the match."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
@@ -118,6 +118,11 @@ class MatchState:
     def _assigned_team(self, seat: str) -> str:
         found = None if self.assigned is None else self.assigned.seat(seat)
         return "" if found is None else found.team
+
+    @property
+    def by_office(self) -> bool:
+        """Whether an office says what the court plays."""
+        return self.assigned is not None and not self.assigned.is_alone
 
     @property
     def physics(self) -> Physics:
@@ -221,7 +226,7 @@ class MatchState:
             markers=self.game.markers,
             scene=self.physics.scene_hash,
             call=self.assigned.call if self.assigned else "",
-            fixture=self.assigned.fixture if self.assigned else None,
+            fixture=self.assigned.fixture if self.assigned and self.by_office else None,
         )
 
     def result(self) -> Result:

@@ -93,7 +93,9 @@ _PANELS: Mapping[str, Mapping[str, Listed]] = {
             "Run a court: it moves the robots, keeps clock and score, and records the match.",
             _SERVER,
         ),
-        "web": Listed("Serve the pages: spectators, broadcast, contestants, referee, replays."),
+        "web": Listed(
+            "Serve the pages of courts: spectators, broadcast, contestants, referee, replays."
+        ),
         "referee": Listed("Referee a match: decide, read the log, see how well the court runs."),
         "doctor": Listed(
             "Check whether this machine is ready: packages, ports, graphics, clock, disk."

@@ -1,8 +1,6 @@
 """Options that several commands share, with the same name, variable and help in each.
 
-The command line takes precedence over the environment: typer's `envvar` does this. Both
-take precedence over the contest file and the defaults: an option that is not given is
-None, and `contest.entrances` looks it up in the contest file.
+The command line takes precedence over the environment: typer's `envvar` does this.
 """
 
 from pathlib import Path
@@ -10,6 +8,20 @@ from typing import Annotated
 
 import typer
 
+Link = Annotated[
+    str | None,
+    typer.Argument(
+        envvar="LACOC_LINK",
+        metavar="LINK",
+        help="Your link, from the organiser, in quotes; or the address of the pages.",
+    ),
+]
+LinkOption = Annotated[
+    str | None,
+    typer.Option(
+        "--link", envvar="LACOC_LINK", metavar="LINK", help="Your link, from the organiser."
+    ),
+]
 ContestFile = Annotated[
     Path | None,
     typer.Option(
@@ -25,7 +37,7 @@ CourtName = Annotated[
         "--court",
         envvar="LACOC_COURT",
         metavar="NAME",
-        help="Name of the court; by default the contest's only court, or 'main'.",
+        help="Name of the court; by default any court of the link, or 'main'.",
     ),
 ]
 Connect = Annotated[
@@ -34,7 +46,8 @@ Connect = Annotated[
         "--connect",
         envvar="LACOC_CONNECT",
         metavar="ADDRESS",
-        help="Address of the court, such as tcp/192.168.1.20:7447; by default this machine.",
+        help="Without a link: address of a court that was started alone, such as "
+        "tcp/192.168.1.20:7447; by default this machine.",
     ),
 ]
 CourtHost = Annotated[
@@ -46,20 +59,14 @@ CourtHost = Annotated[
         "this machine's address.",
     ),
 ]
-SeatName = Annotated[
-    str | None,
-    typer.Option(
-        "--seat", envvar="LACOC_SEAT", metavar="SEAT", help="Your seat: 'left' or 'right'."
-    ),
-]
 Token = Annotated[
     str | None,
     typer.Option(
         "--token",
         envvar="LACOC_TOKEN",
         metavar="TOKEN",
-        help="Your token, from the organiser. To hide it from others on this machine, set it "
-        "as LACOC_TOKEN.",
+        help="Without a link: your token, which the court printed. To hide it from others on this "
+        "machine, set it as LACOC_TOKEN.",
     ),
 ]
 WaitForCourt = Annotated[

@@ -1,5 +1,6 @@
 """A client's access to a court: where the court is, how it proves its name, and who asks."""
 
+from collections.abc import Sequence
 from typing import Self
 
 import msgspec
@@ -11,10 +12,10 @@ class Access(msgspec.Struct, frozen=True, kw_only=True):
     court: str
     connect: str
     """Address of the court."""
-    stand_in: str = ""
-    """Address at which the court goes on if the machine at `connect` is gone; "": none."""
+    others: tuple[str, ...] = ()
+    """Further addresses at which the court, or another one of the event, may be."""
     seat: str = ""
-    """The seat's name; "" for everybody else."""
+    """The seat's name; "": not known yet, or none."""
     token: str = ""
     """The person's secret; "" for spectators."""
     authority: str = ""
@@ -26,11 +27,15 @@ class Access(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def addresses(self) -> list[str]:
         """Where to look for the court: the first address that answers is used."""
-        return [self.connect, self.stand_in] if self.stand_in else [self.connect]
+        return [self.connect, *self.others]
 
     def watching(self) -> Self:
         """Return the access of a spectator to the same court."""
         return msgspec.structs.replace(self, seat="", token="")
+
+    def with_others(self, addresses: Sequence[str]) -> Self:
+        """Return this access with these further addresses."""
+        return msgspec.structs.replace(self, others=tuple(addresses))
 
     def of_seat(self, seat: str, token: str) -> Self:
         """Return the access of a seat at the same court."""

@@ -1,6 +1,7 @@
 """Random tokens, such as those that open a seat or the referee's desk."""
 
 import base64
+import hashlib
 import secrets
 
 from lacoc_shared import seal
@@ -16,3 +17,12 @@ def new_token() -> str:
 def hash_token(token: str) -> str:
     """Hash a token for storage, with its own salt (`seal.hash_token`)."""
     return seal.hash_token(token, secrets.token_bytes(_SALT_BYTES))
+
+
+def lasting_hash(token: str) -> str:
+    """Hash a token with a salt that is made from the token.
+
+    So the hash is the same after each restart. Whoever has the same hash in the next match of a
+    court keeps the seat.
+    """
+    return seal.hash_token(token, hashlib.blake2b(token.encode(), digest_size=16).digest())

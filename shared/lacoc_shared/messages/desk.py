@@ -332,6 +332,15 @@ class Said(msgspec.Struct, frozen=True, kw_only=True):
     said: tuple[Phrase, ...]
 
 
+class OpenSeat(msgspec.Struct, frozen=True, kw_only=True):
+    """A seat of a court in open matches: whoever has its token may sit there."""
+
+    court: str
+    seat: str
+    """The arena's name of the seat."""
+    token: str
+
+
 class TokenList(msgspec.Struct, frozen=True, kw_only=True):
     """The tokens that the organiser hands out."""
 
@@ -339,6 +348,8 @@ class TokenList(msgspec.Struct, frozen=True, kw_only=True):
     """Tokens of the teams of people, by their names."""
     referees: dict[str, str]
     """Tokens of the referees, by the names of their courts."""
+    seats: tuple[OpenSeat, ...] = ()
+    """The open seats of all courts, if the contest has a stage of open matches."""
 
 
 Answer = EventInfo | OwnEntry | CourtPlan | Overviewed | Effect | Said | TokenList

@@ -1,11 +1,13 @@
 """What the office of a contest and its courts say to each other (docs/protocol.md).
 
 An office gives courts their matches. A court of a contest with an office plays only what the office
-assigns: each match has a call, its teams, the tokens that open their seats, and their files.
+assigns: each match has a call, its teams, the tokens that open their seats, and their files. A seat
+of an open match has no team yet: whoever has its token sits down there, with a name and files.
 The office also tells each court where all teams are. So a team can ask any court of the contest,
 with its one token, and a stranger can't answer in the office's name.
 """
 
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -22,11 +24,14 @@ TOKENS_MOST = 8
 
 
 class AssignedSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """A seat of an assigned match: its team, and the files that the team plays with."""
+    """A seat of an assigned match: its team, and the files that the team plays with.
+
+    Without a team the seat is open: whoever has a token brings a name and files.
+    """
 
     id: str
     """The arena's name of the seat: "left"."""
-    team: str
+    team: str = ""
     token_hashes: Annotated[
         tuple[TokenHash, ...], msgspec.Meta(min_length=1, max_length=TOKENS_MOST)
     ]
@@ -57,7 +62,8 @@ class Assigned(msgspec.Struct, frozen=True, kw_only=True):
     """What the office assigned, as the match's setup keeps it: all that a restarted court needs."""
 
     call: str
-    """Id of the call, which is unique in the contest; "": the court waits for the office."""
+    """Id of the call, which is unique in the contest; "": the office gave none. The court waits for
+    it then, or was started alone and opened an open match by itself."""
     fixture: Phrase
     """What is played, for people: a phrase of `fixture.*` such as "Semi-final 1, game 2 of 3"."""
     seats: tuple[AssignedSeat, ...]
@@ -65,15 +71,39 @@ class Assigned(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def waits(self) -> bool:
         """Whether no match is assigned."""
-        return not self.call
+        return not self.call and not self.seats
+
+    @property
+    def is_alone(self) -> bool:
+        """Whether the court was started alone: no office says what it plays next."""
+        return not self.call and bool(self.seats)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it has an open seat."""
+        return any(not seat.team for seat in self.seats)
 
     def seat(self, seat: str) -> AssignedSeat | None:
-        """Return a seat by its name; None if it has no team."""
+        """Return a seat by its name; None if nobody may sit there."""
         return next((one for one in self.seats if one.id == seat), None)
 
 
 WAITING = Assigned(call="", fixture=say("fixture.waiting"), seats=())
 """What a court has from the office while no match is assigned."""
+
+
+def open_match(
+    tokens: Mapping[str, Collection[str]], call: str = "", stage: str | None = None
+) -> Assigned:
+    """Return an open match.
+
+    Args:
+        tokens: salted hashes of the tokens that open each seat, by the seat's name.
+        call: id of the office's call; "": the court was started alone.
+        stage: the stage to which it belongs; None: none.
+    """
+    seats = (AssignedSeat(id=seat, token_hashes=tuple(hashes)) for seat, hashes in tokens.items())
+    return Assigned(call=call, fixture=say("fixture.open", stage=stage), seats=tuple(seats))
 
 
 EARLIER_OFFICE = say("refused.earlier-office")
@@ -145,9 +175,10 @@ class Retire(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
-    """Where a team plays, or what it waits for."""
+    """Where a team plays, or what it waits for; or where an open seat is."""
 
     team: str
+    """"" for an open seat."""
     state: Literal["court", "waits", "out", "over"]
     """court: its match is open at a court. waits: it will be called. out: it plays no more, but the
     contest goes on. over: the contest has ended."""
@@ -156,7 +187,8 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
     court: str = ""
     """The court; while the team waits, the court where it will probably play; "": not known."""
     address: str = ""
-    """Address to connect to; "" unless the match is open."""
+    """Address to connect to; "" unless the match is open, and at a court that was started alone:
+    it is where the question came."""
     seat: str = ""
     """The arena's name of the seat; "" unless the match is open."""
     call: str = ""
@@ -169,20 +201,25 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
     """Games that probably begin before the team's next one, on all courts; None: not known."""
     about_s: int | None = None
     """Time until then, estimated [s]; None: not known."""
+    open: bool = False
+    """Whether the seat is open: whoever sits down there brings a name and files."""
     rank: int = 0
     """Rank in the newest stage that is over and has the team; 0: none."""
 
 
 class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: this is where all teams are. It replaces what was told before."""
+    """A request of the office: this is where all teams and open seats are.
+
+    It replaces what was told before.
+    """
 
     teams: dict[TokenHash, Whereabouts]
-    """By the salted hash of the team's token. All have one salt, so that a court hashes a token
-    once, however many teams there are."""
+    """By the salted hash of the token of a team or an open seat. All have one salt, so that a court
+    hashes a token once, however many teams there are."""
 
 
 class Where(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A team's question to a court: where do I play?"""
+    """A question to a court: where do I play?"""
 
     token: str
-    """The team's token."""
+    """The token of a team or of an open seat."""

@@ -1,5 +1,6 @@
 """The certificate with which a program proves its name; it can be renewed meanwhile."""
 
+import hashlib
 import ssl
 from pathlib import Path
 from typing import NamedTuple
@@ -70,3 +71,12 @@ class Certificate:
             except OSError:
                 found.append((0, 0))
         return found
+
+
+def fingerprint(certificate: str) -> str:
+    """Return the fingerprint of a certificate (PEM): SHA-256, hexadecimal.
+
+    Raises:
+        ValueError: if it is none.
+    """
+    return hashlib.sha256(ssl.PEM_cert_to_DER_cert(certificate)).hexdigest()

@@ -14,7 +14,7 @@ from urllib.parse import SplitResult, urlsplit
 import msgspec
 
 from lacoc_shared.mistakes import Gathered, UserError, printable
-from lacoc_shared.network.certificate import Pair
+from lacoc_shared.network.certificate import Pair, fingerprint
 from lacoc_shared.words import say
 
 _STANDARD = {"http": 80, "https": 443}
@@ -108,6 +108,20 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         if self.certificate is None or self.private_key is None:
             return None
         return Pair(self.certificate, self.private_key)
+
+    @property
+    def fingerprint(self) -> str:
+        """Fingerprint of the private authority, for links; "": there is none.
+
+        Raises:
+            UserError: if its certificate can't be read, or is damaged.
+        """
+        authority = self.read_authority()
+        try:
+            return fingerprint(authority) if authority else ""
+        except ValueError as error:
+            why = str(error)
+            raise UserError(say("public.no-authority", file=str(self.authority), why=why)) from None
 
     def read_authority(self) -> str:
         """Return the certificate (PEM) of the private authority; "": there is none.

@@ -67,7 +67,7 @@ class Setup(msgspec.Struct, frozen=True, kw_only=True):
     limits: dict[str, float]
     """Contest limits for robots (rules 1) that differ from the defaults."""
     assigned: Assigned | None = None
-    """What the office assigned; None: the court has no office, or the record is older."""
+    """What the office, or a court that was started alone, assigned; None: the record is older."""
     origin: Origin | None = None
     """What the match is a fork of; None: it was played from its first beat on."""
 

@@ -4,7 +4,6 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
   claimOf,
-  isAboutToken,
   isFinal,
   keptWish,
   step,
@@ -219,5 +218,4 @@ test("a lost seat is told, and only a person asks for it again", () => {
 test("which refusals are final", () => {
   assert.deepEqual([busy, no, wrongToken, badFile].map(isFinal), [false, false, true, true]);
   assert.ok(isFinal({ why: { code: "refused.files-too-large" }, mistakes: [] }));
-  assert.deepEqual([busy, no, wrongToken].map(isAboutToken), [false, false, true]);
 });

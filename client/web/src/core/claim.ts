@@ -82,10 +82,12 @@ export interface Claim {
 }
 
 const MOST_TRIES = 8;
-/** Refusals that are about the token. */
-const ABOUT_TOKEN: ReadonlySet<string> = new Set(["refused.wrong-token", "gateway.no-token"]);
 /** Refusals that the same request would meet again. */
-const FINAL: ReadonlySet<string> = new Set([...ABOUT_TOKEN, "refused.files-too-large"]);
+const FINAL: ReadonlySet<string> = new Set([
+  "refused.wrong-token",
+  "gateway.no-token",
+  "refused.files-too-large",
+]);
 
 /** Events as the table has them: a failed join is one of three. */
 type Trigger =
@@ -186,11 +188,6 @@ export function keptWish({ state, wish }: Claim): Wish | null {
 /** Whether the same request would be refused again. */
 export function isFinal({ mistakes, why }: Pick<Refused, "mistakes" | "why">): boolean {
   return mistakes.length > 0 || FINAL.has(why.code);
-}
-
-/** Whether a refusal is about the token. */
-export function isAboutToken({ why }: Pick<Refused, "why">): boolean {
-  return ABOUT_TOKEN.has(why.code);
 }
 
 /** Note an answer: the join is not under way any more. */

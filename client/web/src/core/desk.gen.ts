@@ -206,11 +206,19 @@ export interface RefereeLink {
   qr: string;
 }
 
+export interface SeatLink {
+  court: string;
+  seat: string;
+  link: string;
+  qr: string;
+}
+
 export interface Links {
   enter: string;
   enter_qr: string;
   teams: TeamLink[];
   referees: RefereeLink[];
+  seats: SeatLink[];
 }
 
 export interface CourtScore {

@@ -1,4 +1,4 @@
-/** A team's way through a contest: with its one token it finds its court, again and again. */
+/** The way of a token: it finds its seat, and in a contest its court, again and again. */
 
 import { computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
 import { goToCourt, keepToken, ownToken } from "./address";
@@ -20,11 +20,9 @@ const NO_TEAM = "refused.no-team-token";
 export class Team {
   /** The token; null: nobody has given one here. */
   readonly token = signal<string | null>(ownToken());
-  /** Whether this page follows a team. */
+  /** Whether this page has a token, its own or that of the command line. */
   readonly isOn: ReadonlySignal<boolean>;
-  /** Whether the court plays for an office, so that teams have tokens and seats have none. */
-  readonly hasOffice: ReadonlySignal<boolean>;
-  /** What the office said last. */
+  /** What a court said last of the token. */
   readonly there = signal<Whereabouts | null>(null);
   /** Why the token was refused. */
   readonly refusal = signal<Refused | null>(null);
@@ -41,12 +39,9 @@ export class Team {
     private readonly court: Court,
     private readonly player: Player,
   ) {
-    this.hasOffice = computed(() => Boolean(court.sheet.value?.fixture));
-    this.isOn = computed(() => {
-      if (!this.hasOffice.value) return false;
-      const prefill = court.welcome.value?.prefill;
-      return this.token.value !== null || Boolean(prefill?.has_token && !prefill.seat);
-    });
+    this.isOn = computed(
+      () => this.token.value !== null || Boolean(court.welcome.value?.prefill?.has_token),
+    );
     effect(() => {
       const canAsk = court.welcome.value?.can_act && court.live.value;
       if (this.isOn.value && canAsk) untracked(() => void this.ask());
@@ -72,6 +67,14 @@ export class Team {
     keepToken(null);
     this.token.value = null;
     this.there.value = null;
+  }
+
+  /** Sit down at the open seat of the token. */
+  sit(name: string): void {
+    const there = this.there.peek();
+    if (!there?.open) return;
+    const { court, seat } = there;
+    this.player.join({ court, seat, token: this.token.peek(), name });
   }
 
   /** Take the seat from whoever drives it now. */
@@ -121,7 +124,8 @@ export class Team {
     this.driven.value = move === "ask";
     // Only the court's health says who holds the seat; it comes twice a second.
     if (move === "join" && !this.court.health.peek()) return;
-    this.player.next.value = there.call && there.call === this.mine ? null : there.said;
+    const isMine = there.open || (there.call && there.call === this.mine);
+    this.player.next.value = isMine ? null : there.said;
     this.make(move, there, now);
   }
 

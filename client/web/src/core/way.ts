@@ -1,10 +1,10 @@
-/** Where a team's page goes next in a contest with an office. Pure. */
+/** Where the page of a token goes next. Pure. */
 
 import type { Whereabouts } from "./wire";
 
 /** What the page knows when it decides where to go. */
 export interface Situation {
-  /** What the office says. */
+  /** What a court says of the token. */
   there: Whereabouts;
   /** The court that the page is at, and the call that the court has; "": none. */
   court: string;
@@ -33,6 +33,7 @@ export type Move = "stay" | "hold" | "rest" | "join" | "ask" | "go";
 
 /** Decide what the page does next. */
 export function nextMove({ there, court, call, seat, mine, seen, driven }: Situation): Move {
+  if (there.open) return there.court === court ? "stay" : "go"; // a person brings name and files
   const isCalled = there.state === "court";
   if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
   const isHere = isCalled && there.court === court;

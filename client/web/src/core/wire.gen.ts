@@ -317,6 +317,7 @@ export interface Whereabouts {
   fixture: Phrase | null;
   games_before: number | null;
   about_s: number | null;
+  open: boolean;
   rank: number;
 }
 

@@ -85,6 +85,7 @@ export const office = {
   "office.copy": ["Copy the link", "リンクをコピー"],
   "office.copied": ["Copied", "コピーしました"],
   "office.qrOf": ["QR code of the link of {team}", "{team} のリンクの QR コード"],
+  "office.seatOf": ["Court {court}, {seat} seat", "コート {court}・{seat}の席"],
   "office.refereeOf": ["Referee, court {court}", "審判・コート {court}"],
   "office.refereeLink": [
     "The link of this court's referee. Whoever has it can decide about the games on this court.",

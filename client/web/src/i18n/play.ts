@@ -4,7 +4,6 @@ export const play = {
   "join.title": ["Join a match", "試合に参加"],
   "join.practice": ["Practice", "練習"],
   "join.court": ["Court", "コート"],
-  "join.seat": ["Seat", "席"],
   "join.free": ["free", "空き"],
   "join.takenBy": ["{team} sits here", "{team} が参加中"],
   "join.name": ["Team name", "チーム名"],
@@ -13,18 +12,6 @@ export const play = {
     "Give your team a name of 1 to {most} characters.",
     "チーム名を 1～{most} 文字で入力してください。",
   ],
-  "join.token": ["Token of the seat", "席のトークン"],
-  "join.tokenHint": ["from the organiser", "主催者から受け取ったもの"],
-  "join.tokenGiven": [
-    "given on the command line: leave this empty",
-    "起動時に指定済み（空欄のままで可）",
-  ],
-  "join.tokenMissing": [
-    "Type the token that the organiser gave you.",
-    "主催者から受け取ったトークンを入力してください。",
-  ],
-  "join.show": ["Show", "表示"],
-  "join.hide": ["Hide", "隠す"],
   "join.go": ["Join", "参加する"],
   "join.going": ["Joining …", "参加しています…"],
   "join.again": ["Join again", "もう一度参加する"],
@@ -57,12 +44,12 @@ export const play = {
   "left.practiceAgain": ["Practise again", "もう一度練習する"],
 
   // A team in a contest with an office
-  "team.title": ["Play in the contest", "大会に参加"],
+  "team.title": ["Play", "参加する"],
   "team.text": [
-    "Your team has one token for the whole contest. This page then finds your court by itself.",
-    "チームのトークンは大会を通して 1 つです。入力すると、このページが自動でコートを見つけます。",
+    "Open your link, or type its token here. This page then finds your seat by itself.",
+    "リンクを開くか、そのトークンをここに入力してください。席はこのページが自動で見つけます。",
   ],
-  "team.token": ["Token of your team", "チームのトークン"],
+  "team.token": ["Your token", "トークン"],
   "team.go": ["Go on", "進む"],
   "team.asking": ["Asking where you play …", "試合のコートを確認しています…"],
   "team.next": ["Your next match", "次の試合"],
@@ -77,7 +64,7 @@ export const play = {
   ],
   "team.takeOver": ["Take over", "操縦を引き継ぐ"],
   "team.thanks": ["Thank you for playing", "お疲れさまでした"],
-  "team.other": ["Another team", "別のチーム"],
+  "team.other": ["Another token", "別のトークン"],
 
   // Files
   "files.title": ["Your files", "ファイル"],

@@ -20,7 +20,6 @@ for command in (
     setting_up.init,
     setting_up.check,
     setting_up.certificate,
-    setting_up.show,
     playing.enter,
     inviting.invite,
     deciding.withdraw,

@@ -30,7 +30,8 @@ def courts(
     """Run courts on a machine of their own, for an office on another machine.
 
     In the contest file, 'elsewhere' of a court is the address of this machine. Both machines need
-    the same contest file. The courts stay open until Ctrl-C; a court that ends is started again.
+    the same contest file and the same secrets file (contest.secrets.json). The courts stay open
+    until Ctrl-C; a court that ends is started again.
 
     The office copies their records while they are written. If this machine is gone for ten seconds,
     the office runs a court itself: its match goes on where the copy ends. If this machine comes
@@ -46,6 +47,7 @@ def courts(
     for name in chosen:
         if not where.contest.court(name)[1].elsewhere:
             raise UserError(say("contest.not-elsewhere", court=name))
+    where.contest.secrets.check_copied(*chosen)
     with ExitStack() as stack:
         logs = stack.enter_context(Scratch("courts"))
         for name in chosen:

@@ -214,6 +214,9 @@ def _live(
         screen.show(say("contest.open", url=f"{where.url}/contest", courts=[*where.courts]))
         screen.show(say("contest.office-page", url=where.office))
         screen.show(say("contest.enter-page", url=f"{where.url}/enter", code=where.code))
+        for court, links in where.seats.items():
+            for seat, link in links.items():
+                screen.show(say("contest.open-seat", court=court, seat=seat, url=link))
 
     return play_live(
         file,

@@ -35,9 +35,9 @@ def standby(
 ) -> None:
     """Keep a copy of all that the office keeps on this machine, so that it can go on here.
 
-    Copy the contest file to a folder of its own on this machine, and run this command there; it
-    waits for the office, copies what is missing, and says how old the copy is. Everything is
-    encrypted with the token that the contest file has for this.
+    Copy the contest file and its secrets file (contest.secrets.json) to a folder of its own on this
+    machine, and run this command there; it waits for the office, copies what is missing, and says
+    how old the copy is. Everything is encrypted with a token of the secrets file.
 
     If the office's machine is gone: 'lacoc contest run --take-over' goes on here, with the same
     links. If the other machine comes back, its office ends.
@@ -52,7 +52,8 @@ def standby(
     if where.contest.standby is None:
         raise UserError(say("standby.no-table", file=str(file)))
     address = endpoint(of) if of else where.contest.standby.office
-    sealing = Sealing(where.contest.standby.token)
+    where.contest.secrets.check_copied()
+    sealing = Sealing(where.contest.secrets.standby)
     # The folder is released first: a connection to a machine that is gone closes slowly.
     with Other(address, sealing) as other, where.alone():
         begin_copying(where)

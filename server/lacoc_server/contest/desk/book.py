@@ -6,7 +6,6 @@ from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import AnyFact
@@ -26,7 +25,6 @@ class Book:
         where: the contest.
         store: its facts.
         applications: the entries that wait for the organiser.
-        tokens: the tokens of the teams.
         code: the event code.
     """
 
@@ -35,13 +33,12 @@ class Book:
         where: ContestFolder,
         store: FactStore,
         applications: Applications,
-        tokens: TeamTokens,
         code: EventCode,
     ) -> None:
         self.where = where
         self.store = store
         self.applications = applications
-        self.tokens = tokens
+        self.secrets = where.contest.secrets
         self.code = code
         self.refused: dict[str, tuple[Mistake, ...]] = {}
         """Mistakes in the newest files of teams whose files were refused; not kept on the disk."""

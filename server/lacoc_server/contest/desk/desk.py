@@ -52,7 +52,7 @@ class Desk:
     """
 
     def __init__(self, book: Book, organiser: str, known: Callable[[], Known]) -> None:
-        self.admission = Admission(organiser, lambda: book.code.value, book.tokens.team_of)
+        self.admission = Admission(organiser, lambda: book.code.value, book.secrets.team_of)
         self._book = book
         self._known = known
         self._games = book.where.games
@@ -97,8 +97,9 @@ class Desk:
             with self._one:
                 return entering.change(self._book, team, entry)
         if isinstance(asked, CourtDay):
-            court = self._book.where.contest.courts.get(asked.court)
-            self.admission.referee(asked.secret, court.referee.token if court else None, now_s)
+            there = asked.court in self._book.where.contest.courts
+            token = self._book.secrets.referee(asked.court) if there else None
+            self.admission.referee(asked.secret, token, now_s)
             with self._one:
                 return refereeing.plan(self._book, self._known(), asked)
         self.admission.organiser(asked.secret, now_s)

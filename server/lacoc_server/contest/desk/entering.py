@@ -91,7 +91,7 @@ def own(book: Book, team: str) -> OwnEntry:
     """
     there = book.team(team)
     waiting = book.applications.waiting.get(team)
-    token = book.tokens.of(team)
+    token = book.secrets.team(team)
     files = waiting.entry.hash if waiting else there.files if there else ""
     state: Literal["waits", "in", "late", "left", "none"] = "waits" if waiting else "none"
     if there is not None:

@@ -11,6 +11,7 @@ from lacoc_shared.messages.desk import (
     Draw,
     Effect,
     Move,
+    OpenSeat,
     Rule,
     Said,
     TakeOut,
@@ -57,7 +58,9 @@ def decline(book: Book, teams: Sequence[str]) -> Said:
     for team in teams:
         book.note_refused(team, ())
     inside = {team.name for team in book.contest.teams}
-    book.tokens.forget(*(team for team in teams if team not in inside))  # others may take the names
+    book.secrets.forget(
+        *(team for team in teams if team not in inside)
+    )  # others may take the names
     return Said(said=tuple(say("desk.declined", team=team) for team in teams))
 
 
@@ -143,17 +146,22 @@ def move(book: Book, asked: Move) -> Said:
 
 
 def tokens(book: Book) -> TokenList:
-    """Return the tokens of all teams of people that are in or wait, and of all referees.
+    """Return the tokens of all teams of people that are in or wait, of referees and open seats.
 
     Raises:
         UserError: if a new token can't be written.
     """
     people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]
     waiting = [team for team in book.applications.waiting if team not in people]
-    courts = book.where.contest.courts
+    stage, courts = book.where.open_stage, book.where.contest.courts
     return TokenList(
-        teams={team: book.tokens.of(team) for team in (*people, *waiting)},
-        referees={name: court.referee.token for name, court in courts.items()},
+        teams={team: book.secrets.team(team) for team in (*people, *waiting)},
+        referees={name: book.secrets.referee(name) for name in courts},
+        seats=tuple(
+            OpenSeat(court=court, seat=seat, token=book.secrets.seat(court, seat))
+            for court in courts
+            for seat in (stage.seats if stage is not None else ())
+        ),
     )
 
 

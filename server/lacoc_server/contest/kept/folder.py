@@ -8,7 +8,7 @@ from pathlib import Path
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.entries import EntryFolder
-from lacoc_server.contest.kept.plans import game, plans
+from lacoc_server.contest.kept.plans import game, open_stage, plans
 from lacoc_shared.command.holding import hold
 from lacoc_shared.contest import file as contests
 from lacoc_shared.gait.tables import Level
@@ -30,7 +30,9 @@ class ContestFolder:
         self.file = file
         self.contest = contests.load(file)
         self.plans = plans(self.contest, file)
-        """The stages, in their order."""
+        """The stages, in their order, without an open one."""
+        self.open_stage = open_stage(self.contest, file)
+        """The stage of open matches; None: there is none."""
         folder = file.resolve().parent
         self.facts = contests.facts_path(file)
         """The database of facts."""
@@ -38,8 +40,8 @@ class ContestFolder:
         """The newest sheet, for pages."""
         self.applications = folder / f"{file.stem}.applications.db"
         """The entries that wait for the organiser."""
-        self.tokens = folder / f"{file.stem}.tokens.json"
-        """The tokens of the teams; secret."""
+        self.secrets = contests.secrets_path(file)
+        """All tokens."""
         self.event_code = folder / f"{file.stem}.code.txt"
         """The event code, if it was changed."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"

@@ -1,6 +1,7 @@
 """The stages of a contest, as its contest file plans them."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
@@ -13,8 +14,9 @@ from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
-from lacoc_shared.contest.file import Contest, wrong_entries, wrong_in
-from lacoc_shared.contest.wrong_value import place_and_words
+from lacoc_shared.contest.courts import wrong_in
+from lacoc_shared.contest.file import Contest, wrong_entries
+from lacoc_shared.contest.wrong_value import convert, place_and_words
 from lacoc_shared.mistakes import Gathered, UserError, text_of
 from lacoc_shared.words import say
 
@@ -38,8 +40,59 @@ class _Stage(msgspec.Struct, frozen=True, kw_only=True):
     """Entries that replace those of the arena file."""
 
 
+OPEN = "open"
+"""Format of a stage of friendly matches: it has no draw, no standings and no end."""
+
+
+class _OpenTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the table of an open stage in the contest file has."""
+
+    format: str
+    arena: str = _USUAL_ARENA
+    settings: dict[str, Any] = {}
+
+
+@dataclass(frozen=True)
+class OpenStage:
+    """A stage of open matches: courts that have no game play one after another."""
+
+    name: str
+    arena: str
+    arena_settings: dict[str, Any]
+    """Entries that replace those of the arena file."""
+    limits: dict[str, float]
+    seats: tuple[str, ...]
+    """Names of the arena's seats."""
+
+
+def open_stage(contest: Contest, file: Path) -> OpenStage | None:
+    """Read the open stage of a contest file; None: there is none.
+
+    Args:
+        contest: the contest file.
+        file: its path, for messages.
+
+    Raises:
+        UserError: if entries are wrong, or there are two such stages.
+    """
+    found = {name: one for name, one in contest.stages.items() if one.get("format") == OPEN}
+    if not found:
+        return None
+    if len(found) > 1:
+        wrong = say("contest.one-open-stage", stages=[text_of(name) for name in found])
+        raise wrong_entries(file, UserError(wrong))
+    ((name, entries),) = found.items()
+    try:
+        table = convert(entries, _OpenTable, f"stage.{text_of(name)}")
+        arena = arenas.load(table.arena, table.settings)
+    except UserError as error:
+        raise wrong_entries(file, error) from None
+    seats = tuple(seat.id for seat in arena.seats)
+    return OpenStage(text_of(name), table.arena, table.settings, contest.limits, seats)
+
+
 def plans(contest: Contest, file: Path) -> list[Planned]:
-    """Read the stages of a contest file.
+    """Read the stages of a contest file, without an open one.
 
     Args:
         contest: the contest file.
@@ -51,6 +104,8 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
     wrong = Gathered()
     found: dict[str, Planned | None] = {}
     for name, table in contest.stages.items():
+        if table.get("format") == OPEN:
+            continue
         plan = None
         with wrong:
             plan = _read(name, table, contest, found)
@@ -133,7 +188,7 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     if stage.draw not in _DRAWS:
         raise UserError(say("contest.stage-draw", draw=text_of(stage.draw), known=[*_DRAWS]))
     if stage.format not in FORMATS:
-        raise UserError(say("league.unknown-format", format=stage.format, known=[*FORMATS]))
+        raise UserError(say("league.unknown-format", format=stage.format, known=[*FORMATS, OPEN]))
     read = FORMATS[stage.format].settings
     if idle := [key for key in rest if key not in read]:
         known = [key for key in _SETTINGS if key in read]

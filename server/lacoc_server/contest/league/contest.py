@@ -114,7 +114,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
-        return not self.planned and all(view.over for view in self.stages)
+        return bool(self.stages) and not self.planned and all(view.over for view in self.stages)
 
     def stage(self, name: str) -> StageView:
         """Return a stage.

@@ -16,6 +16,7 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.stand_ins import stand_in, stand_ins
 from lacoc_server.contest.league.facts import Played
 from lacoc_server.contest.live import venue
+from lacoc_server.contest.live.calling import is_open_call
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.record_copy import RecordCopy
@@ -190,7 +191,7 @@ class AwayCourt:
         if sheet is None or not sheet.call:
             return
         self._copy.want(sheet.match_id)
-        if closing and self._may_close.over():
+        if closing and not is_open_call(sheet.call) and self._may_close.over():
             link.withdraw(sheet.call, official=True)
 
     def _go_on_here(self, office: Office) -> None:

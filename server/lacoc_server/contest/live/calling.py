@@ -11,6 +11,15 @@ LOST_MS = 20_000
 """A court that was not heard for this long loses its game."""
 
 
+OPEN_CALL = "open."
+"""Begins the calls of open matches."""
+
+
+def is_open_call(call: str) -> bool:
+    """Return whether a call is that of an open match; calls of games are ids of facts."""
+    return call.startswith(OPEN_CALL)
+
+
 class Ended(NamedTuple):
     """The end of a game at a court."""
 
@@ -98,6 +107,8 @@ def calls(
 ) -> list[Called]:
     """Give the next games to the courts that are free.
 
+    An open match that has begun is played to its end; another one goes.
+
     Args:
         contest: the contest.
         seen: the courts, in the order in which they are filled.
@@ -105,9 +116,14 @@ def calls(
         least_rest_ms: shortest time between two matches of a team.
         held: games that no court takes, by pairing and number.
     """
+    free = [
+        name
+        for name in present(seen, now_ms)
+        if not (seen[name].begun and is_open_call(seen[name].call))
+    ]
     return [
         new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
-        for one in assign(contest, present(seen, now_ms), now_ms, least_rest_ms, held)
+        for one in assign(contest, free, now_ms, least_rest_ms, held)
     ]
 
 

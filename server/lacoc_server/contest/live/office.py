@@ -11,16 +11,25 @@ from functools import cache
 from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import lasting_hash
 from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import due, waits_for_organiser
-from lacoc_server.contest.live.calling import Ended, Seen, calls, results, taken_back, wanted
+from lacoc_server.contest.live.calling import (
+    Ended,
+    Seen,
+    calls,
+    is_open_call,
+    results,
+    taken_back,
+    wanted,
+)
 from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.teller import Teller
 from lacoc_server.contest.live.whereabouts import Known
+from lacoc_shared.contest.tokens import lasting_hash
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.seat import Phase
@@ -45,6 +54,7 @@ class Office:
         least_rest_ms: shortest time between two matches of a team.
         draw_from_ms: when the office closes entries and draws the first stage, in milliseconds
             since 1970, UTC; None: it waits until somebody closes entries.
+        open_matches: gives open matches to the courts that have no game; None: nobody does.
     """
 
     def __init__(
@@ -56,6 +66,7 @@ class Office:
         addresses: Mapping[str, str],
         least_rest_ms: int = 0,
         draw_from_ms: int | None = 0,
+        open_matches: OpenMatches | None = None,
     ) -> None:
         self._store = store
         self._newest = Newest(FORMATS)
@@ -63,7 +74,8 @@ class Office:
         self._hash_of = cache(lambda team: lasting_hash(token_of(team)))
         self._links = dict(links)
         self._addresses = dict(addresses)
-        self._teller = Teller(self._links, self._addresses, token_of, least_rest_ms)
+        self._open_matches = open_matches
+        self._teller = Teller(self._links, self._addresses, token_of, least_rest_ms, open_matches)
         self._least_rest_ms = least_rest_ms
         self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)
@@ -130,6 +142,7 @@ class Office:
             if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
                 self._asked[call.id] = self._assign(link, call)
         self._take_back(now_ms)
+        self._fill(now_ms)
         self._teller.tell(self.contest, self._facts, seen, now_ms)
         self.known = Known(seen, self._teller.pace, dict(self.held))
 
@@ -220,8 +233,18 @@ class Office:
         for link in filter(None, self._links.values()):
             call = link.call
             waits = link.phase in (Phase.LOBBY, Phase.READY)
-            if call and waits and call not in running and self._may_ask(call, now_ms):
+            is_fine = call in running or (
+                self._open_matches is not None and is_open_call(call or "")
+            )
+            if call and waits and not is_fine and self._may_ask(call, now_ms):
                 self._asked[call] = link.withdraw(call)
+
+    def _fill(self, now_ms: int) -> None:
+        """Give open matches to the courts that have no game."""
+        busy = {call.court for call in self.contest.running}
+        for name, link in self._links.items():
+            if link is not None and name not in busy and self._open_matches is not None:
+                self._open_matches.look(link, now_ms)
 
     def _may_ask(self, call: str, now_ms: int) -> bool:
         """Return whether a court can be asked about a call: at most once a second."""

@@ -18,12 +18,12 @@ from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.facts import generation
 from lacoc_server.contest.live import venue
 from lacoc_server.contest.live.away import AwayCourt
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
+from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.ticker import Ticker
 from lacoc_server.contest.organiser import prepare
 from lacoc_server.contest.sheet import ContestSheet
@@ -32,8 +32,7 @@ from lacoc_server.contest.standby.lookout import Lookout
 from lacoc_server.contest.standby.sealing import Sealing
 from lacoc_server.contest.standby.tenure import Tenure
 from lacoc_shared.command.scratch import Scratch
-from lacoc_shared.contest.entrances import event_code, organiser_key
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.contest.link import Link
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
@@ -63,6 +62,8 @@ class Opened(NamedTuple):
     """Link of the organiser's page; secret."""
     code: str
     """The event code."""
+    seats: dict[str, dict[str, str]]
+    """Links of the open seats, by court and seat; secret."""
 
 
 def play_live(
@@ -103,12 +104,13 @@ def play_live(
     Raises:
         KeyboardInterrupt: if it is interrupted before the contest is over.
         Retired: if the contest's office went on at another machine.
-        UserError: if the contest runs already, has no stage, no office or too few teams, or
+        UserError: if the contest runs already, has no stage or too few teams, or
             something goes wrong.
     """
     where = ContestFolder(file)
-    if where.contest.office is None:
-        raise UserError(say("contest.no-office", file=str(file)))
+    secrets = where.contest.secrets
+    for court in where.contest.courts:
+        secrets.referee(court)  # a machine to which the file is copied makes none
     with ExitStack() as stack:
         stack.enter_context(where.alone())
         machine.check_office(machine.read(where.machine))
@@ -116,7 +118,7 @@ def play_live(
         standby = where.contest.standby
         tenure = Tenure(where, generation(store.facts()))
         if standby is not None:
-            sealing = Sealing(standby.token)
+            sealing = Sealing(secrets.standby)
             stack.enter_context(Lookout(tenure, sealing))
             tenure.check()
         prepare(where, store, entering=entering)
@@ -124,7 +126,7 @@ def play_live(
         run_here = partial(_run_here, where, logs, speed, tell)
         addresses = {name: court.elsewhere for name, court in where.contest.courts.items()}
         told = dict(addresses)
-        link_to = partial(CourtLink, token=where.contest.office.token, generation=tenure.generation)
+        link_to = partial(CourtLink, token=secrets.office, generation=tenure.generation)
         links: dict[str, CourtLink | None] = dict.fromkeys(where.contest.courts)
         away = [
             stack.enter_context(AwayCourt(where, name, link_to, run_here, tell))
@@ -137,27 +139,42 @@ def play_live(
             told[name] = venue.told_address(where.contest, name, address)
             session = stack.enter_context(open_client([address], authority=authority))
             links[name] = link_to(session, name)
-        tokens = TeamTokens(where.tokens)
         rest_ms = round(1000 * where.contest.least_rest_s)
         draw_from_ms = (milliseconds(where.contest.entries_close) or None) if entering else 0
-        office = Office(store, where.entries, tokens.of, links, told, rest_ms, draw_from_ms)
+        stage, open_matches = where.open_stage, None
+        if stage is not None:
+            open_matches = OpenMatches(stage, secrets.seat, tell)
+        office = Office(
+            store, where.entries, secrets.team, links, told, rest_ms, draw_from_ms, open_matches
+        )
         applications = stack.enter_context(Applications(where.applications))
         own_store = stack.enter_context(FactStore(where.facts))
-        key = organiser_key(where.contest)
-        code = EventCode(where.event_code, event_code(where.contest))
-        book = Book(where, own_store, applications, tokens, code)
-        desk = Desk(book, key, lambda: office.known)
+        code = EventCode(where.event_code, secrets.event_code)
+        book = Book(where, own_store, applications, code)
+        desk = Desk(book, secrets.organiser, lambda: office.known)
         service = stack.enter_context(DeskService(desk.judge))
         door = None
         if standby is not None:
             door = stack.enter_context(StandbyDoor(where, tenure, applications, sealing))
             stack.enter_context(DeskService(door.judge, standby.listen))
-        bots = stack.enter_context(venue.Bots(where, tokens))
+        bots = stack.enter_context(venue.Bots(where, addresses))
         writer = SheetWriter(where, progress)
         writer(office.contest)
         ticker = Ticker(office.facts)
         url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
-        opened(Opened(url, addresses, f"{url}/office#token={key}", code.value))
+        authority = where.contest.public.fingerprint
+
+        def link(page: str, token: str) -> str:
+            return Link(pages=url, page=page, token=token, authority=authority).text
+
+        seats = {
+            name: {
+                seat: link("play", secrets.seat(name, seat))
+                for seat in (stage.seats if stage is not None else ())
+            }
+            for name in addresses
+        }
+        opened(Opened(url, addresses, link("office", secrets.organiser), code.value, seats))
         over_s = math.inf  # when the contest was over, as far as is known
         is_late = speed <= 1 and len(addresses) > 1
         farewell_s = _LATE_S if is_late else _FAREWELL_S

@@ -9,6 +9,7 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Planned
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared import seal
 from lacoc_shared.messages import Done
@@ -31,6 +32,7 @@ class Teller:
         addresses: their addresses for contestants.
         token_of: returns a team's token.
         least_rest_ms: shortest time between two matches of a team.
+        open_matches: says where the open seats are; None: there are none.
     """
 
     def __init__(
@@ -39,12 +41,15 @@ class Teller:
         addresses: Mapping[str, str],
         token_of: Callable[[str], str],
         least_rest_ms: int,
+        open_matches: OpenMatches | None = None,
     ) -> None:
         self._links = links
         self._addresses = addresses
         self._least_rest_ms = least_rest_ms
         salt = token_bytes(_SALT_BYTES)
-        self._hash_of = cache(lambda team: seal.hash_token(token_of(team), salt))
+        self._hash = cache(lambda token: seal.hash_token(token, salt))
+        self._token_of = token_of
+        self._open_matches = open_matches
         self.pace = Pace(0, 0, least_rest_ms)
         """How fast the contest goes, as of the newest estimate."""
         self._teams: dict[str, Whereabouts] = {}
@@ -78,7 +83,10 @@ class Teller:
             usual_ms = game_ms(facts, self._guess_ms(contest))
             self.pace = Pace(now_ms, usual_ms, self._least_rest_ms)
             found = whereabouts(contest, Courts(seen, self._addresses), self.pace)
-            self._teams = {self._hash_of(team): there for team, there in found.items()}
+            here = [(self._token_of(team), there) for team, there in found.items()]
+            if self._open_matches is not None:
+                here += self._open_matches.whereabouts(seen, self._addresses)
+            self._teams = {self._hash(token): there for token, there in here}
         for name, link in self._links.items():
             if (asked := self._asked.get(name)) is not None and asked.take() is None:
                 continue

@@ -3,13 +3,12 @@
 import math
 import subprocess
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 from lacoc_server.contest.kept.folder import ContestFolder
-from lacoc_server.contest.kept.tokens import TeamTokens
 from lacoc_server.contest.league.contest import Contest as Computed
 from lacoc_shared.command.child import apart, command_line, kept_child
 from lacoc_shared.contest.file import Contest
@@ -157,12 +156,12 @@ class Bots:
 
     Args:
         where: the contest.
-        tokens: the tokens of the teams.
+        addresses: the courts' addresses, by name.
     """
 
-    def __init__(self, where: ContestFolder, tokens: TeamTokens) -> None:
+    def __init__(self, where: ContestFolder, addresses: Mapping[str, str]) -> None:
         self._where = where
-        self._tokens = tokens
+        self._addresses = addresses
         self._playing: dict[tuple[str, str], subprocess.Popen[bytes]] = {}
         """By team and its files."""
         self._ending: list[subprocess.Popen[bytes]] = []
@@ -199,9 +198,11 @@ class Bots:
     def _start(self, team: str, bot: str, files: str) -> "subprocess.Popen[bytes]":
         program = self._where.entries.path / files / "bot.py"
         name = str(program) if program.exists() else bot
-        words = ["bot", name, "--contest", str(self._where.file)]
+        court, authority = self._where.contest.asked, self._where.contest.public.authority
+        words = ["bot", name, "--court", court, "--connect", self._addresses[court]]
+        words += [] if authority is None else ["--authority", str(authority)]
         options = apart()
-        options["env"] |= {"LACOC_TOKEN": self._tokens.of(team)}
+        options["env"] |= {"LACOC_TOKEN": self._where.contest.secrets.team(team)}
         return subprocess.Popen(
             command_line(words), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options
         )

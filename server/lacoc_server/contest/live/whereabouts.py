@@ -91,7 +91,6 @@ def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
 
 def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Whereabouts]:
     """Say of each team where it plays, or what it waits for."""
-    over = not contest.planned and all(view.over for view in contest.stages)
     calls = {team: call for call in contest.running for team in call.teams}
     begins = dict(starts(contest, courts.seen, pace))
     coming = _coming(contest)
@@ -100,7 +99,7 @@ def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Where
         name = team.name
         if name in calls:
             found[name] = _called(contest, name, calls[name], courts)
-        elif over:
+        elif contest.over:
             found[name] = _ended(contest, name, over=True)
         elif not team.gone and name in coming:
             view, match = coming[name]

@@ -168,7 +168,7 @@ def small_files(where: ContestFolder) -> dict[str, Path]:
     """Return the small files that are copied whole, by the names in `messages.FILES`."""
     return {
         "contest": where.file,
-        "tokens": where.tokens,
+        "secrets": where.secrets,
         "code": where.event_code,
         "stand-ins": where.stand_ins,
     }

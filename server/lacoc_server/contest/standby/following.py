@@ -1,7 +1,7 @@
 """The copy of an office's folder, kept in step.
 
 A step asks what the office has, and copies what is missing: first what facts can name (entries,
-tokens, records), then the facts themselves. The facts of a step were read before its records. So
+secrets, records), then the facts themselves. The facts of a step were read before its records. So
 whenever copying stops, every record of a result that is here was copied up to its end at least.
 """
 
@@ -19,7 +19,7 @@ from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import Entry
 from lacoc_server.contest.kept.folder import ContestFolder, hash_of
 from lacoc_server.contest.kept.machine import Machine
-from lacoc_server.contest.kept.plans import plans
+from lacoc_server.contest.kept.plans import open_stage, plans
 from lacoc_server.contest.kept.replacing import write
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played, generation
@@ -191,6 +191,7 @@ class Follower:
         try:
             found = contests.loads(data, path)
             plans(found, path)
+            open_stage(found, path)
         except UserError as error:
             self._tell(say("standby.bad-contest", why=error.phrase))
             return False

@@ -12,6 +12,7 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.machine import Machine, Retired
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, generation
+from lacoc_server.contest.live.calling import is_open_call
 from lacoc_server.contest.standby.door import unpacked
 from lacoc_server.contest.standby.messages import Knock, Known
 from lacoc_server.contest.standby.other import NotThere, Other, OtherToken
@@ -62,7 +63,7 @@ def take_over(file: Path) -> Phrase | None:
         raise UserError(say("standby.no-copy", file=str(file)))
     if not found.copied_ms:
         raise UserError(say("standby.not-whole", at=found.office))
-    with Other(found.office, Sealing(where.contest.standby.token)) as other:
+    with Other(found.office, Sealing(where.contest.secrets.standby)) as other:
         _check_gone(other)
     with _alone(where), FactStore(where.facts) as store:
         found = machine.read(where.machine)
@@ -110,7 +111,7 @@ def _alone(where: ContestFolder) -> Iterator[None]:
 
 
 def set_aside(records: Path, facts: Sequence[AnyFact]) -> None:
-    """Rename the open records of matches that no call in the facts knows.
+    """Rename the records of matches in play that no call in the facts knows.
 
     The other machine has called them after its facts were copied. No court may go on with them:
     nobody waits for their results.
@@ -126,7 +127,9 @@ def set_aside(records: Path, facts: Sequence[AnyFact]) -> None:
             assigned = Record.read(segments).header.setup.assigned
         except UserError:  # there is no header yet; courts pass such a record over
             continue
-        if assigned is not None and assigned.call not in calls:
+        if assigned is None or is_open_call(assigned.call):
+            continue
+        if assigned.call not in calls:
             for segment in segments:
                 segment.rename(segment.with_name(segment.name + _LEFT))
 

@@ -149,14 +149,11 @@ def _header(header: Header, setup: Setup) -> Header:
 
 
 def _sheet(sheet: Sheet, setup: Setup) -> Sheet:
+    found = replace(sheet, match_id=setup.match_id, court=setup.court)
     assigned = setup.assigned
-    return replace(
-        sheet,
-        match_id=setup.match_id,
-        court=setup.court,
-        call=assigned.call if assigned else sheet.call,
-        fixture=assigned.fixture if assigned else sheet.fixture,
-    )
+    if assigned is None or assigned.is_alone:
+        return found
+    return replace(found, call=assigned.call, fixture=assigned.fixture)
 
 
 def _result(result: Result, setup: Setup) -> Result:

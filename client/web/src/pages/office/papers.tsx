@@ -7,7 +7,7 @@ import type { ContestSheet } from "../../core/contest/sheet";
 import { type OfficeView, pictureUrl } from "../../core/desk";
 import { columns } from "../../core/timetable";
 import { language, said, t } from "../../i18n";
-import { timeOf } from "../../i18n/words";
+import { seatName, timeOf } from "../../i18n/words";
 import { Schedule } from "../contest/schedule";
 import { Tables } from "../contest/standings";
 import { stageTitle } from "../contest/words";
@@ -140,6 +140,16 @@ function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) 
       )}
       {links.teams.map(({ team, link, qr }) => (
         <Card key={team} qr={qr} title={team}>
+          <p>{t("office.link")}</p>
+          <p class="address">{link}</p>
+        </Card>
+      ))}
+      {links.seats.map(({ court, seat, link, qr }) => (
+        <Card
+          key={`seat ${court} ${seat}`}
+          qr={qr}
+          title={t("office.seatOf", { seat: seatName(seat), court })}
+        >
           <p>{t("office.link")}</p>
           <p class="address">{link}</p>
         </Card>

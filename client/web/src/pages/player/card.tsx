@@ -1,8 +1,6 @@
 /** The card before a seat is held: who, where, with what. */
 
 import { useComputed, useSignal } from "@preact/signals";
-import { goToCourt } from "../../core/address";
-import { isAboutToken } from "../../core/claim";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
@@ -15,7 +13,6 @@ import { FilePicker } from "./files";
 import { TeamCard } from "./team";
 
 const nameKept = remembered("team", "");
-const seatKept = remembered("seat", "");
 
 interface Props {
   court: Court;
@@ -38,8 +35,10 @@ export function Entrance({ court, player, alone, team }: EntranceProps) {
     case "left":
       return <Gone court={court} player={player} alone={alone} />;
     case "outside":
-      if (team?.hasOffice.value) return <TeamCard court={court} team={team} />;
-      return court.welcome.value ? <JoinCard court={court} player={player} alone={alone} /> : null;
+      if (!court.welcome.value) return null;
+      if (team && !(team.isOn.value && team.there.value?.open))
+        return <TeamCard court={court} team={team} />;
+      return <JoinCard court={court} player={player} alone={alone} team={team} />;
     default:
       return null;
   }
@@ -81,143 +80,65 @@ function Gone({ player, alone, isLost }: Props & { isLost?: boolean }) {
   );
 }
 
-function JoinCard({ court, player, alone }: Props) {
+function JoinCard({ court, player, alone, team }: EntranceProps) {
   const welcome = court.welcome.value!;
-  const { prefill, courts } = welcome;
+  const { prefill } = welcome;
   const { lastWish, refusal, request } = player.claim.value;
   const sheet = court.sheet.value;
-  const seats = sheet?.seats.map((seat) => seat.id) ?? [];
   const name = useSignal(prefill?.name || lastWish?.name || nameKept.peek());
-  const token = useSignal(lastWish?.token ?? "");
-  const isShown = useSignal(false);
-  const complaint = useSignal<"" | "name" | "token">("");
-  const chosen = useSignal(prefill?.seat ?? "");
-  const free = useFreeSeats(court);
-  // Who was in a seat before comes back to it; anybody else is offered one that is free.
-  const kept = seats.indexOf(seatKept.peek());
-  const isOwn = kept >= 0 && sheet?.seats[kept]?.team === nameKept.peek();
-  const offered = isOwn || free.includes(kept) ? seats[kept] : seats[free[0] ?? 0];
-  const seat = seats.includes(chosen.value) ? chosen.value : (offered ?? "");
-  const hasToken = Boolean(prefill?.has_token);
-  const aboutToken = refusal !== null && isAboutToken(refusal);
+  const isNameless = useSignal(false);
+  const seat = team?.there.value?.seat || prefill?.seat || sheet?.seats[0]?.id || "";
+  const index = sheet?.seats.findIndex(({ id }) => id === seat) ?? -1;
   const isBusy = request !== "none" || player.isWaiting.value;
 
   const submit = (event: Event) => {
     event.preventDefault();
     const clean = name.value.trim();
-    const length = [...clean].length;
-    const missing = !token.value.trim() && !hasToken;
-    complaint.value = !length || length > NAME_MAX ? "name" : missing ? "token" : "";
-    if (complaint.value) {
-      document.getElementById(`join-${complaint.value}`)?.focus();
+    const { length } = [...clean];
+    isNameless.value = !length || length > NAME_MAX;
+    if (isNameless.value) {
+      document.getElementById("join-name")?.focus();
       return;
     }
     nameKept.value = clean;
-    seatKept.value = seat;
-    player.join({
-      court: welcome.court ?? "",
-      seat,
-      token: token.value.trim() || null,
-      name: clean,
-    });
+    if (team) team.sit(clean);
+    else player.join({ court: welcome.court ?? "", seat, token: null, name: clean });
   };
 
   return (
     <form class="card entrance join" aria-labelledby="entrance-title" onSubmit={submit}>
       <h1 id="entrance-title">{t(alone ? "join.practice" : "join.title")}</h1>
       {welcome.contest && <p class="muted">{welcome.contest}</p>}
-      {courts.length > 1 && (
-        <label class="field">
-          <span>{t("join.court")}</span>
-          <select
-            value={welcome.court ?? ""}
-            onChange={(event) => goToCourt(event.currentTarget.value)}
-          >
-            {courts.map((one) => (
-              <option key={one}>{one}</option>
-            ))}
-          </select>
-        </label>
+      {sheet && index >= 0 && (
+        <p class="own-seat" data-seat={index}>
+          <span class="seat-mark" data-pattern={sheet.seats[index]!.pattern} aria-hidden="true">
+            {seat.slice(0, 1).toUpperCase()}
+          </span>
+          <span>
+            {seatName(seat)} · {played(sheet)}
+            <SeatTaken court={court} sheet={sheet} index={index} />
+          </span>
+        </p>
       )}
-      {sheet && (
-        <fieldset class="seats">
-          <legend>
-            {t("join.seat")} · {played(sheet)}
-          </legend>
-          {sheet.seats.map((one, index) => (
-            <label key={one.id} class={`seat${one.id === seat ? " on" : ""}`} data-seat={index}>
-              <input
-                type="radio"
-                name="seat"
-                value={one.id}
-                checked={one.id === seat}
-                onChange={() => {
-                  chosen.value = one.id;
-                }}
-              />
-              <span class="seat-mark" data-pattern={one.pattern} aria-hidden="true">
-                {one.id.slice(0, 1).toUpperCase()}
-              </span>
-              <span>
-                {seatName(one.id)}
-                <SeatTaken court={court} sheet={sheet} index={index} />
-              </span>
-            </label>
-          ))}
-        </fieldset>
-      )}
-      <div class="pair">
-        <label class="field">
-          <span>{t("join.name")}</span>
-          <input
-            id="join-name"
-            value={name.value}
-            placeholder={t("join.nameHint", { most: NAME_MAX })}
-            autocomplete="organization"
-            aria-invalid={complaint.value === "name"}
-            aria-describedby="join-name-error"
-            onInput={(event) => {
-              name.value = event.currentTarget.value;
-            }}
-          />
-          <p class="error" id="join-name-error" role="alert">
-            {complaint.value === "name" && t("join.nameMissing", { most: NAME_MAX })}
-          </p>
-        </label>
-        <div class="field">
-          <label for="join-token">{t("join.token")}</label>
-          <div class="with-button">
-            <input
-              id="join-token"
-              type={(isShown.value ? "text" : "password") as "password"}
-              value={token.value}
-              placeholder={t(hasToken ? "join.tokenGiven" : "join.tokenHint")}
-              autocomplete="off"
-              spellcheck={false}
-              aria-invalid={aboutToken || complaint.value === "token"}
-              aria-describedby="join-token-error"
-              onInput={(event) => {
-                token.value = event.currentTarget.value;
-              }}
-            />
-            <button
-              class="button quiet"
-              type="button"
-              onClick={() => {
-                isShown.value = !isShown.value;
-              }}
-            >
-              {t(isShown.value ? "join.hide" : "join.show")}
-            </button>
-          </div>
-          <p class="error" id="join-token-error" role="alert">
-            {complaint.value === "token" && t("join.tokenMissing")}
-            {!complaint.value && aboutToken && said(refusal.why)}
-          </p>
-        </div>
-      </div>
+      <label class="field">
+        <span>{t("join.name")}</span>
+        <input
+          id="join-name"
+          value={name.value}
+          placeholder={t("join.nameHint", { most: NAME_MAX })}
+          autocomplete="organization"
+          aria-invalid={isNameless.value}
+          aria-describedby="join-name-error"
+          onInput={(event) => {
+            name.value = event.currentTarget.value;
+          }}
+        />
+        <p class="error" id="join-name-error" role="alert">
+          {isNameless.value && t("join.nameMissing", { most: NAME_MAX })}
+        </p>
+      </label>
       <FilePicker court={court} alone={alone} />
-      {refusal && !aboutToken && (
+      {refusal && (
         <div class="refusal" role="alert">
           <strong>{t("join.refused")}</strong>
           <p>{said(refusal.why)}</p>
@@ -230,16 +151,13 @@ function JoinCard({ court, player, alone }: Props) {
       </button>
       {isBusy && !court.link.value?.connected && <p class="muted">{t("join.waits")}</p>}
       {welcome.home === "venue" && <p class="muted safety">{t("join.safety")}</p>}
+      {team && (
+        <button class="button quiet small" type="button" onClick={() => team.forget()}>
+          {t("team.other")}
+        </button>
+      )}
     </form>
   );
-}
-
-/** Indices of the seats that nobody holds. */
-function useFreeSeats(court: Court): number[] {
-  const flags = useComputed(
-    () => court.frame.value?.seats.map((seat) => seat.flags & SeatFlag.JOINED).join() ?? "",
-  ).value;
-  return flags.split(",").flatMap((joined, index) => (Number(joined) ? [] : [index]));
 }
 
 function SeatTaken({ court, sheet, index }: { court: Court; sheet: Sheet; index: number }) {

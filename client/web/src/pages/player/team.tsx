@@ -1,4 +1,4 @@
-/** The card of a team in a contest with an office: when, where and against whom it plays next. */
+/** The card of a token: asks for it, and says when, where and against whom its team plays next. */
 
 import { useSignal } from "@preact/signals";
 import type { Court } from "../../core/court";

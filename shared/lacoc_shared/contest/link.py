@@ -1,8 +1,11 @@
-"""What a link says: where the pages are, which of them it opens, and who has it; pure."""
+"""What a link says: where the pages are, which of them it opens, and who has it; pure.
+
+Browsers never send the part after `#`, so no server on the way sees a token.
+"""
 
 import re
 from typing import Self
-from urllib.parse import SplitResult, parse_qs, urlsplit
+from urllib.parse import SplitResult, parse_qs, quote, urlsplit
 
 import msgspec
 
@@ -17,7 +20,7 @@ _MOST = 2000
 
 
 class Link(msgspec.Struct, frozen=True, kw_only=True):
-    """A link, taken apart."""
+    """A link: what opens the pages of an event, in a browser and for commands."""
 
     pages: str
     """Address of the pages, without a slash at its end."""
@@ -32,6 +35,14 @@ class Link(msgspec.Struct, frozen=True, kw_only=True):
 
     def __repr__(self) -> str:  # an accidental print must not show the token
         return f"Link(pages={self.pages!r}, page={self.page!r})"
+
+    @property
+    def text(self) -> str:
+        """The link as people hand it on."""
+        secret = {"token": self.token, "authority": self.authority}
+        end = "&".join(f"{name}={value}" for name, value in secret.items() if value)
+        query = f"?court={quote(self.court)}" if self.court else ""
+        return f"{self.pages}/{self.page}{query}" + (f"#{end}" if end else "")
 
     @classmethod
     def read(cls, text: str) -> Self:

@@ -1,0 +1,140 @@
+"""Open matches: friendly ones at courts that have no game, without a fact.
+
+All that is known of them is at the courts. So an office that was started again goes on with them.
+"""
+
+import secrets
+from collections.abc import Callable, Iterator, Mapping
+
+from lacoc_server.contest.kept.plans import OpenStage
+from lacoc_server.contest.live.calling import OPEN_CALL, Seen, is_open_call
+from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_shared.contest.tokens import lasting_hash
+from lacoc_shared.messages import Done, Refusal
+from lacoc_shared.messages.office import Whereabouts, open_match
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase, say
+
+_SHOWN_MS = 10_000
+"""The result of a match stays for so long before an open match follows it."""
+_AGAIN_MS = 1000
+_OVER = (Phase.OFFICIAL, Phase.VOID)
+
+
+class OpenMatches:
+    """Assigns open matches to courts; never waits for one.
+
+    Args:
+        stage: the stage of open matches.
+        token_of: returns the token of a court's open seat.
+        tell: told why a court refuses its open match.
+    """
+
+    def __init__(
+        self,
+        stage: OpenStage,
+        token_of: Callable[[str, str], str],
+        tell: Callable[[Phrase], None] = lambda _: None,
+    ) -> None:
+        self._stage = stage
+        self._token_of = token_of
+        self._tell = tell
+        self._next: dict[str, str] = {}
+        """By court, the call of its next open match: as long as the court does not have it."""
+        self._over: dict[str, tuple[str, int]] = {}
+        """By court, the call of a match that is over, and since when."""
+        self._asked: dict[str, Asked[Done]] = {}
+        self._asked_ms: dict[str, int] = {}
+        self._refused: dict[str, Phrase] = {}
+
+    def look(self, link: CourtLink, now_ms: int) -> None:
+        """Look at a court that has no game: give it an open match if it has none.
+
+        Args:
+            link: the connection to the court.
+            now_ms: the time, in milliseconds since 1970, UTC.
+        """
+        court, call = link.court, link.call
+        if not self._is_answered(court) or call is None:
+            return
+        if call == self._next.get(court):
+            del self._next[court]
+        if not self._is_free(link, call, now_ms):
+            return
+        if now_ms - self._asked_ms.get(court, 0) < _AGAIN_MS:
+            return
+        self._asked_ms[court] = now_ms
+        stage, call = self._stage, self._next.setdefault(court, new_call())
+        tokens = {seat: [lasting_hash(self._token_of(court, seat))] for seat in stage.seats}
+        assigned = open_match(tokens, call, stage.name)
+        self._asked[court] = link.assign(
+            call,
+            assigned.fixture,
+            assigned.seats,
+            arena=stage.arena,
+            arena_settings=stage.arena_settings,
+            limits=stage.limits,
+        )
+
+    def whereabouts(
+        self, seen: Mapping[str, Seen], addresses: Mapping[str, str]
+    ) -> Iterator[tuple[str, Whereabouts]]:
+        """Yield for each open seat its token, and where it is or that it waits.
+
+        Args:
+            seen: the courts.
+            addresses: their addresses for contestants.
+        """
+        for court, one in seen.items():
+            for seat in self._stage.seats:
+                there = Whereabouts(
+                    team="",
+                    state="waits",
+                    said=say("team.open-waits", court=court),
+                    court=court,
+                    open=True,
+                )
+                if is_open_call(one.call):
+                    there = Whereabouts(
+                        team="",
+                        state="court",
+                        said=say("team.open-seat", court=court, seat=seat),
+                        court=court,
+                        address=addresses[court],
+                        seat=seat,
+                        call=one.call,
+                        fixture=say("fixture.open", stage=self._stage.name),
+                        open=True,
+                    )
+                yield self._token_of(court, seat), there
+
+    def _is_answered(self, court: str) -> bool:
+        asked = self._asked.get(court)
+        answer = None if asked is None else asked.take()
+        if asked is not None and answer is None:
+            return False
+        self._asked.pop(court, None)
+        if not isinstance(answer, Refusal) or answer.again:
+            return True
+        if self._refused.get(court) != answer.why:
+            self._refused[court] = answer.why
+            self._tell(say("news.open-refused", court=court, why=answer.why))
+        return True
+
+    def _is_free(self, link: CourtLink, call: str, now_ms: int) -> bool:
+        """Return whether a court waits, or has shown a result for long enough."""
+        if not call:
+            return True
+        if link.phase not in _OVER:
+            self._over.pop(link.court, None)
+            return False
+        known, since_ms = self._over.setdefault(link.court, (call, now_ms))
+        if known != call:
+            self._over[link.court] = call, now_ms
+            return False
+        return now_ms - since_ms >= _SHOWN_MS
+
+
+def new_call() -> str:
+    """Make the id of an open match's call."""
+    return f"{OPEN_CALL}{secrets.token_hex(8)}"

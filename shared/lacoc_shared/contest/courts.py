@@ -1,0 +1,199 @@
+"""The tables of a contest file that name machines: courts, and the second machine."""
+
+import itertools
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import msgspec
+
+from lacoc_shared.contest.wrong_value import convert
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import (
+    ANY_HOST,
+    DEFAULT_PORT,
+    check_protocols,
+    collisions,
+    endpoint,
+    free_beside,
+)
+from lacoc_shared.network.address import host as address_host
+from lacoc_shared.words import say
+
+LOOPBACK = f"127.0.0.1:{DEFAULT_PORT}"
+"""Default address on which a court listens and to which a client connects."""
+
+
+class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A court: all that is needed to start it or to reach it."""
+
+    arena: str = "othello"
+    """Name of an installed arena, or the path of an arena's folder."""
+    listen: Annotated[tuple[str, ...], msgspec.Meta(min_length=1)] = (LOOPBACK,)
+    """Addresses on which the court listens; by default a port of its own on its machine."""
+    connect: str = ""
+    """Address for clients; "": the first of `listen`."""
+    elsewhere: str = ""
+    """Address of another machine that runs the court; "": the office's machine runs it. If the
+    other machine is gone, the office runs the court at `listen`, and clients find it at `connect`.
+    """
+    settings: dict[str, Any] = {}
+    """Entries that replace those of the arena file."""
+    input_delay: Literal["none", "equal"] = "none"
+    """Whether keys are delayed until the links of all seats have the same delay."""
+    input_delay_max_ms: Annotated[int, msgspec.Meta(ge=20, le=1000)] = 400
+    """Largest delay that is added to make links equal; a link slower than this stays slower."""
+
+    @property
+    def most_delay_ms(self) -> int:
+        """Largest delay that is added to make links equal [ms]; 0: none is added."""
+        return self.input_delay_max_ms if self.input_delay == "equal" else 0
+
+    @property
+    def host(self) -> str:
+        """Host for clients; "" if the court listens on all addresses and `connect` has no host."""
+        found = address_host(self.connect or self.listen[0])
+        return "" if found in ANY_HOST else found
+
+    @property
+    def own_listen(self) -> tuple[str, ...]:
+        """Addresses at which the court listens on its own machine, which may be elsewhere."""
+        return (_any_host(self.elsewhere),) if self.elsewhere else self.listen
+
+    def address(self, any_host: str = "127.0.0.1") -> str:
+        """Return the address to which a client connects.
+
+        Args:
+            any_host: the host to name if the court listens on all addresses of its machine.
+        """
+        return self.elsewhere or self._address_here(any_host)
+
+    def stand_in(self, any_host: str = "127.0.0.1") -> str:
+        """Return the address to which a client connects if the court's machine is gone.
+
+        Args:
+            any_host: as in `address`.
+
+        Returns:
+            The address; "" if the court is not run elsewhere.
+        """
+        return self._address_here(any_host) if self.elsewhere else ""
+
+    def _address_here(self, any_host: str) -> str:
+        address = self.connect or self.listen[0]
+        if self.host:
+            return address
+        protocol, port = address.partition("/")[0], address.rpartition(":")[2]
+        return f"{protocol}/{any_host}:{port}"
+
+
+class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A second machine keeps a copy of all that the office keeps, and the contest can go on there.
+
+    All copies are encrypted with a key that is made from a token. The token itself is never sent.
+    """
+
+    office: str
+    """Address of the office's machine, where the second one copies."""
+
+    @property
+    def listen(self) -> str:
+        """Address at which the office lets the second machine copy."""
+        return _any_host(self.office)
+
+
+def wrong_in(table: str, error: UserError) -> UserError:
+    """Return an error whose sentences begin with the name of a table in the contest file."""
+    return error.each(lambda wrong: say("contest.in", where=table, wrong=wrong))
+
+
+def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) -> Court:
+    """Read the table of a court.
+
+    Args:
+        name: the court's name.
+        table: what the file has for it.
+        number: its place among the courts, from 0: without `listen` it has a port of its own.
+        folder: the contest file's folder.
+        protocol: protocol of addresses that name none: "tls" in a contest with a certificate.
+
+    Raises:
+        UserError: if entries are wrong; the message names each of them.
+    """
+    where = f"court.{name}"
+    entries = convert(table, dict[str, Any], where)
+    usual = {"listen": [f"127.0.0.1:{DEFAULT_PORT + number}"]}
+    court = convert(usual | entries, Court, where)
+    try:
+        Keys(name)
+        listen = tuple(endpoint(one, protocol) for one in court.listen)
+        connect = court.connect and endpoint(court.connect, protocol)
+        elsewhere = court.elsewhere and endpoint(court.elsewhere, protocol)
+        reached = [*listen, *filter(None, (connect, elsewhere))]
+        check_protocols(reached, encrypted=protocol == "tls")
+        return msgspec.structs.replace(
+            court,
+            arena=beside(folder, court.arena),
+            listen=listen,
+            connect=connect,
+            elsewhere=elsewhere,
+        )
+    except UserError as error:
+        raise wrong_in(where, error) from None
+
+
+def read_standby(table: Any) -> Standby:
+    """Read the table of the second machine.
+
+    Raises:
+        UserError: if an entry is wrong.
+    """
+    found = convert(table, Standby, "standby")
+    try:
+        found = msgspec.structs.replace(found, office=endpoint(found.office))
+        check_protocols([found.office], encrypted=False)
+    except UserError as error:
+        raise wrong_in("standby", error) from None
+    return found
+
+
+def check_ports(courts: dict[str, Court], standby: Standby | None) -> None:
+    """Check that no two programs of a machine share a port.
+
+    Two courts with different `connect` hosts are on two machines.
+
+    Raises:
+        UserError: if two share one.
+    """
+    taken = [at for court in courts.values() for at in court.listen]
+    for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
+        apart = one.connect and other.connect and one.host != other.host
+        for at in () if apart else collisions(other.listen, one.listen):
+            free = free_beside(at, taken)
+            raise UserError(say("contest.same-port", court=second, other=first, at=at, free=free))
+        if one.elsewhere and one.elsewhere == other.elsewhere:
+            raise UserError(
+                say("contest.same-machine", court=second, other=first, at=one.elsewhere)
+            )
+    for name, court in courts.items():
+        for at in [] if standby is None else collisions([standby.listen], court.listen):
+            raise UserError(say("contest.standby-port", court=name, at=at))
+
+
+def beside(folder: Path, name: str) -> str:
+    """Return an installed name unchanged; resolve a path from the contest file's folder.
+
+    Raises:
+        UserError: if it is no path.
+    """
+    is_path = "/" in name or "." in name or "\\" in name
+    try:
+        return str((folder / Path(name).expanduser()).resolve()) if is_path else name
+    except (ValueError, RuntimeError, OSError):  # a NUL, an unknown user, a loop of links
+        raise UserError(say("contest.no-path", path=name[:80])) from None
+
+
+def _any_host(address: str) -> str:
+    """Return an address at all addresses of a machine, with the port of another address."""
+    protocol, port = address.partition("/")[0], address.rpartition(":")[2]
+    return f"{protocol}/{ANY_HOST[0]}:{port}"

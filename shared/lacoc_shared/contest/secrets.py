@@ -1,0 +1,171 @@
+"""The secrets of a contest: all its tokens, in a file beside the contest file.
+
+The contest file itself has no secret. Each token is made when it is first asked for. Whoever
+replaces a token in the file, or removes it, takes it from the person who has it.
+"""
+
+import hashlib
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import RLock
+
+import msgspec
+
+from lacoc_shared.command.holding import hold
+from lacoc_shared.contest.codes import code_of
+from lacoc_shared.contest.tokens import new_token
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_OFFICE, _STANDBY, _ORGANISER = "office", "standby", "organiser"
+_ALWAYS = (_OFFICE, _STANDBY, _ORGANISER)
+"""Made with the first token, so that a copy of the file has them."""
+_TEAM = "team."
+_WAIT_S = 5.0
+"""Longest wait for another program that makes a token."""
+
+
+class Secrets:
+    """The file of all tokens; only its owner can read it. Any thread, and any program, may use it.
+
+    All its methods raise `UserError` if the file can't be read or written.
+
+    Args:
+        path: the file; it is made with the first token.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._lock = RLock()
+        self._read_at: tuple[int, int] | None = (0, 0)
+        """State of the file (`_state`) when it was read; nothing has this one."""
+        self._tokens: dict[str, str] = {}
+
+    def __repr__(self) -> str:
+        return f"Secrets({str(self._path)!r})"
+
+    @property
+    def office(self) -> str:
+        """Token with which the office assigns matches to courts."""
+        return self._of(_OFFICE)
+
+    @property
+    def standby(self) -> str:
+        """Token from which the key is made that encrypts what a second machine copies."""
+        return self._of(_STANDBY)
+
+    @property
+    def organiser(self) -> str:
+        """Token that opens the organiser's page."""
+        return self._of(_ORGANISER)
+
+    @property
+    def event_code(self) -> str:
+        """The code with which a team applies, unless the organiser has changed it."""
+        return code_of(self.office)
+
+    def referee(self, court: str) -> str:
+        """Return the token of a court's referee."""
+        return self._of(f"referee.{court}")
+
+    def seat(self, court: str, seat: str) -> str:
+        """Return the token of an open seat: whoever has it may sit there in an open match."""
+        return self._of(f"seat.{court}.{seat}")
+
+    def team(self, name: str) -> str:
+        """Return a team's token, which is the same for the whole contest."""
+        return self._of(f"{_TEAM}{name}")
+
+    def team_of(self, token: str) -> str | None:
+        """Return the team that has a token; None: nobody has it."""
+        shown = _digest(token)
+        # Digests are compared, so the time that this takes tells nothing of a token.
+        found = [name for name, one in self._read().items() if _digest(one) == shown]
+        return next((name[len(_TEAM) :] for name in found if name.startswith(_TEAM)), None)
+
+    def forget(self, *teams: str) -> None:
+        """Forget the tokens of teams: their links open nothing any more."""
+        gone = {f"{_TEAM}{name}" for name in teams}
+        self._change(lambda there: {name: one for name, one in there.items() if name not in gone})
+
+    def check_copied(self, *courts: str) -> None:
+        """Check that this file is the office's: on another machine no token may be made.
+
+        Args:
+            courts: courts whose referees have tokens.
+
+        Raises:
+            UserError: if one of the tokens is missing.
+        """
+        wanted = {*_ALWAYS, *(f"referee.{court}" for court in courts)}
+        if wanted - self._read().keys():
+            raise UserError(say("contest.no-secrets", file=str(self._path)))
+
+    def _of(self, name: str) -> str:
+        tokens = self._read()
+        if name not in tokens:
+            missing = {one: new_token() for one in (*_ALWAYS, name)}
+            tokens = self._change(lambda there: missing | there)
+        return tokens[name]
+
+    def _read(self) -> dict[str, str]:
+        """Return all tokens by name, as they are in the file now."""
+        with self._lock:
+            try:
+                now = _state(self._path)
+                if now != self._read_at:
+                    data = b"{}" if now is None else self._path.read_bytes()
+                    self._tokens = msgspec.json.decode(data, type=dict[str, str])
+                    self._read_at = now
+            except (OSError, msgspec.MsgspecError) as error:
+                path = str(self._path)
+                raise UserError(say("command.cannot-read", path=path, why=str(error))) from None
+            return self._tokens
+
+    def _change(self, changed: Callable[[dict[str, str]], dict[str, str]]) -> dict[str, str]:
+        """Write other tokens in place of those that are there; return them."""
+        part = self._path.with_name(f".{self._path.name}.part")
+        with self._lock:
+            try:
+                with _alone(part.with_suffix(".lock")):
+                    tokens = changed(self._read())
+                    part.unlink(missing_ok=True)
+                    with open(part, "xb", opener=_for_its_owner) as file:
+                        file.write(msgspec.json.format(msgspec.json.encode(tokens)) + b"\n")
+                    part.replace(self._path)
+            except OSError as error:
+                path, why = str(self._path), error.strerror or str(error)
+                raise UserError(say("command.cannot-write", path=path, why=why)) from None
+            return self._read()
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """Keep all other programs out until the block ends."""
+    with path.open("ab") as lock:
+        end_s = time.monotonic() + _WAIT_S
+        while not hold(lock):
+            if time.monotonic() > end_s:
+                raise TimeoutError(path)
+            time.sleep(0.01)
+        yield
+
+
+def _for_its_owner(name: str, flags: int) -> int:
+    return os.open(name, flags, 0o600)
+
+
+def _state(path: Path) -> tuple[int, int] | None:
+    """Return numbers that differ each time the file is replaced; None: there is no file."""
+    try:
+        found = path.stat()
+    except FileNotFoundError:
+        return None
+    return found.st_ino, found.st_mtime_ns
+
+
+def _digest(token: str) -> bytes:
+    return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()
