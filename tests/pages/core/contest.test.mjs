@@ -6,6 +6,7 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { bracket } from "../../../client/web/src/core/contest/bracket.ts";
 import { fit } from "../../../client/web/src/core/contest/fit.ts";
+import { places } from "../../../client/web/src/core/contest/places.ts";
 import * as c from "../../../client/web/src/core/contest/sheet.ts";
 import { slides } from "../../../client/web/src/core/contest/slides.ts";
 
@@ -180,4 +181,25 @@ test("a name that is too long for its box is cut by its width", () => {
   assert.equal(fit("Ants", 4), "Ants");
   assert.equal(fit("Unstoppable Walkers", 6), "Unstoppab…");
   assert.equal(fit("九州工業大学ロボット研究会", 6), "九州工業大…");
+});
+
+test("teams that are equal in all are first together, and their places name each other", () => {
+  const view = structuredClone(cup(swiss));
+  const [table] = view.tables;
+  view.matches = [];
+  view.rounds_to_draw = 0;
+  for (const row of table.rows.slice(0, 2)) Object.assign(row, { rank: 1, shares: true });
+  const [one, other] = table.rows.map(({ team }) => team);
+  const over = { ...swiss, stages: [view], planned: [] };
+  assert.deepEqual(c.champions(over), [one, other]);
+  assert.deepEqual(
+    places(over)
+      .slice(0, 3)
+      .map(({ team, rank, equal, won }) => ({ team, rank, equal, won })),
+    [
+      { team: one, rank: 1, equal: [other], won: true },
+      { team: other, rank: 1, equal: [one], won: true },
+      { team: table.rows[2].team, rank: table.rows[2].rank, equal: [], won: false },
+    ],
+  );
 });

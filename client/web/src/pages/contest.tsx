@@ -70,7 +70,7 @@ function Whole({ sheet }: { sheet: ContestSheet }) {
         <Stage key={view.stage.name} sheet={sheet} view={view} />
       ))}
       {sheet.planned.map((plan) => (
-        <ToCome key={plan.stage} plan={plan} />
+        <ToCome key={plan.stage} sheet={sheet} plan={plan} />
       ))}
       <Teams sheet={sheet} />
       <Decisions sheet={sheet} />
@@ -85,7 +85,7 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
   return (
     <section id={`stage-${name}`} class="stage" aria-labelledby={`title-${name}`}>
       <h2 id={`title-${name}`}>
-        {stageTitle(name)} <small>{format(view.plan.format, settings.games)}</small>
+        {stageTitle(sheet, name)} <small>{format(view.plan.format, settings.games)}</small>
       </h2>
       {isKnockout(view) && (
         <div class="scrolls wide">
@@ -101,16 +101,16 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
 }
 
 /** A stage that is not drawn yet. */
-function ToCome({ plan }: { plan: Planned }) {
+function ToCome({ sheet, plan }: { sheet: ContestSheet; plan: Planned }) {
   const { stage, format: name, settings, after, draw, teams } = plan;
   const follows = draw === "organiser" ? "contest.plannedByHand" : "contest.plannedAfter";
   return (
     <section class="stage" aria-labelledby={`title-${stage}`}>
       <h2 id={`title-${stage}`}>
-        {stageTitle(stage)} <small>{format(name, settings?.games)}</small>
+        {stageTitle(sheet, stage)} <small>{format(name, settings?.games)}</small>
       </h2>
       <p class="muted">
-        {after ? t(follows, { stage: stageTitle(after) }) : t("contest.planned")}{" "}
+        {after ? t(follows, { stage: stageTitle(sheet, after) }) : t("contest.planned")}{" "}
         {!!teams && t("contest.best", { count: teams })}
       </p>
     </section>

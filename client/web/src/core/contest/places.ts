@@ -1,11 +1,13 @@
 /** The place of each team for its certificate. Pure. */
 
-import { type ContestSheet, champions, isOver, isStillIn } from "./sheet";
+import { type ContestSheet, champions, equals, isOver, isStillIn } from "./sheet";
 
 /** Where a team came. */
 export interface Place {
   team: string;
   rank: number;
+  /** The teams with which it shares that rank. */
+  equal: string[];
   /** The stage of that rank; "": the only table of the last one, so it is the contest's rank. */
   stage: string;
   /** Group of the stage, such as "a"; "": it has only one. */
@@ -22,15 +24,17 @@ export function places(sheet: ContestSheet): Place[] {
   const best = champions(sheet);
   for (const view of sheet.stages.toReversed()) {
     const last = view === sheet.stages.at(-1) && !sheet.planned.length;
-    for (const { section, rows } of view.tables) {
-      for (const { team, rank, out } of rows) {
+    for (const table of view.tables) {
+      for (const row of table.rows) {
+        const { team, rank, out } = row;
         const open = !isOver(view) && isStillIn(view, team);
         if (out || open || found.has(team) || (!isOver(view) && !knockedOut(sheet, team))) continue;
         found.set(team, {
           team,
           rank,
+          equal: equals(table, row),
           stage: last && view.tables.length === 1 ? "" : view.stage.name,
-          group: view.tables.length > 1 ? section : "",
+          group: view.tables.length > 1 ? table.section : "",
           won: best.includes(team),
         });
       }

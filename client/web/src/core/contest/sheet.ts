@@ -88,6 +88,12 @@ export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
     .map(({ pairing, game, teams, court }) => ({ pairing, game, teams, court }));
 }
 
+/** The teams with which a team shares its rank because all tie-breaks left them equal. */
+export function equals(table: Table, { team, rank, shares }: Standing): string[] {
+  if (!shares) return [];
+  return table.rows.filter((row) => row.rank === rank && row.team !== team).map((row) => row.team);
+}
+
 /** Whoever has won the contest: first in the only table of its last stage. */
 export function champions(sheet: ContestSheet): string[] {
   const last = sheet.stages.at(-1);

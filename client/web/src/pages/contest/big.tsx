@@ -96,7 +96,7 @@ function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   return (
     <>
       <h2>
-        {stageTitle(stage.name)} <small>{format(plan.format, stage.settings.games)}</small>
+        {stageTitle(sheet, stage.name)} <small>{format(plan.format, stage.settings.games)}</small>
       </h2>
       {slide.is === "bracket" ? (
         <BracketView sheet={sheet} view={slide.view} cut={slide.cut} />

@@ -63,14 +63,14 @@ export function Standings({ view, table, rows, brief = false }: Props) {
       </thead>
       <tbody>
         {rows.map((row) => {
-          const { team, rank, won, drawn, lost, points, scored, conceded, out, decided_by } = row;
+          const { team, rank, won, drawn, lost, points, scored, conceded, out, shares } = row;
           const all = { played: won + drawn + lost, won, drawn, lost };
           return (
             <tr key={team} data-chosen={chosenTeam.value === team || undefined}>
               <td>
                 {bracket && isStillIn(view, team) ? "" : rank}
-                {decided_by === "seed" && (
-                  <abbr class="by-draw" title={t("contest.byDraw")}>
+                {shares && (
+                  <abbr class="shares" title={t("contest.shares")}>
                     {" ="}
                   </abbr>
                 )}
@@ -91,11 +91,11 @@ export function Standings({ view, table, rows, brief = false }: Props) {
           );
         })}
       </tbody>
-      {!brief && rows.some((row) => row.decided_by === "seed") && (
+      {!brief && rows.some(({ shares }) => shares) && (
         <tfoot>
           <tr>
             <td colSpan={4 + counts.length + ties.length} class="muted">
-              = {t("contest.byDraw")}
+              = {t("contest.shares")}
             </td>
           </tr>
         </tfoot>

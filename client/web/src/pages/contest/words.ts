@@ -27,9 +27,21 @@ export function roundsLeft({ plan, rounds_to_draw: count }: StageView): string {
   return t(own in catalogue ? (own as MessageName) : "contest.roundsLeft", { count });
 }
 
-/** A stage as a title; its name is the organiser's own. */
-export function stageTitle(name: string): string {
-  return name.charAt(0).toUpperCase() + name.slice(1);
+/** What people call a stage: the organiser's title, or the usual name of its format. */
+export function stageTitle(sheet: ContestSheet, name: string): string {
+  const title = sheet.titles[name];
+  return title ? said(title) : name;
+}
+
+/** A rank in words, with the teams that share it. */
+export function placeTitle(rank: number, equal: readonly string[]): string {
+  if (!equal.length) return t("contest.place", { rank });
+  return t("contest.sharedPlace", { rank, teams: listed(equal) });
+}
+
+/** Names in a row. */
+export function listed(names: readonly string[]): string {
+  return names.join(said({ code: "join.comma" }));
 }
 
 /** A table's title; "" where the stage has only one. */
