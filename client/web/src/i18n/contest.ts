@@ -39,6 +39,7 @@ export const contest = {
   "contest.watchCourt": ["Watch court {court}", "コート {court} を観戦"],
   "contest.coming": ["Coming next", "次の試合"],
   "contest.noneComing": ["No game can begin yet.", "始められる試合はまだありません。"],
+  "contest.expected": ["about {time}, court {court}", "{time} ごろ・コート {court}"],
   "contest.more": ["and {count} more", "ほか {count} 試合"],
   "contest.format.round-robin": ["Round robin", "総当たり戦"],
   "contest.format.swiss": ["Swiss", "スイス式"],
@@ -197,10 +198,4 @@ export const contest = {
   "contest.toMatch": ["To the match", "試合を見る"],
   "contest.changesNothing": ["Changes nothing now: {why}", "今は結果に影響しません：{why}"],
   "contest.unused": ["Facts that change nothing", "結果に影響しない事実"],
-  "contest.pause": ["Stop changing the slides", "スライドの自動切り替えを止める"],
-  "contest.resume": ["Change the slides by itself", "スライドを自動で切り替える"],
-  "contest.previous": ["Previous slide", "前へ"],
-  "contest.next": ["Next slide", "次へ"],
-  "contest.whole": ["The whole page", "ページ全体"],
-  "contest.slide": ["{number} of {all}", "{number} / {all}"],
 } as const satisfies Record<string, readonly [string, string]>;

@@ -52,3 +52,26 @@ function knockedOut(sheet: ContestSheet, team: string): boolean {
     ),
   );
 }
+
+/** A step of the podium: all teams of a rank. */
+export interface Step {
+  rank: number;
+  teams: string[];
+}
+
+const PODIUM_RANKS = 3;
+const MORE_MOST = 6;
+
+/** The first three ranks of the contest, and some teams after them. */
+export function podium(sheet: ContestSheet): { steps: Step[]; more: Place[] } {
+  const all = places(sheet).filter(({ stage }) => !stage);
+  const first = all.filter(({ rank }) => rank <= PODIUM_RANKS);
+  const ranks = [...new Set(first.map(({ rank }) => rank))];
+  return {
+    steps: ranks.map((rank) => ({
+      rank,
+      teams: first.filter((place) => place.rank === rank).map(({ team }) => team),
+    })),
+    more: all.filter(({ rank }) => rank > PODIUM_RANKS).slice(0, MORE_MOST),
+  };
+}

@@ -13,7 +13,7 @@ import { t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
 import { Settings } from "../../ui/settings";
 import { TeamLink } from "./parts";
-import { format, listed, stageTitle } from "./words";
+import { listed, stageTitle } from "./words";
 
 export function Head({ sheet }: { sheet: ContestSheet }) {
   const settings = useSignal(false);
@@ -58,7 +58,7 @@ export function Standing({ sheet }: { sheet: ContestSheet }) {
   const current = state === "running" ? currentStage(sheet) : null;
   const { here, gone, expelled } = teamsOf(sheet);
   const parts = [
-    current && `${stageTitle(sheet, current.stage.name)} (${format(current.plan.format)})`,
+    current && stageTitle(sheet, current.stage.name),
     t("contest.teamCount", { count: here }),
     gone.length > 0 && t("contest.gone", { teams: listed(gone) }),
     expelled.length > 0 && t("contest.expelled", { teams: listed(expelled) }),

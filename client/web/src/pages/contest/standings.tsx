@@ -12,6 +12,8 @@ import { chosenTeam, TeamLink } from "./parts";
 import { groupTitle } from "./words";
 
 const COUNTS = ["played", "won", "drawn", "lost"] as const;
+const BRACKET_COUNTS = ["played", "won", "lost"] as const;
+const BRIEF_COUNTS = ["played"] as const;
 
 export function Tables({ view }: { view: StageView }) {
   const ranked = view.tables.filter(({ rows }) => rows.length);
@@ -37,7 +39,7 @@ interface Props {
 
 export function Standings({ view, table, rows, brief = false }: Props) {
   const bracket = isKnockout(view);
-  const counts = bracket ? (["played", "won", "lost"] as const) : COUNTS;
+  const counts = bracket ? BRACKET_COUNTS : brief ? BRIEF_COUNTS : COUNTS;
   const ties = bracket || brief ? [] : tieColumns(table);
   const title = groupTitle(view, table.section);
   return (

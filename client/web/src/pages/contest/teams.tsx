@@ -14,7 +14,7 @@ import { Dialog } from "../../ui/dialog";
 import { chooseNoTeam, chosenTeam, TeamLink } from "./parts";
 import { MatchRow } from "./schedule";
 import { signed } from "./standings";
-import { gameTitle, groupTitle, matchTitle, placeTitle, stageTitle } from "./words";
+import { expected, gameTitle, groupTitle, matchTitle, placeTitle, stageTitle } from "./words";
 
 export function Teams({ sheet }: { sheet: ContestSheet }) {
   const wanted = useSignal("");
@@ -163,7 +163,10 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
           {!running && coming && (
             <div>
               <dt>{t("contest.coming")}</dt>
-              <dd>{gameTitle(sheet, coming.pairing, coming.game)}</dd>
+              <dd>
+                {gameTitle(sheet, coming.pairing, coming.game)}
+                {expected(coming) && <small class="muted"> {expected(coming)}</small>}
+              </dd>
             </div>
           )}
         </dl>
