@@ -78,7 +78,7 @@ def expected(contest: Contest) -> dict[str, tuple[str, int]]:
 def fits(page: Page) -> None:
     """Check that a slide fits, and that everybody can read it."""
     found = page.evaluate(
-        """() => {
+        """(least) => {
           const slide = document.querySelector(".slide");
           const sizes = [...slide.querySelectorAll("*")]
             .filter((one) => [...one.childNodes].some((n) => n.nodeType === 3 && n.data.trim()))
@@ -90,10 +90,10 @@ def fits(page: Page) -> None:
             });
           return {
             over: [slide.scrollHeight - slide.clientHeight, slide.scrollWidth - slide.clientWidth],
-            small: sizes.filter(([size]) => size < %f * innerHeight),
+            small: sizes.filter(([size]) => size < least * innerHeight),
           };
-        }"""
-        % LEAST_SHARE
+        }""",
+        LEAST_SHARE,
     )
     assert found == {"over": [0, 0], "small": []}
 
