@@ -92,7 +92,7 @@ def test_the_referee_has_every_decision(
     taken = referee.decide("adjust", "left", "-2")
     assert taken["scores"] == [16, 18]
     assert 'there is no seat "middle"' in referee.refused("adjust", "middle", "1", "--reason", "x")
-    assert referee.decide("set", "c0r0", "neutral")["scores"] == [15, 18]
+    assert referee.decide("set", "A1", "neutral")["scores"] == [15, 18]
     tried = referee.decide("take-back", str(taken["event"]), "--dry-run")
     assert (tried["event"], tried["scores"]) == (None, [17, 18])
     assert referee.decide("take-back", str(taken["event"]))["scores"] == [17, 18]
@@ -111,21 +111,23 @@ def test_the_referee_has_every_decision(
 def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -> None:
     """`--dry-run` prints that nothing is done, and lists each event that would change."""
     changes = (
-        say("change.vanishes", event=17, kind="strike", marker="flag18"),
+        say("change.vanishes", kind="strike", marker="flag18"),
         say("change.appears", kind="capture", marker="corner0"),
     )
-    done = say("decision.take-back", event=17)
+    what = say("struck.event", kind="strike", marker="flag18", team="Ants")
+    score = say("score.two", left="Ants", points=5, conceded=0, right="Bees")
+    done = say("decision.took-back", what=what, score=score)
     tried = DecisionReply(beat=900, said=done, scores=(5, 0), changes=changes)
     _show_reply(tried)
     _show_reply(msgspec.structs.replace(tried, changes=()))
     first = [
         "Dry run: nothing is done. This is what would be done:",
-        "  Event 17 is taken back.",
+        "  The strike of flag 18 by Ants is taken back: Ants 5 : 0 Bees.",
     ]
     assert capsys.readouterr().out.splitlines() == [
         *first,
-        "  event 17 is removed: strike flag18",
-        "  new event: capture corner0",
+        "  removed: strike of flag 18",
+        "  new: capture of corner 0",
         "The score would be 5 : 0",
         *first,
         "  No other event changes.",

@@ -129,7 +129,11 @@ def test_a_group_called_f_plays_no_final() -> None:
 @pytest.mark.parametrize(
     ("how", "settings", "said"),
     [
-        ("round-robin", {"groups": 2}, ["cup, group A, round 1", "cup, group B, round 1"]),
+        (
+            "round-robin",
+            {"groups": 2},
+            ["Group stage, group A, round 1", "Group stage, group B, round 1"],
+        ),
         (
             "single-knockout",
             {"games": 3, "third_place": True},

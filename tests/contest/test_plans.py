@@ -33,7 +33,7 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
         ),
         (GROUPS + "teams = -1\n", r"groups.*teams: .*at least 0"),
         (GROUPS + "teams = 1\n", r"stage.groups.*teams = 1 is not possible"),
-        (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, draw, teams'),
+        (GROUPS + "game = 3\n", r'no entry "game"; a stage has format, after, title, draw, teams'),
         (
             GROUPS + "third_place = true\n",
             r'"round-robin" has no setting "third_place"; it has games, rounds, groups',
@@ -51,6 +51,10 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
             r"stage.b.*third place is possible with 3 teams",
         ),
         (GROUPS + 'draw = "later"\n', r'draw = "later" is not possible; choose at-once or org'),
+        (
+            GROUPS + 'title.en = "Finals"\n',
+            r"title is one text for both languages, or one for each",
+        ),
         (GROUPS + 'arena = "chess"\n', r'no arena "chess"'),
         (GROUPS + 'arena = "practice"\n', r'"practice" is not a game for two'),
         (GROUPS + "settings.match.duration = 3\n", r"duration"),
@@ -117,3 +121,12 @@ def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:
         with pytest.raises(UserError, match=r'Stage "groups" has been drawn'):
             note_plans(store, folder(tmp_path, last.replace("games = 3", "games = 5")).plans)
         assert len(store.facts()) == 7
+
+
+def test_a_stage_has_a_title_for_people(tmp_path: Path) -> None:
+    """A title is one text for both languages, or one for each."""
+    stages = (
+        f'{GROUPS}title = "Cup"\n[stage.last]\nformat = "swiss"\ntitle.en = "A"\ntitle.ja = "B"\n'
+    )
+    plans = folder(tmp_path, stages).plans
+    assert [plan.title for plan in plans] == [{"en": "Cup", "ja": "Cup"}, {"en": "A", "ja": "B"}]

@@ -50,7 +50,7 @@ def test_a_contest_is_told_line_by_line() -> None:
     event.begin("cup", "single-knockout", event.names, games=3)
     assert terminal.lines() == [
         "Entries are closed: 2 teams take part.",
-        "Stage cup is drawn: 2 teams.",
+        "Knockout is drawn: 2 teams.",
     ]
     about = {"pairing": "cup:w1.1", "game": 1, "teams": TEAMS}
     event.add(Called, court="red", **about)
@@ -73,10 +73,10 @@ def test_a_draw_that_waits_is_told() -> None:
     terminal = Terminal(event)
     assert terminal.lines() == []
     event.add(Closed)
-    assert "Stage cup waits for you" in terminal.lines()[-1]
+    assert "Knockout waits for you" in terminal.lines()[-1]
     assert terminal.lines() == []
     event.add(Drawn, stage="cup", entries=tuple(event.names))
-    assert terminal.lines() == ["Stage cup is drawn: 2 teams."]
+    assert terminal.lines() == ["Knockout is drawn: 2 teams."]
 
 
 def test_a_court_that_is_lost_and_comes_back_is_told() -> None:
@@ -98,6 +98,8 @@ def test_a_game_that_a_court_refuses_is_told() -> None:
     cup.add(Recalled, pairing="cup:a1.1", game=1, reason="moved")
     terminal.held = {("cup:a1.1", 1): say("event.void")}
     (line,) = terminal.lines()
-    assert line.startswith("The office holds this game back, because its court refuses it: cup")
+    assert line.startswith(
+        "The office holds this game back, because its court refuses it: Round robin"
+    )
     assert line.endswith(render(say("event.void")))
     assert terminal.lines() == []

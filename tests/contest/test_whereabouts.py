@@ -10,10 +10,12 @@ from lacoc_server.contest.league.facts import (
     Disqualified,
     Drawn,
     Planned,
+    Played,
     Settings,
     Withdrawn,
 )
 from lacoc_server.contest.league.schedule import assign
+from lacoc_server.contest.league.titles import titles
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared.messages.office import Whereabouts
@@ -64,7 +66,7 @@ def test_a_team_whose_match_is_open_hears_where() -> None:
     assert (there.seat, there.opponent, there.call) == ("left", right, calls["north"])
     assert (other.seat, other.opponent, other.call) == ("right", left, calls["north"])
     assert there.fixture is not None
-    assert render(there.said) == f"Court north, left seat, against {right}. cup, round 1."
+    assert render(there.said) == (f"Court north, left seat, against {right}. Round robin, round 1.")
 
 
 def test_a_team_waits_until_its_court_has_the_match() -> None:
@@ -157,8 +159,43 @@ def test_a_knockout_goes_on() -> None:
     cup.won(final.pairing.id, (winner, second.next_seats[0]))
     found = where(cup, {})
     assert {there.state for there in found.values()} == {"over"}
-    assert render(found[winner].said) == "The contest is over: place 1 in cup."
+    assert render(found[winner].said) == "The contest is over: place 1 in Knockout."
     assert (found[loser].state, found[loser].rank) == ("over", 3)
+
+
+def test_teams_that_are_equal_in_all_share_their_place() -> None:
+    """At the end each of them hears whom it shares its place with, in both languages."""
+    cup = Cup(teams=2, how="round-robin", rounds=2)
+    for match in cup.contest.stages[0].matches:
+        assert match.next_seats is not None
+        cup.won(match.pairing.id, match.next_seats)
+    found = where(cup, {})
+    one, other = cup.names
+    assert [there.rank for there in found.values()] == [1, 1]
+    said = found[one].said
+    assert render(said) == f"The contest is over: place 1 in Round robin, shared with {other}."
+    assert render(said, "ja") == f"大会は終わりました（総当たり戦 1 位（{other}と同率））。"
+
+
+def test_stages_have_titles_in_both_languages() -> None:
+    """The organiser's title is taken; stages of one usual name have numbers."""
+    cup = Cup()
+    for name, title in (("a", {}), ("b", {"en": "Finals", "ja": "決勝"}), ("c", {})):
+        cup.add(Planned, stage=name, format="single-knockout", after="cup", title=title)
+    found = titles(cup.contest)
+    assert [render(title) for title in found.values()] == [
+        "Round robin",
+        "Knockout 1",
+        "Finals",
+        "Knockout 2",
+    ]
+    assert [render(title, "ja") for title in found.values()] == [
+        "総当たり戦",
+        "トーナメント 1",
+        "決勝",
+        "トーナメント 2",
+    ]
+    assert not [fault for title in found.values() for fault in faults(title)]
 
 
 def test_a_stage_that_is_not_drawn() -> None:
@@ -229,3 +266,15 @@ def test_any_contest(how: str, trouble: float) -> None:
         }
         assert all(found[str(name)].state in ("court", "waits") for name in open_teams)
     assert {there.state for there in found.values()} <= {"court", "waits", "out", "over"}
+
+
+def test_a_shared_rank_sends_one_team_of_each_group_on() -> None:
+    """Where two teams of a group share its first rank, the order of the draw says who goes on."""
+    cup = Cup("round-robin", groups=2)
+    for match in cup.contest.stages[0].matches:
+        assert match.next_seats is not None
+        teams, about = match.next_seats, match.pairing.id
+        cup.add(Played, pairing=about, game=1, teams=teams, scores=(2, 2), outcome="draw")
+    (view,) = cup.contest.stages
+    assert [[row.rank for row in table.rows] for table in view.tables] == [[1, 1], [1, 1]]
+    assert view.ranking == ("t001", "t002", "t003", "t004")

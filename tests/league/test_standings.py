@@ -21,37 +21,45 @@ CIRCLE = [won("a", "b", 3), won("b", "c", 2), won("c", "a", 4), *(won(one, "d") 
 
 
 @pytest.mark.parametrize(
-    ("matches", "order", "ranked"),
+    ("matches", "order", "ranked", "ranks"),
     [
-        ([], ("points",), "abcd"),
-        ([won("d", "a")], ("points",), "dabc"),
-        ([won("c", "b"), drawn("a", "d")], ("points",), "cadb"),
+        ([], ("points",), "abcd", "1111"),
+        ([won("d", "a")], ("points",), "dabc", "1222"),
+        ([won("c", "b"), drawn("a", "d")], ("points",), "cadb", "1224"),
         (
             [drawn("b", "d"), won("d", "a"), won("b", "a"), won("d", "b")],
             ("points", "direct"),
             "dbac",
+            "1233",
         ),
         (
             [won("b", "a"), won("a", "c", 9), won("b", "d", 9), won("a", "d")],
             ("points", "direct"),
             "bacd",
+            "1233",
         ),
-        (CIRCLE, ("points", "direct"), "abcd"),
-        (CIRCLE, ("points", "direct", "difference"), "cabd"),
-        (CIRCLE, ("points", "direct", "scored"), "cabd"),
-        ([drawn("b", "c", 7), drawn("a", "d", 2)], ("points", "scored"), "bcad"),
-        ([won("b", "a"), drawn("c", "a"), drawn("c", "d")], ("points", "wins"), "bcad"),
-        ([won("b", "a"), drawn("c", "d"), drawn("d", "c")], ("points", "fewest-lost"), "bcda"),
-        ([won("a", "c"), won("b", "d"), won("d", "c")], ("points", "buchholz"), "bdac"),
-        ([won("a", "c"), won("b", "d"), won("d", "c")], ("points", "sonneborn"), "badc"),
+        (CIRCLE, ("points", "direct"), "abcd", "1114"),
+        (CIRCLE, ("points", "direct", "difference"), "cabd", "1224"),
+        (CIRCLE, ("points", "direct", "scored"), "cabd", "1234"),
+        ([drawn("b", "c", 7), drawn("a", "d", 2)], ("points", "scored"), "bcad", "1133"),
+        ([won("b", "a"), drawn("c", "a"), drawn("c", "d")], ("points", "wins"), "bcad", "1233"),
+        (
+            [won("b", "a"), drawn("c", "d"), drawn("d", "c")],
+            ("points", "fewest-lost"),
+            "bcda",
+            "1114",
+        ),
+        ([won("a", "c"), won("b", "d"), won("d", "c")], ("points", "buchholz"), "bdac", "1134"),
+        ([won("a", "c"), won("b", "d"), won("d", "c")], ("points", "sonneborn"), "badc", "1224"),
     ],
 )
-def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str) -> None:
-    """Each tie-break orders the teams that earlier ones left equal; the seeding orders the rest."""
+def test_order(matches: list[Counted], order: tuple[str, ...], ranked: str, ranks: str) -> None:
+    """Each tie-break orders teams that earlier ones left equal; the rest share a rank."""
     found = standings(ABCD, matches, order)
 
     assert "".join(row.team for row in found.rows) == ranked
-    assert [row.rank for row in found.rows] == [1, 2, 3, 4]
+    assert "".join(str(row.rank) for row in found.rows) == ranks
+    assert [row.shares for row in found.rows] == [ranks.count(rank) > 1 for rank in ranks]
     assert found.tie_breaks == (*order, "seed")
     assert standings(ABCD, matches[::-1], order) == found
 

@@ -195,8 +195,8 @@ def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> No
     page = open_page(viewport=PROJECTOR)
     page.clock.install()
     page.goto(f"{cup.url}?big")
-    expect(page.locator(".slide")).to_have_attribute("data-slide", "winner")
-    for slide in ("bracket", "ratings", "winner"):
+    expect(page.locator(".slide")).to_have_attribute("data-slide", "podium")
+    for slide in ("bracket", "ratings", "podium"):
         page.clock.run_for(12_500)
         expect(page.locator(".slide")).to_have_attribute("data-slide", slide)
         assert page.evaluate(
@@ -204,7 +204,7 @@ def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> No
         )
     page.keyboard.press("Space")
     page.clock.run_for(60_000)
-    expect(page.locator(".slide")).to_have_attribute("data-slide", "winner")
+    expect(page.locator(".slide")).to_have_attribute("data-slide", "podium")
 
 
 def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:

@@ -119,7 +119,7 @@ def has_scores(page: Page, *points: int) -> None:
 
 
 def disc(page: Page, name: str) -> Locator:
-    return page.locator(f".board g[aria-label^='{name}:']")
+    return page.locator(f".board g[data-marker='{name}']")
 
 
 def start(page: Page, venue: Venue) -> None:
@@ -217,18 +217,18 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
         for found in (page.locator(".log li").first, cause)
     )
     assert large_px > 1.3 * text_px
-    expect(disc(page, "c0r0").locator("text").last).to_have_text("c0r0")  # as the log names it
+    expect(disc(page, "c0r0").locator("text").last).to_have_text("A1")  # as the log names it
     disc(page, "c0r0").click()
     page.locator(".pick .states .act").nth(2).click()
     confirm(page, "rule")
-    log_has(page, "Referee Kim: c0r0 is set to right. Reason: rule")
+    log_has(page, "Referee Kim: disc A1 goes to Bees: Ants 14 : 19 Bees. Reason: rule")
     has_scores(page, 14, 19)
     page.keyboard.press("Control+z")
     preview = page.locator(".preview")
     expect(preview.locator(".then")).to_have_text("15 : 18")
     has_scores(page, 14, 19)
     confirm(page, "other", "wrong disc")
-    log_has(page, "is taken back. Reason: wrong disc")
+    log_has(page, "the change of disc A1 is taken back: Ants 15 : 18 Bees. Reason: wrong disc")
     has_scores(page, 15, 18)
     expect(page.locator(".fate")).to_have_text("taken back")
     group(page, "+10 s").click()
@@ -353,7 +353,7 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     disc(page, "c3r3").focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
-    expect(page.locator("#pick-title")).to_have_text("Disc c4r3")
+    expect(page.locator("#pick-title")).to_have_text("Disc E4")
     choice = page.locator(".pick .states .act").first
     assert "the match is in the lobby" in why(choice)
     page.keyboard.press("Escape")
@@ -614,7 +614,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     page = referee()
     at_the_desk(page)
     looks: dict[str, set[str | None]] = {}
-    for flag in page.locator(".board g[aria-label^='flag']").all():
+    for flag in page.locator(".board g[data-marker^='flag']").all():
         colour = flag.locator("circle").get_attribute("fill")
         points = flag.locator("text").first.text_content() or ""
         looks.setdefault(points, set()).add(colour)

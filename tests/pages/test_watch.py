@@ -48,7 +48,11 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
     show.sees(".hint", "Ants: ahead by 2")
     expect(show.find(".panel .log li")).to_have_count(len(referee.events))
     assert show.view("marker(35)") == 1
-    assert show.find(".board g[aria-label='c5r5: left']").count() == 1
+    assert show.find(".board g[aria-label='disc F6: left']").count() == 1
+    expect(show.find(".panel .log li").first).to_contain_text(
+        "disc F6 goes to Ants: Ants 19 : 17 Bees. Reason: touched by hand"
+    )
+    expect(show.find(".view-label")).to_have_text([*"ABCDEF", *"123456"])
 
     def has_the_time() -> bool:
         frame = referee.frame

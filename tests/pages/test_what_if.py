@@ -96,7 +96,7 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
     assert show.find(".recordings .fork").count() == 1
     page = open_page(viewport={"width": 1366, "height": 768})
     show = Show(page, library.url, f"/replay?file={FORK}.mcap&t=3&q=low")
-    show.sees(".fork-note", f"a fork of {MATCH} at beat 120, not an official record")
+    show.sees(".fork-note", f"a fork of {MATCH} at 0:02.4, not an official record")
     show.misses(".odds-curve")  # these are the odds of another match
     show.find(".fork-note button").click()
     show.sees(".scene.two .line:nth-child(2) .line-score", "The match")
@@ -119,14 +119,14 @@ def test_a_page_with_the_key_goes_on_from_where_it_is(library: Venue, open_page:
     page.goto(f"{library.url}/replay?file={MATCH}.mcap&t=3&q=low")
     page.get_by_role("button", name="What if, from here").click()
     dialog = page.get_by_role("dialog")
-    expect(dialog).to_contain_text("from beat 150")
+    expect(dialog).to_contain_text("from 0:03.0")
     expect(dialog.locator(".why")).to_have_text("Change something first")
     expect(dialog.locator("option", has_text="the bot straight")).to_have_count(2)
     assert violations(page) == []
     dialog.locator("select[name=player-right]").select_option("straight")
     dialog.locator("input[name=restart-left]").check()
     dialog.get_by_role("button", name="Play on").click()
-    show.sees(".fork-note", f"a fork of {MATCH} at beat 150")
+    show.sees(".fork-note", f"a fork of {MATCH} at 0:03.0")
     show.sees(".fork-note", "right: the bot straight")
     show.sees(".fork-note", "left: robot put back at its start")
     show.sees(".scene.two .line:nth-child(2) .line-score", "The match")

@@ -179,7 +179,12 @@ STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
         [
             word(
                 "set",
-                say("decision.set", marker="c0r0", state="neutral"),
+                say(
+                    "decision.set-so",
+                    marker="c0r0",
+                    state="neutral",
+                    score=say("score.two", left="Ants", points=18, conceded=19, right="Bees"),
+                ),
                 "torn",
                 marker="c0r0",
                 state="neutral",
@@ -283,10 +288,12 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
     (number,) = stage.numbers("capture")
     beat = stage.beat(decide(d.TakeBack(number), "a mistake"))
     changes = (
-        say("change.vanishes", event=number, kind="capture", marker="corner0"),
+        say("change.vanishes", kind="capture", marker="corner0"),
         say("change.appears", kind="capture", marker="corner0"),
     )
-    did = say("decision.take-back", event=number)
+    struck = say("struck.event", kind="capture", marker="corner0", team="Ants")
+    score = say("score.two", left="Ants", points=5, conceded=0, right="Bees")
+    did = say("decision.took-back", what=struck, score=score)
     name, nobody, told, data = word("take-back", did, "a mistake", event=number, dry_run=False)
     capture = say("event.capture", team="Ants", marker="corner0", points=5)
     assert said(beat.events) == [

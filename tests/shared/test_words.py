@@ -260,8 +260,8 @@ def test_faults_find_wrong_kinds_within_lists() -> None:
         ),
         (
             say("event.flip", team="Ants", marker="c2r3", also=["c3r3", "c4r3"]),
-            "Ants flips c2r3 and with it c3r3, c4r3.",
-            "Ants が c2r3 を反転しました（同時に c3r3、c4r3 も反転）。",
+            "Ants flips disc C4 and with it disc D4, disc E4.",
+            "Ants が ディスク C4 を反転しました（同時に ディスク D4、ディスク E4 も反転）。",
         ),
         (
             say("why.no-marker", marker="\x1b[31m", markers=["a", "b", "c"]),

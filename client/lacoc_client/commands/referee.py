@@ -7,6 +7,7 @@ new subcommand here, with its arguments.
 import getpass
 import inspect
 import os
+import re
 import sys
 import time
 from collections.abc import Callable
@@ -75,7 +76,7 @@ _FIELDS = {
     "seconds": "How many seconds.",
     "gives_s": "How many seconds to give; -10 takes ten away.",
     "points": "How many points; -2 takes two away.",
-    "marker": "Name of the disc, corner or flag: c2r3, corner0, flag7.",
+    "marker": "The disc, corner or flag: C4 as in pictures, or its name: c2r3, corner0, flag7.",
     "state": "What it becomes: neutral, left, right or down.",
     "event": "Number of the event, as in 'lacoc referee log'.",
     "dry_run": "Only show what would change.",
@@ -155,6 +156,8 @@ def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
     }
 
     def run(**given: Any) -> None:
+        if "marker" in fields:
+            given["marker"] = _marker(given["marker"])
         decision = kind(**{field: given[field] for field in fields})
         _decide(name, decision, **{option: given[option] for option in _COMMON})
 
@@ -306,6 +309,13 @@ def outlook(
             screen.show(say("referee.outlook-nothing"))
         then, before = " : ".join(map(str, found.scores)), " : ".join(map(str, found.before))
         screen.show(say("referee.outlook-score", then=then, before=before))
+
+
+def _marker(name: str) -> str:
+    """Return the name of a marker; a disc may be called as pictures do: C4 is c2r3."""
+    if found := re.fullmatch("([A-Z])([1-9][0-9]?)", name):
+        return f"c{ord(found[1]) - ord('A')}r{int(found[2]) - 1}"
+    return name
 
 
 def _decide(

@@ -27,6 +27,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.schedule import waits_for_organiser
+from lacoc_server.contest.league.titles import title
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.contest.names import look_alike, read_name
 from lacoc_shared.mistakes import UserError
@@ -186,13 +187,15 @@ def draw(store: FactStore, shown: Drawn) -> Phrase:
     """
 
     def decision(facts: tuple[AnyFact, ...]) -> list[AnyFact]:
-        made = drawing(compute(facts, FORMATS))
+        contest = compute(facts, FORMATS)
+        made = drawing(contest)
         if (made.stage, made.entries) != (shown.stage, shown.entries):
-            raise UserError(say("contest.other-draw", stage=made.stage))
+            raise UserError(say("contest.other-draw", stage=title(contest, made.stage)))
         return [made]
 
     store.decide(decision)
-    return say("contest.drawn", stage=shown.stage, teams=len(shown.entries))
+    stage = title(compute(store.facts(), FORMATS), shown.stage)
+    return say("contest.drawn", stage=stage, teams=len(shown.entries))
 
 
 def tokens(file: Path, team: str | None) -> dict[str, str]:

@@ -15,10 +15,13 @@ from lacoc_server.contest.league.fixture import match_fixture
 from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.rating import Rated, Rating, ratings
 from lacoc_server.contest.league.schedule import playable
+from lacoc_server.contest.league.titles import titles
 from lacoc_shared.words import Phrase
 
-VERSION = 3
+VERSION = 4
 """Version of the layout of a sheet."""
+EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
+_UNKNOWN = ("", 0)
 
 
 class Coming(msgspec.Struct, frozen=True, kw_only=True):
@@ -28,6 +31,10 @@ class Coming(msgspec.Struct, frozen=True, kw_only=True):
     game: int
     teams: tuple[str, str]
     """Who will sit left and right."""
+    court: str = ""
+    """Where it will probably be played; "": nobody knows, as in a published sheet."""
+    at_ms: int = 0
+    """About when it will begin, in milliseconds since 1970, UTC; 0: nobody knows."""
 
 
 class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
@@ -39,6 +46,8 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """In the order in which they entered."""
     stages: tuple[StageView, ...]
     """The stages that were drawn, in the order of their draws."""
+    titles: dict[str, Phrase]
+    """What each stage is called, by its name in the contest file; also of those not drawn yet."""
     fixtures: dict[str, Phrase]
     """What each match is in words, by its pairing: "Semi-final 1"."""
     planned: tuple[Planned, ...]
@@ -71,14 +80,24 @@ def sheet_of(name: str, facts: Iterable[AnyFact], formats: Mapping[str, Format])
     return sheet(name, compute(facts, formats))
 
 
-def sheet(name: str, contest: Contest) -> ContestSheet:
-    """Make the sheet of a computed contest."""
+def sheet(
+    name: str, contest: Contest, expected: Mapping[str, tuple[str, int]] = EXPECTED_NOTHING
+) -> ContestSheet:
+    """Make the sheet of a computed contest.
+
+    Args:
+        name: the contest's name.
+        contest: the contest.
+        expected: where and when open matches will probably begin, by pairing; it does not follow
+            from the facts, so a sheet that somebody can check does without it.
+    """
     games = [game for view in contest.stages for match in view.matches for game in match.games]
     rated = ratings(Rated(*game.teams, game.winner) for game in games)
     return ContestSheet(
         name=name,
         teams=contest.teams,
         stages=contest.stages,
+        titles=titles(contest),
         fixtures={
             match.pairing.id: match_fixture(contest, view, match)
             for view in contest.stages
@@ -87,7 +106,13 @@ def sheet(name: str, contest: Contest) -> ContestSheet:
         planned=contest.planned,
         running=contest.running,
         coming=tuple(
-            Coming(pairing=match.pairing.id, game=match.next_game, teams=match.next_seats)
+            Coming(
+                pairing=match.pairing.id,
+                game=match.next_game,
+                teams=match.next_seats,
+                court=expected.get(match.pairing.id, _UNKNOWN)[0],
+                at_ms=expected.get(match.pairing.id, _UNKNOWN)[1],
+            )
             for match in playable(contest)
             if match.next_seats is not None
         ),

@@ -193,17 +193,27 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
         raise Illegal(say("why.no-marker", marker=decision.marker, markers=names))
     if decision.state not in MARKER_STATES:
         raise Illegal(say("why.no-state", state=decision.state, states=MARKER_STATES))
+    index = names.index(decision.marker)
     try:
-        match.history.set(
-            names.index(decision.marker),
-            MARKER_STATES.index(decision.state),
-            match.next_number,
-        )
+        match.history.set(index, MARKER_STATES.index(decision.state), match.next_number)
     except NoSuchState as error:
         raise Illegal(error.why) from None
     except ValueError as error:  # third-party games raise a plain text
         raise Illegal(say("plain.text", text=str(error))) from None
-    return say("decision.set", marker=decision.marker, state=decision.state)
+    score = _score(match, match.scores())
+    for seat in match.seats:
+        if seat.id == decision.state:
+            return say("decision.set-for", marker=decision.marker, team=seat.team, score=score)
+    return say("decision.set-so", marker=decision.marker, state=decision.state, score=score)
+
+
+def _score(match: MatchState, scores: tuple[int, ...]) -> Phrase | None:
+    """Say a score with its teams; None: there are not two."""
+    if len(scores) != 2:
+        return None
+    left, right = match.seats
+    points, conceded = scores
+    return say("score.two", left=left.team, points=points, conceded=conceded, right=right.team)
 
 
 def _clock(match: MatchState, decision: d.Clock) -> Phrase:
@@ -258,6 +268,8 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
     changes nothing, and only reports the scores and what would change.
     """
     if decision.event in match.adjustments:
+        seat, points = match.adjustments[decision.event]
+        struck = say("struck.adjust", points=points, team=match.seats[seat].team)
         adjustments = {n: a for n, a in match.adjustments.items() if n != decision.event}
         scores = match.scores(adjustments=adjustments)
         if not decision.dry_run:
@@ -267,12 +279,13 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
         fold = None
     elif match.history.knows(decision.event):
         fold = match.history.without(decision.event)
+        struck = _struck(match, decision.event)
         scores = match.scores(fold.state)
         vanished = [number for number, _ in fold.vanished]
         changes = _changes(fold)
     else:
         raise Illegal(say("why.can-not-take-back", event=decision.event))
-    did = say("decision.take-back", event=decision.event)
+    did = say("decision.took-back", what=struck, score=_score(match, scores))
     if decision.dry_run:
         return DecisionReply(beat=match.beats, said=did, scores=scores, changes=changes)
     number = _log(match, item, "take-back", did, vanished=vanished, scores=scores)
@@ -287,11 +300,19 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
     )
 
 
+def _struck(match: MatchState, number: int) -> Phrase:
+    """Say what an event is that is taken back."""
+    event = match.history.event(number)
+    if isinstance(event, int):
+        return say("struck.set", marker=match.game.markers[event].name)
+    team = match.seats[event.seat].team
+    return say("struck.event", kind=event.kind, marker=event.marker, team=team)
+
+
 def _changes(fold: Fold) -> tuple[Phrase, ...]:
     """List the events that disappear, then those that are new."""
     vanished = [
-        say("change.vanishes", event=number, kind=event.kind, marker=event.marker)
-        for number, event in fold.vanished
+        say("change.vanishes", kind=event.kind, marker=event.marker) for _, event in fold.vanished
     ]
     appeared = [
         say("change.appears", kind=event.kind, marker=event.marker) for _, _, event in fold.appeared
@@ -373,7 +394,7 @@ _RULES: dict[type[d.Decision], _Rule] = {
     d.Set: _Rule(_SCORED, _set, also=_no_board),
     d.TakeBack: _Rule(
         frozenset({Phase.HALTED, Phase.FINISHED}),
-        lambda match, decision: say("decision.take-back", event=decision.event),
+        lambda match, decision: _struck(match, decision.event),  # `decide` has its own way
     ),
     d.Clock: _Rule(
         _SCORED,  # time that was taken away by mistake can be given back after the end

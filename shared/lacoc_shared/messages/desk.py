@@ -280,6 +280,8 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
     """A stage that waits for the organiser's draw."""
 
     stage: str
+    title: Phrase
+    """What people call it."""
     entries: tuple[str, ...]
     """Its teams by their seeding, the best first."""
 

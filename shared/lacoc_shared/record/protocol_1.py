@@ -10,6 +10,7 @@ import msgspec
 
 from lacoc_shared import codec
 from lacoc_shared.messages import Event
+from lacoc_shared.record.earlier_words import in_earlier_words
 from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.words import Phrase, say
 
@@ -57,7 +58,7 @@ def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event
     """Say whether a beat's events equal the recorded ones; for protocol 1, words are ignored."""
     if _is_old(header):
         return list(map(_bare, recorded)) == list(map(_bare, again))
-    return codec.encode(tuple(recorded)) == codec.encode(tuple(again))
+    return codec.encode(tuple(recorded)) == codec.encode(in_earlier_words(recorded, again))
 
 
 def same_result(header: Header, recorded: Result, again: Result) -> bool:

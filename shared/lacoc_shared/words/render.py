@@ -30,6 +30,9 @@ DECIMALS = 6
 _CONTROLS = re.compile(
     "[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
 )
+_DISC = re.compile("c(1?[0-9]|2[0-5])r([0-9]{1,2})")
+"""A disc by its column and row, counted from 0; columns have letters."""
+_NUMBERED = re.compile("(corner|flag)([0-9]{1,4})")
 _EXACT = Context(prec=40)  # enough for LARGEST with DECIMALS
 _current: Language = "en"
 
@@ -116,11 +119,25 @@ def _plain(value: Value, formats: tuple[str, ...], language: Language, depth: in
     if isinstance(value, int | float):
         return _number(value, formats)
     if isinstance(value, str):
+        if "marker" in formats:
+            return _marker(value, language)
         for one in formats:
             if one.endswith(".*") and (code := one[:-1] + value) in table():
                 return _word(code, language)
         return _text(value)
     return "?"
+
+
+def _marker(name: str, language: Language) -> str:
+    """Return a marker's name as pictures show it; names of other games stay as they are."""
+    if found := _DISC.fullmatch(name):
+        column, row = map(int, found.groups())
+        label = f"{chr(ord('A') + column)}{row + 1}"
+        return _rendered(Phrase("marker.disc", {"label": label}), language, 0)
+    if found := _NUMBERED.fullmatch(name):
+        kind, number = found.groups()
+        return _rendered(Phrase(f"marker.{kind}", {"number": number}), language, 0)
+    return _text(name)
 
 
 def _word(code: str, language: Language) -> str:

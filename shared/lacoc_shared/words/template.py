@@ -7,6 +7,7 @@
     {n:plural disc|discs}  the first word for 1 or -1, else the second; without the number
     {names:or}           a list joined with "or" (or `and`); without a format, with commas
     {name:quoted}        in the quotation marks of the language
+    {disc:marker}        a marker's name as pictures show it: c2r3 is disc C4
     {seat:seat.*}        a program's word, shown as the sentence of code "seat." plus the word
     <because of {why}>   a clause: shown only if all its values are there
 
@@ -18,7 +19,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 _PIECE = re.compile(r"\{(\w+)(?::([^{}<>]*))?\}|([<>])|([^{}<>]+)")
-_FORMAT = re.compile(r"\.\d|\+|clock|or|and|quoted|plural [^|,]*\|[^|,]*|[a-z][a-z-]*\.\*")
+_FORMAT = re.compile(r"\.\d|\+|clock|marker|or|and|quoted|plural [^|,]*\|[^|,]*|[a-z][a-z-]*\.\*")
 
 
 class BadTemplate(ValueError):

@@ -6,8 +6,11 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { bracket } from "../../../client/web/src/core/contest/bracket.ts";
 import { fit } from "../../../client/web/src/core/contest/fit.ts";
+import { places, podium } from "../../../client/web/src/core/contest/places.ts";
 import * as c from "../../../client/web/src/core/contest/sheet.ts";
 import { slides } from "../../../client/web/src/core/contest/slides.ts";
+import { Turns } from "../../../client/web/src/core/contest/turns.ts";
+import { Phase } from "../../../client/web/src/core/wire.ts";
 
 /** Sheets of contests with random results, made by Python. */
 const SHEETS = JSON.parse(
@@ -160,24 +163,80 @@ test("slides show every row of a table once, and brackets in parts that can be r
   for (const sheet of [finals, single, double]) {
     const cuts = slides(sheet).filter(({ is }) => is === "bracket");
     assert.ok(cuts.length >= 1);
-    for (const { view, cut } of cuts) assert.ok(bracket(view, cut).rows <= 9);
+    for (const { view, cut } of cuts) {
+      const { rows, columns } = bracket(view, cut);
+      assert.ok(rows <= 4 && columns <= 3);
+    }
   }
-  assert.equal(slides(finals)[0].is, "winner");
-  const courts = Array.from({ length: 8 }, (_, number) => ({ court: `court-${number + 4}` }));
+  assert.equal(slides(finals)[0].is, "podium");
+  const courts = Array.from({ length: 6 }, (_, number) => ({ court: `court-${number + 6}` }));
   const now = slides({ ...groups, running: courts.toReversed() }).filter(({ is }) => is === "now");
-  const shownCourts = now.map(({ running }) => running.map(({ court }) => court));
+  const games = now.map((slide) => slide.games.map(({ court }) => court));
   assert.deepEqual(
-    shownCourts.flat(),
+    games.flat().slice(0, 6),
     courts.map(({ court }) => court),
   );
+  assert.ok(games.every(({ length }) => length <= 4));
+  assert.equal(games[0].length, 4);
+});
+
+test("a podium has the first three ranks, shared ones too, and the teams after them", () => {
+  const ranks = (sheet) => podium(sheet).steps.map(({ rank, teams }) => [rank, teams.length]);
+  assert.deepEqual(ranks(finals), [
+    [1, 1],
+    [2, 1],
+    [3, 1],
+  ]);
   assert.deepEqual(
-    shownCourts.map(({ length }) => length),
-    [6, 2],
+    podium(finals).more.map(({ rank }) => rank),
+    [4],
   );
+  assert.deepEqual(podium(groups), { steps: [], more: [] });
+});
+
+test("a projector shows the match that is played, and tables between matches", () => {
+  const turns = new Turns();
+  const at = (ms, court, phase) => turns.isPicture(ms, court ? { court, phase } : null);
+  const { LOBBY, COUNTDOWN, PLAYING, FINISHED, OFFICIAL } = Phase;
+  assert.equal(at(0, null), false);
+  assert.equal(at(1000, "a", LOBBY), false);
+  assert.equal(at(2000, "a", COUNTDOWN), true);
+  assert.equal(at(3000, "a", PLAYING), true);
+  assert.equal(at(5000, null), true, "a link that breaks for a moment");
+  assert.equal(at(9000, null), false, "a court that is gone");
+  assert.equal(at(10_000, "a", FINISHED), true);
+  assert.equal(at(20_000, "a", OFFICIAL), true);
+  assert.equal(at(29_000, "a", OFFICIAL), true);
+  assert.equal(at(31_000, "a", OFFICIAL), false, "the result had its time");
+  assert.equal(at(32_000, "a", COUNTDOWN), true, "the next match of the same court");
+  assert.equal(at(60_000, "a", FINISHED), true);
+  assert.equal(at(66_000, "b", PLAYING), false, "tables after a match, while others play");
+  assert.equal(at(110_000, "b", PLAYING), true);
 });
 
 test("a name that is too long for its box is cut by its width", () => {
   assert.equal(fit("Ants", 4), "Ants");
   assert.equal(fit("Unstoppable Walkers", 6), "Unstoppab…");
   assert.equal(fit("九州工業大学ロボット研究会", 6), "九州工業大…");
+});
+
+test("teams that are equal in all are first together, and their places name each other", () => {
+  const view = structuredClone(cup(swiss));
+  const [table] = view.tables;
+  view.matches = [];
+  view.rounds_to_draw = 0;
+  for (const row of table.rows.slice(0, 2)) Object.assign(row, { rank: 1, shares: true });
+  const [one, other] = table.rows.map(({ team }) => team);
+  const over = { ...swiss, stages: [view], planned: [] };
+  assert.deepEqual(c.champions(over), [one, other]);
+  assert.deepEqual(
+    places(over)
+      .slice(0, 3)
+      .map(({ team, rank, equal, won }) => ({ team, rank, equal, won })),
+    [
+      { team: one, rank: 1, equal: [other], won: true },
+      { team: other, rank: 1, equal: [one], won: true },
+      { team: table.rows[2].team, rank: table.rows[2].rank, equal: [], won: false },
+    ],
+  );
 });

@@ -2,6 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { borderOf, ownLabel } from "../../../client/web/src/core/border.ts";
+import { toldEvents } from "../../../client/web/src/core/rulings.ts";
 import { said, t } from "../../../client/web/src/i18n/index.ts";
 import {
   clock,
@@ -90,6 +92,32 @@ test("the winner is whom the referee declares, and else the newest by the rules"
 test("a marker is shown by a word, and not by its name in the record", () => {
   assert.equal(markerName("flag7"), "flag 7");
   assert.equal(markerName("corner2"), "corner 2");
-  assert.equal(markerName("c2r3"), "disc c2r3");
+  assert.equal(markerName("c2r3"), "disc C4");
   assert.equal(markerName("line"), "line");
+});
+
+test("the border names columns and rows of discs; corners and flags have numbers", () => {
+  const at = (name, x_m, y_m) => ({ name, kind: "", x_m, y_m, radius_m: 0.1, points: 1 });
+  const discs = [at("c0r0", -1, -2), at("c1r0", 1, -2), at("c0r1", -1, 2)];
+  assert.deepEqual(borderOf(discs), {
+    columns: [
+      ["A", -1],
+      ["B", 1],
+    ],
+    rows: [
+      ["1", -2],
+      ["2", 2],
+    ],
+  });
+  assert.deepEqual(discs.map(ownLabel), ["", "", ""]);
+  const flags = [at("corner0", 0, 0), at("flag16", 1, 1), at("line", 0, 0)];
+  assert.deepEqual(flags.map(ownLabel), ["0", "16", ""]);
+  assert.deepEqual(borderOf(flags), { columns: [], rows: [] });
+});
+
+test("advice to play again falls away once the result is official", () => {
+  const advice = { kind: "advice", data: {} };
+  const official = { kind: "phase", data: { after: "OFFICIAL" } };
+  assert.deepEqual(toldEvents([advice]), [advice]);
+  assert.deepEqual(toldEvents([advice, official]), [official]);
 });

@@ -162,6 +162,7 @@ export interface Slot {
 
 export interface ToDraw {
   stage: string;
+  title: Phrase;
   entries: string[];
 }
 

@@ -66,6 +66,15 @@ export function goneEvents(events: readonly Event[]): Map<number, "takenBack" | 
   return gone;
 }
 
+/**
+ * The events as people read them: the court's advice to play again falls away once the referee has
+ * made the result official.
+ */
+export function toldEvents(events: readonly Event[]): readonly Event[] {
+  const isOfficial = events.some(({ data }) => data.after === "OFFICIAL");
+  return isOfficial ? events.filter(({ kind }) => kind !== "advice") : events;
+}
+
 /** The decision of an event, with its arguments; null for any other event. */
 export function decisionOf({ data }: Event): Decision | null {
   if (typeof data.decision !== "string") return null;

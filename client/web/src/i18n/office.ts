@@ -152,7 +152,6 @@ export const office = {
   "office.right": ["Right", "右"],
   "office.match": ["Match", "試合"],
   "office.certificate": ["Certificate", "賞状"],
-  "office.place": ["Place {rank}", "第 {rank} 位"],
   "office.signature": ["Signature", "署名"],
   "enter.title": ["Enter the contest", "大会に登録"],
   "enter.code": ["Event code", "イベントコード"],

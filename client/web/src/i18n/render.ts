@@ -6,6 +6,7 @@
  * shows as "?", and what is nested too deep shows its code alone.
  */
 
+import { markerKind, markerLabel } from "../core/border.ts";
 import type { Phrase, Value } from "../core/phrase.ts";
 import { DECIMALS, DEEPEST, LARGEST, LONGEST_LIST, LONGEST_TEXT, WORDS } from "./words.gen.ts";
 
@@ -100,6 +101,7 @@ function plain(value: Value, formats: string[], language: Language, depth: numbe
   if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", language);
   if (typeof value === "number" || typeof value === "bigint") return number(Number(value), formats);
   if (typeof value === "string") {
+    if (formats.includes("marker")) return markerText(value, language);
     for (const format of formats) {
       const code = format.slice(0, -1) + value;
       if (format.endsWith(".*") && found(code)) return word(code, language);
@@ -107,6 +109,15 @@ function plain(value: Value, formats: string[], language: Language, depth: numbe
     return shownText(value);
   }
   return value === null || Array.isArray(value) ? "?" : rendered(value, language, depth + 1);
+}
+
+/** A marker's name as pictures show it; names of other games stay as they are. */
+export function markerText(name: string, language: Language): string {
+  const label = markerLabel(name);
+  const kind = markerKind(name);
+  if (!label) return shownText(name);
+  const values: Record<string, Value> = kind ? { number: label } : { label };
+  return rendered({ code: kind ? `marker.${kind}` : "marker.disc", values }, language, 0);
 }
 
 function word(code: string, language: Language): string {

@@ -2,7 +2,8 @@
 
 import type { Match } from "../core/match";
 import { BEATS_PER_S, type Event, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
-import { language, type MessageName, said, t } from "./index";
+import { language, said, t } from "./index";
+import { markerText } from "./render";
 
 export { BEATS_PER_S };
 
@@ -46,11 +47,9 @@ export function seatName(id: string): string {
   return id === "left" || id === "right" || id === "solo" ? t(`seat.${id}`) : id;
 }
 
-/** A marker in words: "corner 2". */
+/** A marker in words, as pictures show it: "disc C4", "flag 16". */
 export function markerName(name: string): string {
-  const [, kind, number] = /^(corner|flag)(\d+)$/.exec(name) ?? [];
-  if (kind) return t(`marker.${kind}` as MessageName, { number: number! });
-  return /^c\d+r\d+$/.test(name) ? t("marker.disc", { name }) : name;
+  return markerText(name, language.value);
 }
 
 /** Why a seat's keys do nothing now, or that it is silent; "" if all is well or play is over. */

@@ -2,7 +2,6 @@
 
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { flag } from "../core/address";
 import { Feed } from "../core/contest/feed";
 import {
   type ContestSheet,
@@ -17,15 +16,14 @@ import { BracketView } from "./contest/bracket";
 import { Decisions } from "./contest/decisions";
 import { Head, Parts } from "./contest/head";
 import { Now } from "./contest/now";
-import { addressed } from "./contest/parts";
+import { addressed, big } from "./contest/parts";
 import { Schedule } from "./contest/schedule";
 import { Tables, Ties } from "./contest/standings";
 import { TeamDialog, Teams } from "./contest/teams";
-import { format, roundsLeft, stageTitle } from "./contest/words";
+import { roundsLeft, stageHeading, stageTitle } from "./contest/words";
 import "./contest/contest.css";
 
 const feed = new Feed();
-const big = flag("big", false);
 effect(() => {
   document.title = `${feed.sheet.value?.name || t("contest.title")} – LACOC`;
 });
@@ -70,7 +68,7 @@ function Whole({ sheet }: { sheet: ContestSheet }) {
         <Stage key={view.stage.name} sheet={sheet} view={view} />
       ))}
       {sheet.planned.map((plan) => (
-        <ToCome key={plan.stage} plan={plan} />
+        <ToCome key={plan.stage} sheet={sheet} plan={plan} />
       ))}
       <Teams sheet={sheet} />
       <Decisions sheet={sheet} />
@@ -81,11 +79,11 @@ function Whole({ sheet }: { sheet: ContestSheet }) {
 }
 
 function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
-  const { name, settings } = view.stage;
+  const { name } = view.stage;
   return (
     <section id={`stage-${name}`} class="stage" aria-labelledby={`title-${name}`}>
       <h2 id={`title-${name}`}>
-        {stageTitle(name)} <small>{format(view.plan.format, settings.games)}</small>
+        {stageTitle(sheet, name)} <small>{stageHeading(sheet, view.plan)}</small>
       </h2>
       {isKnockout(view) && (
         <div class="scrolls wide">
@@ -101,16 +99,16 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
 }
 
 /** A stage that is not drawn yet. */
-function ToCome({ plan }: { plan: Planned }) {
-  const { stage, format: name, settings, after, draw, teams } = plan;
+function ToCome({ sheet, plan }: { sheet: ContestSheet; plan: Planned }) {
+  const { stage, after, draw, teams } = plan;
   const follows = draw === "organiser" ? "contest.plannedByHand" : "contest.plannedAfter";
   return (
     <section class="stage" aria-labelledby={`title-${stage}`}>
       <h2 id={`title-${stage}`}>
-        {stageTitle(stage)} <small>{format(name, settings?.games)}</small>
+        {stageTitle(sheet, stage)} <small>{stageHeading(sheet, plan)}</small>
       </h2>
       <p class="muted">
-        {after ? t(follows, { stage: stageTitle(after) }) : t("contest.planned")}{" "}
+        {after ? t(follows, { stage: stageTitle(sheet, after) }) : t("contest.planned")}{" "}
         {!!teams && t("contest.best", { count: teams })}
       </p>
     </section>

@@ -10,7 +10,7 @@ import { BadRecord, dropped, fetched, oddsOf, readBeside } from "../core/record_
 import { Recording } from "../core/recording";
 import { quality, remembered } from "../core/settings";
 import { type MessageName, t } from "../i18n";
-import { BEATS_PER_S, team } from "../i18n/words";
+import { BEATS_PER_S, logClock, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { Board } from "../ui/board";
 import { Dropping, useDrop } from "../ui/drop";
@@ -260,7 +260,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
             server={server}
             {...(server !== null && { onBeside: () => void showBeside(player) })}
           />
-          <Notes notes={recording.record.notes} />
+          <Notes recording={recording} />
           <Hint match={recording} />
         </header>
       </div>
@@ -340,8 +340,7 @@ function Position({ recording }: { recording: Recording }) {
   const beat = useComputed(() => Math.floor(recording.beat.value)).value;
   return (
     <span class="position">
-      <b>{seconds(beat - firstBeat)}</b> / {seconds(lastBeat - firstBeat)}
-      <small class="muted">{t("replay.beat", { beat })}</small>
+      <b>{logClock(beat - firstBeat)}</b> / {seconds(lastBeat - firstBeat)}
     </span>
   );
 }
@@ -356,13 +355,14 @@ function Step({ name, onClick }: StepProps) {
   return <IconButton name={name} label={label} onClick={onClick} />;
 }
 
-function Notes({ notes }: { notes: readonly Note[] }) {
+function Notes({ recording }: { recording: Recording }) {
+  const { notes } = recording.record;
   const hidden = useMemo(() => signal(false), [notes]);
   if (!notes.length || hidden.value) return null;
   return (
     <div class="notes" role="alert">
       {notes.map((note, index) => (
-        <p key={index}>{noteText(note)}</p>
+        <p key={index}>{noteText(note, recording)}</p>
       ))}
       <button
         class="button quiet"
@@ -377,10 +377,10 @@ function Notes({ notes }: { notes: readonly Note[] }) {
   );
 }
 
-function noteText(note: Note): string {
+function noteText(note: Note, { firstBeat }: Recording): string {
   if (note.what === "gap") return t("replay.noteGap", { segment: note.segment + 1 });
   const name = note.what === "cut" ? "replay.noteCut" : "replay.noteDamaged";
-  return t(name, { file: note.file, beat: note.beat });
+  return t(name, { file: note.file, time: logClock(note.beat - firstBeat) });
 }
 
 function share(player: Player, server: string | null): void {

@@ -7,7 +7,12 @@ import { seatLetters } from "./topview";
 
 const ABOVE_M = 0.11;
 
-type Placing = (x: number, y: number, z: number) => { x: number; y: number; far: number } | null;
+/** Where a point [m] is in the picture [px]; null: not in it. */
+export type Placing = (
+  x: number,
+  y: number,
+  z: number,
+) => { x: number; y: number; far: number } | null;
 
 export class Tags {
   private readonly layer: HTMLElement;

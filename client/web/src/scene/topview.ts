@@ -1,5 +1,6 @@
 /** The field from straight above, drawn in two dimensions: needs no WebGL, and is easily read. */
 
+import { borderOf, ownLabel } from "../core/border";
 import { MARKER_STATES, type MarkerInfo, SeatFlag, type Sheet } from "../core/wire";
 import { drawLinks, drawMarks } from "./links";
 import type { FloorMarks } from "./marks";
@@ -16,6 +17,8 @@ const LIGHT = "#f4f7fb";
 const WALL_M = 0.045;
 const GRID_M = 0.1;
 const LEAST_MARKER_M = 0.036;
+/** Height of the number of a corner or flag. */
+const NAME_M = 0.045;
 const ROBOT_M = 0.115;
 
 /** Where the field is in the picture [px]. */
@@ -86,6 +89,7 @@ export class TopView {
     for (const [index, marker] of model.sheet.markers.entries()) {
       this.marker(marker, model.states[index] ?? 0, model, letters);
     }
+    this.border(model);
     if (near?.marks) drawMarks(context, near.marks);
     if (near) {
       if (model.robots.length) drawLinks(context, model, near.lit);
@@ -127,6 +131,13 @@ export class TopView {
     context.stroke();
   }
 
+  /** Letters of columns and numbers of rows on the wall. */
+  private border({ field: { x, y, halfX, halfY }, sheet }: Model): void {
+    const { columns, rows } = borderOf(sheet.markers);
+    for (const [text, at] of columns) this.text(text, at, y - halfY - WALL_M / 2, WALL_M, LIGHT);
+    for (const [text, at] of rows) this.text(text, x - halfX - WALL_M / 2, at, WALL_M, LIGHT);
+  }
+
   private marker(marker: MarkerInfo, state: number, model: Model, letters: string[]): void {
     const { context } = this;
     const small = marker.radius_m < LEAST_MARKER_M;
@@ -148,6 +159,8 @@ export class TopView {
     const worth = state === 0 && (small || marker.points > 1);
     const value = worth ? String(marker.points) : "";
     const text = taken ? (letters[state - 1] ?? "") : value;
+    const name = ownLabel(marker);
+    if (name) this.text(name, marker.x_m, marker.y_m - size - 0.6 * NAME_M, NAME_M, LIGHT);
     if (!text) return;
     const ink = luma(colour) > 0.5 ? DARK : LIGHT;
     if (taken) this.plate(marker.x_m, marker.y_m, size, colour);

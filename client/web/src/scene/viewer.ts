@@ -5,6 +5,7 @@ import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
 import { type Action, AutoCamera } from "./autocamera";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
+import { Labels } from "./labels";
 import type { FloorMarks } from "./marks";
 import { type Field, Model } from "./model";
 import { type Hit, pick, pickFlat, project, rayAt } from "./picking";
@@ -91,6 +92,7 @@ export class Viewer implements Exposed {
   private autoCamera = new AutoCamera(this.rig);
   private readonly times = new FrameTimes();
   private readonly tags: Tags;
+  private readonly labels: Labels;
   private readonly observer: ResizeObserver;
   private model: Model | null = null;
   private ghost: Model | null = null;
@@ -118,6 +120,7 @@ export class Viewer implements Exposed {
     options: Options,
   ) {
     this.options = options;
+    this.labels = new Labels(host);
     this.tags = new Tags(host);
     this.observer = new ResizeObserver(() => this.measure());
     this.observer.observe(host);
@@ -146,6 +149,7 @@ export class Viewer implements Exposed {
     this.observer.disconnect();
     this.drop();
     this.tags.end();
+    this.labels.end();
   }
 
   readonly hook: ViewHook = (() => {
@@ -342,6 +346,7 @@ export class Viewer implements Exposed {
       this.model = new Model(scene, sheet);
       this.stage?.setModel(this.model);
       this.tags.name(sheet);
+      this.labels.name(sheet);
     }
     const moment = source.sample(nowMs);
     if (!moment || !this.model?.apply(moment)) return false;
@@ -375,7 +380,10 @@ export class Viewer implements Exposed {
           })
         : [];
     }
-    this.tags.draw(this.options.labels ? model : null, (x, y, z) => this.place(x, y, z));
+    const named = this.options.labels ? model : null;
+    this.tags.draw(named, (x, y, z) => this.place(x, y, z));
+    // The map has them in its drawing.
+    this.labels.draw(this.map ? null : named, (x, y, z) => this.place(x, y, z));
   }
 
   /** The robots of the other trial now; null without one, and where it belongs to another scene. */

@@ -2,11 +2,12 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
+import { borderOf, markerLabel, ownLabel } from "../core/border";
 import { type Match, markerStates } from "../core/match";
 import { floorOf, type Place, places } from "../core/poses";
 import { MARKER_STATES, type MarkerInfo, type Scene, type Sheet } from "../core/wire";
 import { said, t } from "../i18n";
-import { seatName, team } from "../i18n/words";
+import { markerName, seatName, team } from "../i18n/words";
 
 interface Props {
   match: Match;
@@ -24,6 +25,9 @@ const LEAST_MARKER_M = 0.05;
 const NAME_M = 0.055;
 /** In a smaller marker the name stands below it. */
 const NAME_FITS_M = 0.1;
+/** Width of the border that names columns and rows, and height of its letters. */
+const EDGE_M = 0.11;
+const BORDER_M = 0.085;
 const SHADE = "rgb(0 0 0 / 30%)";
 const NEUTRAL = "#5d6674";
 const DOWN = "#3b424d";
@@ -35,12 +39,12 @@ export function Board({ match, onPick, picked }: Props) {
   const sheet = match.sheet.value;
   if (!sheet) return null;
   const floor = floorOf(match.scene.value, sheet);
-  const box = [
-    floor.xM - floor.halfXM,
-    -floor.yM - floor.halfYM,
-    2 * floor.halfXM,
-    2 * floor.halfYM,
-  ];
+  const border = borderOf(sheet.markers);
+  const edge = border.rows.length ? EDGE_M : 0;
+  const left = floor.xM - floor.halfXM;
+  const top = -floor.yM - floor.halfYM;
+  const size = { width: 2 * floor.halfXM, height: 2 * floor.halfYM };
+  const box = [left - edge, top, size.width + edge, size.height + edge];
   const pickable = onPick ? "button" : undefined;
   return (
     <div class="board">
@@ -66,14 +70,21 @@ export function Board({ match, onPick, picked }: Props) {
             </pattern>
           ))}
         </defs>
-        <rect x={box[0]} y={box[1]} width={box[2]} height={box[3]} fill="#1b2533" />
+        <rect x={left} y={top} {...size} fill="#1b2533" />
+        {border.columns.map(([text, x]) => (
+          <BorderLabel key={text} text={text} x={x} y={top + size.height + EDGE_M / 2} />
+        ))}
+        {border.rows.map(([text, y]) => (
+          <BorderLabel key={text} text={text} x={left - EDGE_M / 2} y={-y} />
+        ))}
         {sheet.markers.map((marker, index) => (
           <g
             key={marker.name}
             transform={`translate(${marker.x_m} ${-marker.y_m})`}
             // In SVG the attribute is all lower case. One stop for the tab key, arrows go on.
             {...(onPick && { role: pickable, tabindex: index === stop.value ? 0 : -1 })}
-            aria-label={`${marker.name}: ${said(MARKER_STATES[states[index] ?? 0] ?? "")}`}
+            data-marker={marker.name}
+            aria-label={`${markerName(marker.name)}: ${stateWord(states[index] ?? 0)}`}
             onFocus={() => {
               stop.value = index;
             }}
@@ -104,6 +115,25 @@ export function Board({ match, onPick, picked }: Props) {
       </svg>
     </div>
   );
+}
+
+function BorderLabel({ text, x, y }: { text: string; x: number; y: number }) {
+  return (
+    <text
+      x={x}
+      y={y + 0.35 * BORDER_M}
+      text-anchor="middle"
+      font-size={BORDER_M}
+      fill="var(--muted)"
+    >
+      {text}
+    </text>
+  );
+}
+
+/** A marker's state in a word. */
+function stateWord(state: number): string {
+  return said({ code: `state.${MARKER_STATES[state] ?? "neutral"}` });
 }
 
 /** Whether a key presses a button. It then does nothing else, such as in a dialog that opens. */
@@ -180,6 +210,7 @@ interface MarkerProps {
 function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
   const radius = Math.max(LEAST_MARKER_M, marker.radius_m);
   const fits = radius >= NAME_FITS_M;
+  const label = named ? markerLabel(marker.name) || marker.name : ownLabel(marker);
   const seat = state > 0 && state <= sheet.seats.length ? state - 1 : null;
   const fill =
     seat === null
@@ -199,7 +230,7 @@ function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
           : "";
   return (
     <>
-      <title>{`${marker.name}${marker.points > 1 ? `, ${marker.points}` : ""}`}</title>
+      <title>{`${markerName(marker.name)}${marker.points > 1 ? `, ${marker.points}` : ""}`}</title>
       <circle
         r={radius}
         fill={fill}
@@ -207,7 +238,7 @@ function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
         stroke-width={picked ? 0.025 : 0.008}
       />
       <text
-        y={radius * (named && fits ? 0.2 : 0.36)}
+        y={radius * (label && fits ? 0.2 : 0.36)}
         text-anchor="middle"
         font-size={radius}
         font-weight="700"
@@ -215,14 +246,14 @@ function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
       >
         {text}
       </text>
-      {named && (
+      {label && (
         <text
           y={fits ? radius * 0.72 : radius + NAME_M}
           text-anchor="middle"
           font-size={NAME_M}
           fill={fits ? ink : "var(--muted)"}
         >
-          {marker.name}
+          {label}
         </text>
       )}
     </>

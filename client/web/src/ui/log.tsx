@@ -2,6 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import type { Match } from "../core/match";
+import { toldEvents } from "../core/rulings";
 import type { Event } from "../core/wire";
 import { said, t } from "../i18n";
 import { eventClock } from "../i18n/words";
@@ -19,7 +20,8 @@ interface Props {
 }
 
 export function EventLog({ match, most = 200, only, extra, toldElsewhere }: Props) {
-  const events = match.events.value.filter((event) => !only || only(event)).slice(-most);
+  const told = toldEvents(match.events.value);
+  const events = told.filter((event) => !only || only(event)).slice(-most);
   if (!events.length) return <p class="muted">{t("log.empty")}</p>;
   return (
     <ol class="log" aria-live={toldElsewhere ? "off" : "polite"}>

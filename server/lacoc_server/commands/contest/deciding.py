@@ -102,10 +102,13 @@ def draw(contest: Contest = FILE, yes: Yes = False) -> None:
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
     from lacoc_server.contest.league.formats.installed import FORMATS
+    from lacoc_server.contest.league.titles import title
 
     with FactStore(ContestFolder(contest).facts) as store:
-        shown = organiser.drawing(compute(store.facts(), FORMATS))
-        if wanted_so([say("contest.to-draw", stage=shown.stage, teams=shown.entries)], yes):
+        now = compute(store.facts(), FORMATS)
+        shown = organiser.drawing(now)
+        stage = title(now, shown.stage)
+        if wanted_so([say("contest.to-draw", stage=stage, teams=shown.entries)], yes):
             screen.show(organiser.draw(store, shown))
 
 

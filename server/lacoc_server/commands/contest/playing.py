@@ -267,16 +267,20 @@ def _show(sheet: "ContestSheet") -> None:
         for table in view.tables:
             codes = _deciding(table)
             shown = screen.table(*titles, *(say("plain.text", text=code) for code in codes))
-            title = say("contest.stage-title", stage=view.name, group=table.section.upper() or None)
+            title = say(
+                "contest.stage-title",
+                stage=sheet.titles[view.name],
+                group=table.section.upper() or None,
+            )
             shown.title = render(title)
             for row in table.rows:
                 numbers = (row.won, row.drawn, row.lost, row.points)
                 score = f"{row.scored} : {row.conceded}"
                 ties = [str(row.tie_breaks[table.tie_breaks.index(code)]) for code in codes]
-                rank = f"{row.rank} =" if row.decided_by == "seed" else str(row.rank)
+                rank = f"{row.rank} =" if row.shares else str(row.rank)
                 shown.add_row(rank, row.team, *map(str, numbers), score, *ties)
             screen.show(shown)
-            if any(row.decided_by == "seed" for row in table.rows):
+            if any(row.shares for row in table.rows):
                 screen.show(say("contest.by-the-draw"))
 
 

@@ -65,6 +65,8 @@ _GROUPS = """\
 [stage.groups]
 format = "round-robin"     # or "swiss", "sequential", "single-knockout", "double-knockout"
 groups = 2
+# title.en = "Preliminaries"   # what people read; without it "Group stage"
+# title.ja = "予選"
 arena = "{arena}"
 settings.match.start = "ready"
 # settings.match.duration_s = 120.0    # length of a game; else as in the arena's file

@@ -17,6 +17,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.titles import title
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -68,10 +69,10 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
             )
         )
     for stage, team, old, now in found.ranks:
-        lines.append(say("decide.rank", stage=stage, team=team, before=old, after=now))
+        lines.append(say("decide.rank", stage=title(then, stage), team=team, before=old, after=now))
     changed = {stage for stage, *_ in found.ranks}
     drawn = (view.name for view in then.stages if view.plan.after in changed)
-    lines += (say("decide.drawn", stage=stage) for stage in drawn)
+    lines += (say("decide.drawn", stage=title(then, stage)) for stage in drawn)
     return (*lines,) or (say("decide.nothing"),)
 
 

@@ -11,13 +11,11 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.fixture import fixture, match_fixture
 from lacoc_server.contest.league.schedule import waits_for_organiser
+from lacoc_server.contest.league.titles import title
 from lacoc_server.contest.live.calling import LOST_MS
-from lacoc_server.contest.live.whereabouts import Known, starts
+from lacoc_server.contest.live.whereabouts import Known, full_minute, starts
 from lacoc_shared import codec
 from lacoc_shared.messages.desk import CourtRow, Moved, OfficeView, Slot, TeamRow, ToDraw
-
-_STEP_MS = 60_000
-"""Expected times are rounded up to this, so that the view does not change each time it is made."""
 
 
 def view(book: Book, known: Known) -> OfficeView:
@@ -50,7 +48,9 @@ def view(book: Book, known: Known) -> OfficeView:
 
 def _to_draw(contest: Contest) -> ToDraw | None:
     draw = waits_for_organiser(contest)
-    return None if draw is None else ToDraw(stage=draw.stage, entries=draw.entries)
+    if draw is None:
+        return None
+    return ToDraw(stage=draw.stage, title=title(contest, draw.stage), entries=draw.entries)
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:
@@ -112,7 +112,7 @@ def slots(contest: Contest, known: Known) -> Iterator[Slot]:
                 fixture=match_fixture(contest, stage, match),
                 teams=match.next_seats,
                 court=start.court,
-                at_ms=-(-start.at_ms // _STEP_MS) * _STEP_MS,
+                at_ms=full_minute(start.at_ms),
                 held=known.held.get((pairing, match.next_game)),
                 moved=_moved(moves.get(pairing)),
             )

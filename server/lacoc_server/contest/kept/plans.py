@@ -18,7 +18,7 @@ from lacoc_shared.contest.courts import wrong_in
 from lacoc_shared.contest.file import Contest, wrong_entries
 from lacoc_shared.contest.wrong_value import convert, place_and_words
 from lacoc_shared.mistakes import Gathered, UserError, text_of
-from lacoc_shared.words import say
+from lacoc_shared.words import LANGUAGES, say
 
 _USUAL_ARENA = "othello"
 _SETTINGS = Settings.__struct_fields__
@@ -33,6 +33,7 @@ class _Stage(msgspec.Struct, frozen=True, kw_only=True):
 
     format: str
     after: str = ""
+    title: str | dict[str, str] = ""
     draw: str = _AT_ONCE
     teams: int = 0
     arena: str = _USUAL_ARENA
@@ -193,9 +194,15 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     if idle := [key for key in rest if key not in read]:
         known = [key for key in _SETTINGS if key in read]
         raise UserError(say("contest.stage-idle", entry=idle[0], format=stage.format, known=known))
+    title = stage.title
+    if isinstance(title, str):
+        title = dict.fromkeys(LANGUAGES, title) if title else {}
+    elif {*title} != {*LANGUAGES}:
+        raise UserError(say("contest.stage-languages"))
     plan = new(
         Planned,
         stage=name,
+        title=title,
         format=stage.format,
         settings=msgspec.convert(rest, Settings),
         after=stage.after,

@@ -1,7 +1,7 @@
 """Writes the sheet of a contest for pages, while its games are played."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.folder import ContestFolder
@@ -34,16 +34,22 @@ class SheetWriter:
         self._where = where
         self._progress = progress
         self._contest: Contest | None = None
+        self._expected = sheets.EXPECTED_NOTHING
         self._is_new = False
         self._next_s = 0.0
 
-    def __call__(self, contest: Contest) -> None:
+    def __call__(
+        self,
+        contest: Contest,
+        expected: Mapping[str, tuple[str, int]] = sheets.EXPECTED_NOTHING,
+    ) -> None:
         """Report progress if the contest has changed; write its sheet if that is due.
 
         Call it again and again, also without a change: a change may have to wait for its sheet.
 
         Args:
             contest: the contest as it is now; the same object as before if nothing has changed.
+            expected: where and when open matches will probably begin, by pairing.
 
         Raises:
             UserError: if the sheet can't be written.
@@ -52,6 +58,8 @@ class SheetWriter:
             self._contest, self._is_new = contest, True
             matches = [match for view in contest.stages for match in view.matches]
             self._progress(sum(match.decided for match in matches), len(matches))
+        if expected != self._expected:
+            self._expected, self._is_new = expected, True
         if self._is_new and time.monotonic() >= self._next_s:
             self.write()
 
@@ -63,7 +71,7 @@ class SheetWriter:
         """
         assert self._contest is not None
         begun_s = time.monotonic()
-        made = sheets.sheet(self._where.contest.name, self._contest)
+        made = sheets.sheet(self._where.contest.name, self._contest, self._expected)
         public = shown(made, self._where.contest.replays)
         try:
             write(self._where.sheet, sheets.encode(public))

@@ -64,20 +64,26 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
         """The teams over all groups, the best first: the seeding of a stage that follows.
 
         First the winners of all groups, then all second places, and so on; at equal rank by points,
-        difference, points scored and seeding. Disqualified teams are left out.
+        difference, points scored and seeding. Where teams share a rank, the order of the draw says
+        who is first in the group. Disqualified teams are left out.
         """
-        rows = [row for table in self.tables for row in table.rows if not row.out]
+        rows = [
+            (place if row.shares else row.rank, row)
+            for table in self.tables
+            for place, row in enumerate(table.rows, 1)
+            if not row.out
+        ]
         seeds = {team: place for place, team in enumerate(self.stage.entries)}
         return tuple(
             row.team
-            for row in sorted(
+            for _, row in sorted(
                 rows,
-                key=lambda row: (
-                    row.rank,
-                    -row.points,
-                    row.conceded - row.scored,
-                    -row.scored,
-                    seeds[row.team],
+                key=lambda placed: (
+                    placed[0],
+                    -placed[1].points,
+                    placed[1].conceded - placed[1].scored,
+                    -placed[1].scored,
+                    seeds[placed[1].team],
                 ),
             )
         )

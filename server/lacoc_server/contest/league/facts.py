@@ -106,6 +106,8 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     settings: Settings = Settings()
     after: str = ""
     """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
+    title: dict[Literal["en", "ja"], Name] = {}
+    """What people call it, by language; empty: the usual name of its format."""
     draw: Draw = "at-once"
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""

@@ -2,6 +2,7 @@
 
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.titles import title
 from lacoc_shared.words import Phrase, say
 
 
@@ -41,7 +42,7 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
     knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]
-    stage = view.name if len(knockouts) > 1 else None
+    stage = title(contest, view.name) if len(knockouts) > 1 else None
     # Groups of a round robin have letters too: group F is no final.
     match pairing.section if view in knockouts else "":
         case "p":
@@ -56,10 +57,10 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
             return _winners(view, match, stage, number)
     several = len({one.pairing.section for one in view.matches}) > 1
     group = pairing.section.upper() if several else None
-    return say("fixture.round", stage=view.name, group=group, round=pairing.round)
+    return say("fixture.round", stage=title(contest, view.name), group=group, round=pairing.round)
 
 
-def _winners(view: StageView, match: Match, stage: str | None, number: int) -> Phrase:
+def _winners(view: StageView, match: Match, stage: Phrase | None, number: int) -> Phrase:
     """Name a match of the winners' bracket: "Final", "Semi-final 1", or by round and number."""
     pairing = match.pairing
     double = any(one.pairing.section == "l" for one in view.matches)

@@ -32,7 +32,8 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
 
     team: str
     rank: int
-    """From 1. No two teams of a table share a rank, except in a knockout."""
+    """From 1. Teams that all codes left equal share a rank, and the next ones are left out; so do
+    teams that went out of a knockout in the same round."""
     won: int = 0
     drawn: int = 0
     lost: int = 0
@@ -45,8 +46,11 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     tie_breaks: tuple[int, ...] = ()
     """Values of the tie-breaks in the order of the table's codes."""
     decided_by: str = ""
-    """The code that ranks the team below the one above it; "seed": all codes left them equal, and
-    the order of the draw decided. "": it is the first of its table, or no code was asked."""
+    """The code that put the team below the one above it; "seed": all codes left them equal, and the
+    order of the draw decided only who is listed first. "": it is the first of its table, or no code
+    was asked."""
+    shares: bool = False
+    """True: all codes left it equal to another team, and they share their rank."""
     out: bool = False
     """True: disqualified."""
 
@@ -156,6 +160,15 @@ def standings(
     for code in codes:
         groups = [part for group in groups for part in _split(group, code, tally, values)]
     ranked = [team for group in groups for team in group]
+    deciders = [
+        _decider(codes, values.get(above, ()), values[team])
+        if (team in last) is (above in last)
+        else ""
+        for above, team in pairwise(["", *ranked])
+    ]
+    ranks: list[int] = []
+    for place, decider in enumerate(deciders, 1):
+        ranks.append(ranks[-1] if decider == "seed" else place)
     return Table(
         section=section,
         tie_breaks=codes,
@@ -170,12 +183,11 @@ def standings(
                 scored=tally.scored[team],
                 conceded=tally.conceded[team],
                 tie_breaks=tuple(values[team]),
-                decided_by=_decider(codes, values.get(above, ()), values[team])
-                if (team in last) is (above in last)
-                else "",
+                decided_by=decider,
+                shares=ranks.count(rank) > 1,
                 out=team in last,
             )
-            for rank, (above, team) in enumerate(pairwise(["", *ranked]), 1)
+            for team, rank, decider in zip(ranked, ranks, deciders, strict=True)
         ),
     )
 

@@ -97,6 +97,11 @@ class Office:
         return self._facts
 
     @property
+    def expected(self) -> Mapping[str, tuple[str, int]]:
+        """Where and when open matches will probably begin, by pairing; times are full minutes."""
+        return self._teller.expected
+
+    @property
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
         return self.contest.over

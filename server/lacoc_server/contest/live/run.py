@@ -194,7 +194,7 @@ def play_live(
                 over_s = min(over_s, now_s) if office.over else math.inf
                 for elsewhere in away:
                     elsewhere.step(office, closing=now_s - over_s > shown_s)
-                writer(office.contest)
+                writer(office.contest, office.expected)
                 bots.follow(office.contest)
                 for line in ticker.newest(office.contest, office.facts, office.known):
                     news(line)

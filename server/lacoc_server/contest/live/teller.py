@@ -10,7 +10,14 @@ from lacoc_server.contest.league.facts import AnyFact, Planned
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.open_matches import OpenMatches
-from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
+from lacoc_server.contest.live.whereabouts import (
+    Courts,
+    Pace,
+    full_minute,
+    game_ms,
+    starts,
+    whereabouts,
+)
 from lacoc_shared import seal
 from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts
@@ -52,6 +59,9 @@ class Teller:
         self._open_matches = open_matches
         self.pace = Pace(0, 0, least_rest_ms)
         """How fast the contest goes, as of the newest estimate."""
+        self.expected: dict[str, tuple[str, int]] = {}
+        """Where and when open matches will probably begin, by pairing, as of that estimate: times
+        are full minutes, so that they seldom change."""
         self._teams: dict[str, Whereabouts] = {}
         self._contest: Contest | None = None
         self._calls: tuple[str, ...] = ()
@@ -82,6 +92,10 @@ class Teller:
             self._contest, self._calls, self._looked_ms = contest, calls, now_ms
             usual_ms = game_ms(facts, self._guess_ms(contest))
             self.pace = Pace(now_ms, usual_ms, self._least_rest_ms)
+            self.expected = {
+                pairing: (start.court, full_minute(start.at_ms))
+                for pairing, start in starts(contest, seen, self.pace)
+            }
             found = whereabouts(contest, Courts(seen, self._addresses), self.pace)
             here = [(self._token_of(team), there) for team, there in found.items()]
             if self._open_matches is not None:

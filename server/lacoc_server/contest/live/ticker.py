@@ -13,6 +13,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.schedule import waits_for_organiser
+from lacoc_server.contest.league.titles import title
 from lacoc_server.contest.live.calling import Seen
 from lacoc_server.contest.live.whereabouts import Known
 from lacoc_shared.words import Phrase, say
@@ -54,7 +55,7 @@ class Ticker:
         waiting = waits_for_organiser(contest)
         to_draw = "" if waiting is None else waiting.stage
         if to_draw and to_draw != self._to_draw:
-            yield say("news.to-draw", stage=to_draw)
+            yield say("news.to-draw", stage=title(contest, to_draw))
         self._to_draw = to_draw
         if contest.over and not self._over:
             yield say("news.over")
@@ -78,9 +79,9 @@ def _said(contest: Contest, fact: AnyFact) -> Phrase | None:
             here = sum(not team.gone for team in contest.teams)
             return say("news.closed", teams=here)
         case Drawn():
-            return say("news.drawn", stage=fact.stage, teams=len(fact.entries))
+            return say("news.drawn", stage=title(contest, fact.stage), teams=len(fact.entries))
         case RoundDrawn():
-            return say("news.round", stage=fact.stage, round=fact.round)
+            return say("news.round", stage=title(contest, fact.stage), round=fact.round)
         case Called():
             left, right = fact.teams
             said = named(contest, fact.pairing, fact.game)

@@ -14,6 +14,7 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Played
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.schedule import playable
+from lacoc_server.contest.league.titles import title
 from lacoc_server.contest.live.calling import Seen, present
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import Phrase, say
@@ -24,6 +25,7 @@ _LONGEST = 20
 _COUNTED = 15
 """How many of the newest games count for the usual length of a game."""
 _STEP_S = 5
+_MINUTE_MS = 60_000
 _MOMENT_S = 30
 """What comes sooner is said to come in a moment."""
 
@@ -179,8 +181,14 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
             for row in table.rows:
                 if row.team == team:
                     rank = row.rank
-                    group = table.section.upper() if len(view.tables) > 1 else None
-                    place = say("team.place", rank=rank, stage=view.name, group=group)
+                    equal = [one.team for one in table.rows if one.shares and one.rank == rank]
+                    place = say(
+                        "team.place",
+                        rank=rank,
+                        stage=title(contest, view.name),
+                        group=table.section.upper() if len(view.tables) > 1 else None,
+                        equal=[one for one in equal if one != team] or None,
+                    )
     if over:
         return Whereabouts(team=team, state="over", said=say("team.over", place=place), rank=rank)
     return Whereabouts(team=team, state="out", said=say("team.out", place=place), rank=rank)
@@ -242,6 +250,11 @@ def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[t
             insort(begun, at_ms + number * game)
         court_ms[court] = at_ms + count * game
         team_ms |= dict.fromkeys(match.next_seats, court_ms[court] + rest_ms)
+
+
+def full_minute(at_ms: int) -> int:
+    """Round an expected time up to a minute, so that it does not change with each estimate."""
+    return -(-at_ms // _MINUTE_MS) * _MINUTE_MS
 
 
 def _games(view: StageView, match: Match) -> int:

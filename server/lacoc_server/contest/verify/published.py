@@ -5,6 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.entries import EntryFolder
@@ -12,6 +13,7 @@ from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import AnyFact, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.standings import Table
 from lacoc_server.contest.publish import (
     ENTRIES,
     FACTS,
@@ -94,12 +96,31 @@ def _sheet(folder: Path) -> bytes:
 def _check_tables(folder: Path, contest: Contest) -> Iterator[Phrase]:
     if other_sheet(folder) is None:
         yield from _check_sheet(folder, contest)
-    for file, content in tables(sheets.sheet("", contest)).items():
+    for file, content in tables(sheets.sheet("", _as_written(folder, contest))).items():
         try:
             if regular.read(folder, file, most_bytes=_MOST_BYTES) != content:
                 yield say("verify.other-sheet", file=file)
         except UserError as error:
             yield error.phrase
+
+
+def _as_written(folder: Path, contest: Contest) -> Contest:
+    """Return a contest with the ranks that the version of the folder gave: before 4 none shared."""
+    if other_sheet(folder) is None:
+        return contest
+    return replace(
+        contest,
+        stages=tuple(
+            replace(view, tables=tuple(map(_without_ties, view.tables))) for view in contest.stages
+        ),
+    )
+
+
+def _without_ties(table: Table) -> Table:
+    rows = enumerate(table.rows, 1)
+    return replace(
+        table, rows=tuple(replace(row, rank=n) if row.shares else row for n, row in rows)
+    )
 
 
 def _check_sheet(folder: Path, contest: Contest) -> Iterator[Phrase]:

@@ -166,6 +166,17 @@ class History:
         """
         return number in self._step_of
 
+    def event(self, number: int) -> GameEvent | int:
+        """Return an event that can be taken back; of a referee's change, the index of the marker.
+
+        Raises:
+            KeyError: if the event can't be taken back (see `knows`).
+        """
+        note = self._notes[self._step_of[number]]
+        if note.changed is not None:
+            return note.changed.marker
+        return note.events[note.numbers.index(number)]
+
     def without(self, number: int) -> Fold:
         """Judge the game again without one event; the history stays as it is.
 

@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 3;
+export const VERSION = 4;
 
 export interface Team {
   name: string;
@@ -34,6 +34,7 @@ export interface Planned {
   format: string;
   settings?: Settings;
   after?: string;
+  title?: Record<"en" | "ja", string>;
   draw?: "at-once" | "organiser";
   teams?: number;
   arena?: string;
@@ -121,6 +122,7 @@ export interface Standing {
   conceded: number;
   tie_breaks: number[];
   decided_by: string;
+  shares: boolean;
   out: boolean;
 }
 
@@ -162,6 +164,8 @@ export interface Coming {
   pairing: string;
   game: number;
   teams: [string, string];
+  court: string;
+  at_ms: number;
 }
 
 export interface ContestSheet {
@@ -169,6 +173,7 @@ export interface ContestSheet {
   name: string;
   teams: Team[];
   stages: StageView[];
+  titles: Record<string, Phrase>;
   fixtures: Record<string, Phrase>;
   planned: Planned[];
   running: Called[];

@@ -76,16 +76,34 @@ export interface NextGame {
   pairing: string;
   game: number;
   teams: [string, string];
-  /** The court that it was given to; "" if none yet. */
+  /** The court that it was given to, or will probably be; "" if nobody knows. */
   court: string;
+  /** The id of the call that gave it to the court; "": it has none yet. */
+  call: string;
+  /** About when it begins, in milliseconds since 1970; 0: nobody knows, or it has been called. */
+  at_ms: number;
 }
 
 /** The first games that are on courts or come next, at most so many. */
 export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
-  const games = [...running(sheet), ...sheet.coming.map((one) => ({ ...one, court: "" }))];
-  return games
-    .slice(0, most)
-    .map(({ pairing, game, teams, court }) => ({ pairing, game, teams, court }));
+  const games = [
+    ...running(sheet).map(({ id, ...one }) => ({ ...one, call: id, at_ms: 0 })),
+    ...sheet.coming.map((one) => ({ ...one, call: "" })),
+  ];
+  return games.slice(0, most).map(({ pairing, game, teams, court, call, at_ms }) => ({
+    pairing,
+    game,
+    teams,
+    court,
+    call,
+    at_ms,
+  }));
+}
+
+/** The teams with which a team shares its rank because all tie-breaks left them equal. */
+export function equals(table: Table, { team, rank, shares }: Standing): string[] {
+  if (!shares) return [];
+  return table.rows.filter((row) => row.rank === rank && row.team !== team).map((row) => row.team);
 }
 
 /** Whoever has won the contest: first in the only table of its last stage. */

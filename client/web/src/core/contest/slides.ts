@@ -3,13 +3,14 @@
 import { bracket, type Cut, feeders } from "./bracket";
 import {
   byId,
-  type Called,
   type ContestSheet,
+  champions,
   isDecided,
   isKnockout,
   isMatch,
   isOver,
-  running,
+  type NextGame,
+  nextGames,
   type StageView,
   stateOf,
   type Table,
@@ -22,24 +23,25 @@ export interface TablePart {
 }
 
 export type Slide =
-  | { is: "now"; running: Called[] }
-  | { is: "winner" }
+  | { is: "now"; games: NextGame[] }
+  | { is: "podium" }
   | { is: "tables"; view: StageView; parts: TablePart[] }
   | { is: "bracket"; view: StageView; cut: Cut }
   | { is: "ratings" };
 
-/** So many rows fit below each other, and so many of a bracket. */
-const ROWS = 12;
-const BRACKET_ROWS = 9;
-/** So many courts fit a slide. */
-const COURTS = 6;
+/** So many rows can be read from the back of a hall, and so many of a bracket. */
+const ROWS = 9;
+const BRACKET_ROWS = 4;
+const BRACKET_COLUMNS = 3;
+/** So many games fit a slide. */
+const GAMES = 4;
 /** Two tables as small as this fit below each other. */
-const SMALL_ROWS = 4;
+const SMALL_ROWS = 3;
 
 /** The slides of a contest: what is played, then the stages that matter now, then the ratings. */
 export function slides(sheet: ContestSheet): Slide[] {
   const matter = sheet.stages.filter((view) => !isOver(view) || view === sheet.stages.at(-1));
-  const first: Slide[] = stateOf(sheet) === "over" ? [{ is: "winner" }] : nowSlides(sheet);
+  const first: Slide[] = stateOf(sheet) === "over" ? endSlides(sheet) : nowSlides(sheet);
   const found = [
     ...first,
     ...matter.flatMap((view) => (isKnockout(view) ? bracketSlides(view) : tableSlides(view))),
@@ -47,12 +49,19 @@ export function slides(sheet: ContestSheet): Slide[] {
   return sheet.ratings.length ? [...found, { is: "ratings" }] : found;
 }
 
+/** The games on courts and the next ones; more than a slide's only while courts have them. */
 function nowSlides(sheet: ContestSheet): Slide[] {
-  const games = running(sheet);
-  return Array.from({ length: Math.max(1, Math.ceil(games.length / COURTS)) }, (_, index) => ({
+  const count = Math.max(GAMES, sheet.running.length);
+  const games = nextGames(sheet, Math.ceil(count / GAMES) * GAMES);
+  return Array.from({ length: Math.max(1, Math.ceil(games.length / GAMES)) }, (_, index) => ({
     is: "now",
-    running: games.slice(index * COURTS, (index + 1) * COURTS),
+    games: games.slice(index * GAMES, (index + 1) * GAMES),
   }));
+}
+
+/** A contest that ends in several groups has no champion. */
+function endSlides(sheet: ContestSheet): Slide[] {
+  return champions(sheet).length ? [{ is: "podium" }] : [];
 }
 
 function tableSlides(view: StageView): Slide[] {
@@ -73,10 +82,9 @@ function tableSlides(view: StageView): Slide[] {
 
 /** A large bracket is cut: first what is not decided of its branches, then its last rounds. */
 function bracketSlides(view: StageView): Slide[] {
-  let from = 0;
-  while (from < 8 && bracket(view, { from }).rows > BRACKET_ROWS) from++;
-  const last: Slide = { is: "bracket", view, cut: { from } };
-  if (from === 0) return [last];
+  const cut = shortened(view, {});
+  const last: Slide = { is: "bracket", view, cut };
+  if (cut.from === 0) return [last];
   const matches = byId(view);
   const shown = view.matches.filter(isMatch);
   const goesOn = new Set(shown.flatMap((match) => feeders(match, matches).map(({ id }) => id)));
@@ -90,9 +98,18 @@ function bracketSlides(view: StageView): Slide[] {
 
 /** Branches of a bracket that are small enough, and have more than one match. */
 function split(view: StageView, root: string): Cut[] {
-  const { rows, boxes } = bracket(view, { root });
+  const { rows, columns, boxes } = bracket(view, { root });
   if (boxes.length < 2) return [];
-  if (rows <= BRACKET_ROWS) return [{ root }];
+  if (rows <= BRACKET_ROWS && columns <= BRACKET_COLUMNS) return [{ root }];
   const match = boxes.find((box) => box.match.pairing.id === root)!.match;
-  return feeders(match, byId(view)).flatMap(({ id }) => split(view, id));
+  const before = feeders(match, byId(view)).flatMap(({ id }) => split(view, id));
+  return rows <= BRACKET_ROWS ? [...before, shortened(view, { root })] : before;
+}
+
+/** Leave out so many first rounds that the rest can be read. */
+function shortened(view: StageView, cut: Cut): Cut {
+  for (let from = 0; ; from++) {
+    const { rows, columns } = bracket(view, { ...cut, from });
+    if (from === 8 || (rows <= BRACKET_ROWS && columns <= BRACKET_COLUMNS)) return { ...cut, from };
+  }
 }

@@ -1,35 +1,56 @@
-/** The contest on a projector: large, and turned over by itself. */
+/** The contest on a projector: the match that is played; between matches tables, turned over by itself. */
 
-import { useSignal } from "@preact/signals";
+import { effect, type Signal, signal, useSignal } from "@preact/signals";
+import type { ComponentType } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
-import type { ContestSheet } from "../../core/contest/sheet";
+import { ownPage } from "../../core/address";
+import { podium } from "../../core/contest/places";
+import type { ContestSheet, NextGame } from "../../core/contest/sheet";
 import { type Slide, slides } from "../../core/contest/slides";
-import { t } from "../../i18n";
-import { IconButton } from "../../ui/icons";
+import { said, t } from "../../i18n";
 import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
 import { BracketView } from "./bracket";
-import { Standing, Winners } from "./head";
-import { Now } from "./now";
+import { Standing, winnersTitle } from "./head";
+import { LiveScore, live } from "./now";
+import { big } from "./parts";
 import { Standings } from "./standings";
 import { Ratings, ranked } from "./teams";
-import { format, stageTitle } from "./words";
+import { expected, gameTitle, stageHeading, stageTitle } from "./words";
 
 const SLIDE_MS = 12_000;
-const COMING_MOST = 6;
-const RATINGS_MOST = 12;
-const WINNERS_MOST = 8;
+const RATINGS_MOST = 9;
 /** Tables with so few rows can be larger. */
-const FEW = 7;
+const FEW = 5;
+
+/** The live picture, once its program is here; a published folder has none. */
+const picture = signal<ComponentType<{ shown: Signal<boolean> }> | null>(null);
+if (big && !ownPage) {
+  void import("./picture").then(({ Picture }) => {
+    picture.value = Picture;
+  });
+}
+/** Whether the live picture fills the screen. */
+const isPicture = signal(false);
+effect(() => {
+  document.documentElement.classList.toggle("projector", big);
+});
 
 export function Big({ sheet }: { sheet: ContestSheet }) {
+  const Picture = picture.value;
+  return (
+    <>
+      {Picture && <Picture shown={isPicture} />}
+      {!isPicture.value && <Slides sheet={sheet} />}
+    </>
+  );
+}
+
+function Slides({ sheet }: { sheet: ContestSheet }) {
   const at = useSignal(0);
   const still = useSignal(false);
   const all = slides(sheet);
   const number = at.value % all.length;
-  const turn = (steps: number) => {
-    at.value = (number + steps + all.length) % all.length;
-  };
   useEffect(() => {
     if (still.value) return;
     const timer = setTimeout(() => {
@@ -37,19 +58,20 @@ export function Big({ sheet }: { sheet: ContestSheet }) {
     }, SLIDE_MS);
     return () => clearTimeout(timer);
   }, [at.value, still.value]);
-  const toggle = () => {
-    still.value = !still.value;
-  };
   useShortcuts(
-    useMemo(
-      () => ({
+    useMemo(() => {
+      const turn = (steps: number) => {
+        at.value = (number + steps + all.length) % all.length;
+      };
+      return {
         ArrowLeft: () => turn(-1),
         ArrowRight: () => turn(1),
-        Space: toggle,
+        Space: () => {
+          still.value = !still.value;
+        },
         KeyF: toggleFullscreen,
-      }),
-      [number, all.length],
-    ),
+      };
+    }, [number, all.length]),
   );
   const slide = all[number]!;
   return (
@@ -63,17 +85,6 @@ export function Big({ sheet }: { sheet: ContestSheet }) {
       <div class="slide" data-slide={slide.is}>
         <Shown sheet={sheet} slide={slide} />
       </div>
-      <footer>
-        <IconButton name="back" label={t("contest.previous")} onClick={() => turn(-1)} />
-        <IconButton
-          name={still.value ? "play" : "pause"}
-          label={t(still.value ? "contest.resume" : "contest.pause")}
-          onClick={toggle}
-        />
-        <IconButton name="ahead" label={t("contest.next")} onClick={() => turn(1)} />
-        <span class="muted">{t("contest.slide", { number: number + 1, all: all.length })}</span>
-        <a href="?">{t("contest.whole")}</a>
-      </footer>
     </main>
   );
 }
@@ -81,9 +92,9 @@ export function Big({ sheet }: { sheet: ContestSheet }) {
 function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   switch (slide.is) {
     case "now":
-      return <Now sheet={sheet} games={slide.running} most={COMING_MOST} />;
-    case "winner":
-      return <End sheet={sheet} />;
+      return <Next sheet={sheet} games={slide.games} />;
+    case "podium":
+      return <Podium sheet={sheet} />;
     case "ratings":
       return (
         <>
@@ -96,7 +107,7 @@ function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   return (
     <>
       <h2>
-        {stageTitle(stage.name)} <small>{format(plan.format, stage.settings.games)}</small>
+        {stageTitle(sheet, stage.name)} <small>{stageHeading(sheet, plan)}</small>
       </h2>
       {slide.is === "bracket" ? (
         <BracketView sheet={sheet} view={slide.view} cut={slide.cut} />
@@ -120,20 +131,69 @@ function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   );
 }
 
-/** Who has won, and who follows. */
-function End({ sheet }: { sheet: ContestSheet }) {
-  const view = sheet.stages.at(-1)!;
+/** The games on courts and those that come next: who, what, where and about when. */
+function Next({ sheet, games }: { sheet: ContestSheet; games: readonly NextGame[] }) {
+  useEffect(() => (ownPage ? undefined : live.start()), []);
   return (
     <>
-      <Winners sheet={sheet} />
-      {view.tables.slice(0, 1).map((table) => (
-        <Standings
-          key={table.section}
-          view={view}
-          table={table}
-          rows={table.rows.slice(0, WINNERS_MOST)}
-        />
-      ))}
+      <h2>{t("contest.coming")}</h2>
+      {!games.length && <p class="muted">{t("contest.noneComing")}</p>}
+      <ol class="next-games" data-few={games.length <= 2 || undefined}>
+        {games.map((one) => (
+          <li key={`${one.pairing}/${one.game}`}>
+            <p class="sides">
+              <b class="team">{one.teams[0]}</b>
+              <span class="between">–</span>
+              <b class="team">{one.teams[1]}</b>
+            </p>
+            <p>
+              <span class="muted">{gameTitle(sheet, one.pairing, one.game)}</span>{" "}
+              <span class="expected">{one.call ? <OnCourt game={one} /> : expected(one)}</span>
+            </p>
+          </li>
+        ))}
+      </ol>
     </>
+  );
+}
+
+/** How a game stands that a court has. */
+function OnCourt({ game: { court, call } }: { game: NextGame }) {
+  const score = live.of(call);
+  return (
+    <>
+      {t("contest.court", { court })} ·{" "}
+      <LiveScore score={score} otherwise={said({ code: "when.moment" })} />
+    </>
+  );
+}
+
+/** Who has won, and the places after that: the first in the middle, the second to its left. */
+function Podium({ sheet }: { sheet: ContestSheet }) {
+  const { steps, more } = podium(sheet);
+  const winners = steps.find(({ rank }) => rank === 1)?.teams ?? [];
+  return (
+    <div class="podium">
+      <h2>{winnersTitle(winners)}</h2>
+      <ol class="steps">
+        {steps.map(({ rank, teams }) => (
+          <li key={rank} data-rank={rank}>
+            {teams.map((team) => (
+              <b key={team}>{team}</b>
+            ))}
+            <span>{rank}</span>
+          </li>
+        ))}
+      </ol>
+      {more.length > 0 && (
+        <ol class="more">
+          {more.map(({ rank, team }) => (
+            <li key={team}>
+              <span>{rank}</span> {team}
+            </li>
+          ))}
+        </ol>
+      )}
+    </div>
   );
 }

@@ -9,11 +9,11 @@ import {
   stateOf,
   teamsOf,
 } from "../../core/contest/sheet";
-import { said, t } from "../../i18n";
+import { t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
 import { Settings } from "../../ui/settings";
 import { TeamLink } from "./parts";
-import { format, stageTitle } from "./words";
+import { listed, stageTitle } from "./words";
 
 export function Head({ sheet }: { sheet: ContestSheet }) {
   const settings = useSignal(false);
@@ -57,9 +57,8 @@ export function Standing({ sheet }: { sheet: ContestSheet }) {
   const state = stateOf(sheet);
   const current = state === "running" ? currentStage(sheet) : null;
   const { here, gone, expelled } = teamsOf(sheet);
-  const listed = (teams: string[]) => teams.join(said({ code: "join.comma" }));
   const parts = [
-    current && `${stageTitle(current.stage.name)} (${format(current.plan.format)})`,
+    current && stageTitle(sheet, current.stage.name),
     t("contest.teamCount", { count: here }),
     gone.length > 0 && t("contest.gone", { teams: listed(gone) }),
     expelled.length > 0 && t("contest.expelled", { teams: listed(expelled) }),
@@ -81,12 +80,18 @@ export function Winners({ sheet }: { sheet: ContestSheet }) {
   if (!winners.length) return null;
   return (
     <p class="winner">
-      <span>{t("contest.winner")}</span>{" "}
+      <span>{winnersTitle(winners)}</span>{" "}
       {winners.map((name) => (
         <TeamLink key={name} name={name} />
       ))}
     </p>
   );
+}
+
+/** What the winners are: teams that are equal in all are first together. */
+export function winnersTitle({ length }: readonly string[]): string {
+  if (length === 1) return t("contest.winner");
+  return t(length === 2 ? "contest.bothFirst" : "contest.allFirst");
 }
 
 /** The ways to the parts of the page. */
@@ -96,7 +101,7 @@ export function Parts({ sheet }: { sheet: ContestSheet }) {
       {stateOf(sheet) !== "over" && <a href="#now">{t("contest.now")}</a>}
       {sheet.stages.toReversed().map(({ stage }) => (
         <a key={stage.name} href={`#stage-${stage.name}`}>
-          {stageTitle(stage.name)}
+          {stageTitle(sheet, stage.name)}
         </a>
       ))}
       <a href="#teams">{t("contest.teams")}</a>

@@ -3,29 +3,22 @@
 import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import { LiveScores } from "../../core/contest/live";
-import { type Called, type ContestSheet, found, running, score } from "../../core/contest/sheet";
+import { type ContestSheet, found, running, score } from "../../core/contest/sheet";
 import type { CourtScore } from "../../core/desk.gen";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { BEATS_PER_S, clock } from "../../i18n/words";
 import { TeamLink } from "./parts";
-import { gameTitle } from "./words";
+import { expected, gameTitle } from "./words";
 
 /** Most games to come that are listed. */
 const COMING_MOST = 8;
 
-interface Props {
-  sheet: ContestSheet;
-  /** The games on courts that are shown; by default all. */
-  games?: Called[];
-  most?: number;
-}
+export const live = new LiveScores();
 
-const live = new LiveScores();
-
-export function Now({ sheet, games = running(sheet), most = COMING_MOST }: Props) {
+export function Now({ sheet }: { sheet: ContestSheet }) {
   useEffect(() => (ownPage ? undefined : live.start()), []);
-  const coming = sheet.coming.slice(0, most);
+  const coming = sheet.coming.slice(0, COMING_MOST);
   const more = sheet.coming.length - coming.length;
   return (
     <section id="now" class="now" aria-label={t("contest.now")}>
@@ -38,7 +31,7 @@ export function Now({ sheet, games = running(sheet), most = COMING_MOST }: Props
           </p>
         )}
         <ul class="courts">
-          {games.map(({ id, pairing, game, teams, court }) => (
+          {running(sheet).map(({ id, pairing, game, teams, court }) => (
             <li key={court} class="court card">
               <div class="where">
                 <b>{t("contest.court", { court })}</b>
@@ -52,7 +45,9 @@ export function Now({ sheet, games = running(sheet), most = COMING_MOST }: Props
                 )}
               </div>
               <Sides teams={teams} stands={stands(sheet, pairing, teams)} />
-              <Live score={live.of(id)} />
+              <p class="live-score">
+                <LiveScore score={live.of(id)} />
+              </p>
               <p class="muted">{gameTitle(sheet, pairing, game)}</p>
             </li>
           ))}
@@ -62,10 +57,11 @@ export function Now({ sheet, games = running(sheet), most = COMING_MOST }: Props
         <h2>{t("contest.coming")}</h2>
         {!coming.length && <p class="muted">{t("contest.noneComing")}</p>}
         <ol class="coming">
-          {coming.map(({ pairing, game, teams }) => (
-            <li key={`${pairing}/${game}`}>
-              <Sides teams={teams} />
-              <p class="muted">{gameTitle(sheet, pairing, game)}</p>
+          {coming.map((one) => (
+            <li key={`${one.pairing}/${one.game}`}>
+              <Sides teams={one.teams} />
+              <p class="muted">{gameTitle(sheet, one.pairing, one.game)}</p>
+              <p class="expected">{expected(one)}</p>
             </li>
           ))}
         </ol>
@@ -75,18 +71,24 @@ export function Now({ sheet, games = running(sheet), most = COMING_MOST }: Props
   );
 }
 
-/** The points and the clock of the game that a court plays; nothing before it begins. */
-function Live({ score: now }: { score: CourtScore | null }) {
-  if (!now || now.phase < Phase.PLAYING) return null;
+interface LiveProps {
+  score: CourtScore | null;
+  /** Shown before the game begins. */
+  otherwise?: string;
+}
+
+/** The points and the clock of the game that a court plays. */
+export function LiveScore({ score: now, otherwise = "" }: LiveProps) {
+  if (!now || now.phase < Phase.PLAYING) return <>{otherwise}</>;
   const [left = 0, right = 0] = now.scores;
   const shown_s = now.duration_s ? now.duration_s - now.clock_s : now.clock_s;
   return (
-    <p class="live-score">
+    <>
       <b>
         {left} : {right}
       </b>{" "}
       <span>{clock(shown_s * BEATS_PER_S)}</span>
-    </p>
+    </>
   );
 }
 

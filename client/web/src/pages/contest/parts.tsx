@@ -1,6 +1,7 @@
 /** Small parts that all sections of the page share: links to teams, scores, replays. */
 
 import { computed, signal } from "@preact/signals";
+import { flag } from "../../core/address";
 import type { Game, Match } from "../../core/contest/sheet";
 import { replayAddress } from "../../core/record_files";
 import { t } from "../../i18n";
@@ -35,6 +36,9 @@ export function chooseNoTeam(): void {
   hash.value = "";
 }
 
+/** Whether the page is a projector's: there nobody can press anything. */
+export const big = flag("big", false);
+
 interface TeamLinkProps {
   name: string;
   won?: boolean;
@@ -42,8 +46,10 @@ interface TeamLinkProps {
 
 /** A team's name; it opens the team's matches. */
 export function TeamLink({ name, won = false }: TeamLinkProps) {
+  const kind = won ? "team won" : "team";
+  if (big) return <span class={kind}>{name}</span>;
   return (
-    <a class={won ? "team won" : "team"} href={teamAddress(name)}>
+    <a class={kind} href={teamAddress(name)}>
       {name}
     </a>
   );

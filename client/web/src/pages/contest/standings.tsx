@@ -12,6 +12,8 @@ import { chosenTeam, TeamLink } from "./parts";
 import { groupTitle } from "./words";
 
 const COUNTS = ["played", "won", "drawn", "lost"] as const;
+const BRACKET_COUNTS = ["played", "won", "lost"] as const;
+const BRIEF_COUNTS = ["played"] as const;
 
 export function Tables({ view }: { view: StageView }) {
   const ranked = view.tables.filter(({ rows }) => rows.length);
@@ -37,7 +39,7 @@ interface Props {
 
 export function Standings({ view, table, rows, brief = false }: Props) {
   const bracket = isKnockout(view);
-  const counts = bracket ? (["played", "won", "lost"] as const) : COUNTS;
+  const counts = bracket ? BRACKET_COUNTS : brief ? BRIEF_COUNTS : COUNTS;
   const ties = bracket || brief ? [] : tieColumns(table);
   const title = groupTitle(view, table.section);
   return (
@@ -63,14 +65,14 @@ export function Standings({ view, table, rows, brief = false }: Props) {
       </thead>
       <tbody>
         {rows.map((row) => {
-          const { team, rank, won, drawn, lost, points, scored, conceded, out, decided_by } = row;
+          const { team, rank, won, drawn, lost, points, scored, conceded, out, shares } = row;
           const all = { played: won + drawn + lost, won, drawn, lost };
           return (
             <tr key={team} data-chosen={chosenTeam.value === team || undefined}>
               <td>
                 {bracket && isStillIn(view, team) ? "" : rank}
-                {decided_by === "seed" && (
-                  <abbr class="by-draw" title={t("contest.byDraw")}>
+                {shares && (
+                  <abbr class="shares" title={t("contest.shares")}>
                     {" ="}
                   </abbr>
                 )}
@@ -91,11 +93,11 @@ export function Standings({ view, table, rows, brief = false }: Props) {
           );
         })}
       </tbody>
-      {!brief && rows.some((row) => row.decided_by === "seed") && (
+      {!brief && rows.some(({ shares }) => shares) && (
         <tfoot>
           <tr>
             <td colSpan={4 + counts.length + ties.length} class="muted">
-              = {t("contest.byDraw")}
+              = {t("contest.shares")}
             </td>
           </tr>
         </tfoot>

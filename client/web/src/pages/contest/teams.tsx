@@ -3,6 +3,7 @@
 import { useSignal } from "@preact/signals";
 import {
   type ContestSheet,
+  equals,
   isKnockout,
   isStillIn,
   type Team,
@@ -13,7 +14,7 @@ import { Dialog } from "../../ui/dialog";
 import { chooseNoTeam, chosenTeam, TeamLink } from "./parts";
 import { MatchRow } from "./schedule";
 import { signed } from "./standings";
-import { gameTitle, groupTitle, matchTitle, stageTitle } from "./words";
+import { expected, gameTitle, groupTitle, matchTitle, placeTitle, stageTitle } from "./words";
 
 export function Teams({ sheet }: { sheet: ContestSheet }) {
   const wanted = useSignal("");
@@ -132,12 +133,12 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
           {ranks.map(({ view, table, row }) => (
             <div key={view.stage.name}>
               <dt>
-                {stageTitle(view.stage.name)} {groupTitle(view, table.section)}
+                {stageTitle(sheet, view.stage.name)} {groupTitle(view, table.section)}
               </dt>
               <dd>
                 {isKnockout(view) && isStillIn(view, team.name)
                   ? t("contest.stillIn")
-                  : t("contest.ratedAs", { rank: row.rank, of: table.rows.length })}
+                  : placeTitle(row.rank, equals(table, row))}
                 {row.out && ` (${t("contest.out")})`}
               </dd>
             </div>
@@ -162,7 +163,10 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
           {!running && coming && (
             <div>
               <dt>{t("contest.coming")}</dt>
-              <dd>{gameTitle(sheet, coming.pairing, coming.game)}</dd>
+              <dd>
+                {gameTitle(sheet, coming.pairing, coming.game)}
+                {expected(coming) && <small class="muted"> {expected(coming)}</small>}
+              </dd>
             </div>
           )}
         </dl>

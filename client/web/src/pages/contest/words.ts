@@ -2,23 +2,33 @@
 
 import {
   type Called,
+  type Coming,
   type ContestSheet,
   found,
   isKnockout,
   isMatch,
   type Match,
   numberOf,
+  type Planned,
   type Round,
   type Source,
   type StageView,
 } from "../../core/contest/sheet";
 import { catalogue, type MessageName, said, t } from "../../i18n";
+import { timeOf } from "../../i18n/words";
 
-/** How a stage is played: "Swiss, best of 3". */
-export function format(name: string, games = 1): string {
-  const message = `contest.format.${name}`;
-  const words = message in catalogue ? t(message as MessageName) : name;
-  return games > 1 ? t("contest.bestOf", { format: words, games }) : words;
+/** How a stage is played, beside its title: "Swiss, best of 3"; "" where the title says it. */
+export function stageHeading(sheet: ContestSheet, { stage, format, settings }: Planned): string {
+  const message = `contest.format.${format}`;
+  const words = message in catalogue ? t(message as MessageName) : format;
+  const games = settings?.games ?? 1;
+  if (games > 1) return t("contest.bestOf", { format: words, games });
+  return stageTitle(sheet, stage).startsWith(words) ? "" : words;
+}
+
+/** About when a game begins, and where; "" if nobody knows. */
+export function expected({ at_ms = 0, court = "" }: Pick<Coming, "at_ms" | "court">): string {
+  return at_ms && court ? t("contest.expected", { time: timeOf(at_ms), court }) : "";
 }
 
 /** How many rounds are still to be drawn; a format may have its own words for that. */
@@ -27,9 +37,21 @@ export function roundsLeft({ plan, rounds_to_draw: count }: StageView): string {
   return t(own in catalogue ? (own as MessageName) : "contest.roundsLeft", { count });
 }
 
-/** A stage as a title; its name is the organiser's own. */
-export function stageTitle(name: string): string {
-  return name.charAt(0).toUpperCase() + name.slice(1);
+/** What people call a stage: the organiser's title, or the usual name of its format. */
+export function stageTitle(sheet: ContestSheet, name: string): string {
+  const title = sheet.titles[name];
+  return title ? said(title) : name;
+}
+
+/** A rank in words, with the teams that share it. */
+export function placeTitle(rank: number, equal: readonly string[]): string {
+  if (!equal.length) return t("contest.place", { rank });
+  return t("contest.sharedPlace", { rank, teams: listed(equal) });
+}
+
+/** Names in a row. */
+export function listed(names: readonly string[]): string {
+  return names.join(said({ code: "join.comma" }));
 }
 
 /** A table's title; "" where the stage has only one. */

@@ -1,9 +1,8 @@
 /** Asks before entries are closed or a stage is drawn, because that can't be undone. */
 
 import type { OfficeView } from "../../core/desk";
-import { t } from "../../i18n";
+import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
-import { stageTitle } from "../contest/words";
 import type { Organiser } from "./organiser";
 
 interface Props {
@@ -42,12 +41,9 @@ export function CloseDialog({ organiser, view }: Props) {
 /** A stage that waits for the organiser: its teams, and the draw. */
 export function DrawDialog({ organiser, view }: Props) {
   if (!view.to_draw) return null;
-  const { stage, entries } = view.to_draw;
+  const { stage, title, entries } = view.to_draw;
   return (
-    <Dialog
-      title={t("office.draw", { stage: stageTitle(stage) })}
-      onClose={() => organiser.close()}
-    >
+    <Dialog title={t("office.draw", { stage: said(title) })} onClose={() => organiser.close()}>
       <div class="asks">
         <p>{t("office.draw.text")}</p>
         <ol class="seeds">

@@ -3,9 +3,8 @@
 import { short } from "../../core/address";
 import { stateOf } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
-import { language, t } from "../../i18n";
+import { language, said, t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
-import { stageTitle } from "../contest/words";
 import { type Organiser, PAPERS, type Paper } from "./organiser";
 
 interface Props {
@@ -76,7 +75,7 @@ export function Head({ organiser, view, onSettings }: Props) {
               organiser.over.value = { is: "draw" };
             }}
           >
-            {t("office.draw", { stage: stageTitle(view.to_draw.stage) })}
+            {t("office.draw", { stage: said(view.to_draw.title) })}
           </button>
         )}
         <label class="printing">

@@ -10,7 +10,7 @@ import { language, said, t } from "../../i18n";
 import { seatName, timeOf } from "../../i18n/words";
 import { Schedule } from "../contest/schedule";
 import { Tables } from "../contest/standings";
-import { stageTitle } from "../contest/words";
+import { placeTitle, stageTitle } from "../contest/words";
 import type { Organiser, Paper } from "./organiser";
 
 interface Props {
@@ -83,7 +83,7 @@ function Results({ sheet }: { sheet: ContestSheet }) {
       <h1>{sheet.name}</h1>
       {sheet.stages.toReversed().map((view) => (
         <section key={view.stage.name}>
-          <h2>{stageTitle(view.stage.name)}</h2>
+          <h2>{stageTitle(sheet, view.stage.name)}</h2>
           <Tables view={view} />
           <Schedule sheet={sheet} view={view} />
         </section>
@@ -99,17 +99,17 @@ function Certificates({ sheet }: { sheet: ContestSheet }) {
   if (!all.length) return <p class="muted">{t("office.paper.noPlaces")}</p>;
   return (
     <>
-      {all.map(({ team, rank, stage, group, won }) => (
+      {all.map(({ team, rank, equal, stage, group, won }) => (
         <section key={team} class="certificate" data-won={won || undefined}>
           <p class="of">{sheet.name}</p>
           <h1>{t("office.certificate")}</h1>
           <p class="team">{team}</p>
           <p class="place">
-            {won ? t("contest.winner") : t("office.place", { rank })}
+            {won && !equal.length ? t("contest.winner") : placeTitle(rank, equal)}
             {stage && (
               <small>
                 {" "}
-                {stageTitle(stage)}
+                {stageTitle(sheet, stage)}
                 {group && ` · ${t("contest.group", { group: group.toUpperCase() })}`}
               </small>
             )}

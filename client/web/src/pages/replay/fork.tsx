@@ -7,6 +7,7 @@ import { how } from "../../core/forks";
 import { type Match, scoresOf } from "../../core/match";
 import type { Recording } from "../../core/recording";
 import { said, t } from "../../i18n";
+import { logClock } from "../../i18n/words";
 
 interface Props {
   recording: Recording;
@@ -25,7 +26,10 @@ export function ForkNote({ recording, beside, server, onBeside }: Props) {
   return (
     <div class="notes fork-note" role="note">
       <p>
-        {t("replay.fork", { match: origin.match_id, beat: origin.beat })}
+        {t("replay.fork", {
+          match: origin.match_id,
+          time: logClock(origin.beat - recording.firstBeat),
+        })}
         {how(origin.changes)?.map((change) => (
           <span class="change" key={change.code + change.values?.seat}>
             {said(change)}

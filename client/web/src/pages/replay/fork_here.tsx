@@ -7,7 +7,7 @@ import type { Recording } from "../../core/recording";
 import { canGo, goneEvents } from "../../core/rulings";
 import { type Event, RECORDED } from "../../core/wire";
 import { language, said, t } from "../../i18n";
-import { eventClock, team } from "../../i18n/words";
+import { eventClock, logClock, team } from "../../i18n/words";
 import { Dialog } from "../../ui/dialog";
 
 const EVENTS_MOST = 200;
@@ -70,7 +70,7 @@ export function ForkHere({ recording, name, beat, onMade, onClose }: Props) {
           void play();
         }}
       >
-        <p class="muted">{t("fork.help", { beat })}</p>
+        <p class="muted">{t("fork.help", { time: logClock(beat - recording.firstBeat) })}</p>
         {seats.map((seat, index) => (
           <div class="seat-choice" key={seat.id}>
             <label class="field">

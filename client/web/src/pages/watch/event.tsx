@@ -9,7 +9,7 @@ import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { hint } from "../../i18n/words";
 import { directorBegins } from "../../ui/banner";
-import { gameTitle } from "../contest/words";
+import { expected, gameTitle } from "../contest/words";
 import "../../ui/opening.css";
 
 const GAMES_MOST = 3;
@@ -54,12 +54,13 @@ function Coming({ sheet }: { sheet: ContestSheet }) {
     <>
       <h2 class="kicker">{t("contest.coming")}</h2>
       <ul class="coming">
-        {games.map(({ pairing, game, teams: [left, right], court }) => (
+        {games.map(({ pairing, game, teams: [left, right], court, call, at_ms }) => (
           <li key={`${pairing}/${game}`}>
             <b>{t("contest.versus", { left, right })}</b>{" "}
             <span class="kicker">
               {gameTitle(sheet, pairing, game)}
-              {court && ` · ${t("contest.court", { court })}`}
+              {call && ` · ${t("contest.court", { court })}`}
+              {at_ms > 0 && ` · ${expected({ at_ms, court })}`}
             </span>
           </li>
         ))}

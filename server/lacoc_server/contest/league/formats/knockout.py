@@ -40,7 +40,7 @@ class Knockout(DrawnAtOnce):
         """Rank the teams by how far they came; those still in come first."""
         places = _places(matches.values())
         rows = standings(stage.entries, counted(matches.values()), ORDER, last).rows
-        rows = tuple(sorted(rows, key=lambda row: (row.out, places.get(row.team, 0), row.rank)))
+        rows = tuple(sorted(rows, key=lambda row: (row.out, places.get(row.team, 0))))
         ranked: list[Standing] = []
         for number, row in enumerate(rows, 1):
             before = ranked[-1] if ranked else None
@@ -49,7 +49,7 @@ class Knockout(DrawnAtOnce):
                 before.out,
             )
             rank = before.rank if before is not None and tied else number
-            ranked.append(msgspec.structs.replace(row, rank=rank))
+            ranked.append(msgspec.structs.replace(row, rank=rank, shares=False))
         return (Table(section="", tie_breaks=ORDER, rows=tuple(ranked)),)
 
 

@@ -1,0 +1,68 @@
+/** The director's picture on a projector, as a broadcast shows it. */
+
+import { effect, type Signal, signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { followColours } from "../../core/colours";
+import { Turns } from "../../core/contest/turns";
+import { Court } from "../../core/court";
+import { reloadWhenServed } from "../../core/reload";
+import { USUAL_HZ } from "../../core/wire";
+import { OnAir } from "../../ui/on_air";
+import { Aside } from "../watch/aside";
+import { Broadcast, type Style, scaleOfWindow } from "../watch/broadcast";
+import { qualityOfAddress } from "../watch/flags";
+
+const LOOK_MS = 200;
+
+const court = new Court(USUAL_HZ, 0, "director");
+/** The director's second picture. */
+const aside = new Court(USUAL_HZ, 0, "aside");
+const turns = new Turns();
+const style: Style = {
+  camera: "auto",
+  quality: qualityOfAddress() ?? "auto",
+  transparent: false,
+  hud: true,
+  split: false,
+};
+const scale = signal(scaleOfWindow());
+
+followColours(court);
+addEventListener("resize", () => {
+  scale.value = scaleOfWindow();
+});
+effect(() => {
+  if (court.outdated.value) void reloadWhenServed();
+});
+
+/** @param shown Becomes true while the picture fills the screen. */
+export function Picture({ shown }: { shown: Signal<boolean> }) {
+  useEffect(() => {
+    const timer = setInterval(() => {
+      const phase = court.frame.peek()?.phase;
+      const on = court.programme.peek()?.court ?? "";
+      const live = court.live.peek() && phase !== undefined ? { court: on, phase } : null;
+      shown.value = turns.isPicture(performance.now(), live);
+    }, LOOK_MS);
+    return () => clearInterval(timer);
+  }, [shown]);
+  return (
+    <div
+      class={`overlay${court.live.value ? "" : " stale"}`}
+      data-shown={shown.value}
+      style={`--scale: ${scale.value}`}
+    >
+      <Broadcast
+        match={court}
+        style={style}
+        scale={scale}
+        belowScore={severalCourts() && <OnAir court={court} />}
+        beside={severalCourts() && <Aside court={aside} />}
+      />
+    </div>
+  );
+}
+
+function severalCourts(): boolean {
+  return (court.welcome.value?.courts.length ?? 0) > 1;
+}

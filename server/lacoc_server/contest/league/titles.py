@@ -1,0 +1,46 @@
+"""What people call the stages of a contest: the organiser's titles, or the usual names; pure."""
+
+from collections.abc import Callable, Iterable
+
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import Planned
+from lacoc_shared.words import Phrase, say
+
+_USUAL: dict[str, Callable[[int | None], Phrase]] = {
+    "round-robin": lambda number: say("stage.round-robin", number=number),
+    "swiss": lambda number: say("stage.swiss", number=number),
+    "sequential": lambda number: say("stage.sequential", number=number),
+    "single-knockout": lambda number: say("stage.single-knockout", number=number),
+    "double-knockout": lambda number: say("stage.double-knockout", number=number),
+}
+
+
+def titles(contest: Contest) -> dict[str, Phrase]:
+    """Return what people call each stage, by its name in the contest file.
+
+    Without a title of the organiser it is the usual name of the format; stages of one usual name
+    have numbers.
+    """
+    plans = [*(view.plan for view in contest.stages), *contest.planned]
+    return {plan.stage: _title(plan, plans) for plan in plans}
+
+
+def title(contest: Contest, stage: str) -> Phrase:
+    """Return what people call a stage; its name, if there is none of this name now."""
+    return titles(contest).get(stage) or say("stage.titled", en=stage, ja=stage)
+
+
+def _title(plan: Planned, plans: Iterable[Planned]) -> Phrase:
+    if plan.title:
+        return say("stage.titled", en=plan.title["en"], ja=plan.title["ja"])
+    alike = [one.stage for one in plans if not one.title and _kind(one) == _kind(plan)]
+    number = alike.index(plan.stage) + 1 if len(alike) > 1 else None
+    kind = _kind(plan)
+    if kind == "groups":
+        return say("stage.groups", number=number)
+    usual = _USUAL.get(kind)
+    return usual(number) if usual else say("stage.other", format=plan.format, number=number)
+
+
+def _kind(plan: Planned) -> str:
+    return "groups" if plan.format == "round-robin" and plan.settings.groups > 1 else plan.format

@@ -1,0 +1,166 @@
+"""Tests of /contest?big, the projector's page, while a contest is played at a court."""
+
+import contextlib
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from lacoc_process import started
+from playwright.sync_api import Page, ViewportSize, expect
+from ports import free_port
+from stand import served
+
+from lacoc_client.gateway.published import write_pages
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.organiser import enter
+from lacoc_server.contest.sheet import encode, sheet
+
+sys.path.append(str(Path(__file__).parent / "core"))
+
+from contest_sheets import sheets
+
+pytestmark = [pytest.mark.slow, pytest.mark.long]
+
+PROJECTOR = {"width": 1920, "height": 1080}
+SMALL = {"width": 1280, "height": 720}
+TEAMS = ("Ants", "Bees", "九州工業大学ロボット研究会")
+LEAST_SHARE = 0.028
+"""A letter is at least this part of the picture's height: 15 m away it can be read on a screen that
+is 2 m high."""
+
+
+@contextlib.contextmanager
+def contest(folder: Path) -> Iterator[str]:
+    """Run a contest of three bots at one court; give the address of its pages."""
+    file = folder / "contest.toml"
+    file.write_text(f"""
+[contest]
+name = "Spring Cup"
+least_rest_s = 25.0
+[office]
+token = "the token of the office"
+[court.main]
+arena = "othello"
+listen = ["127.0.0.1:{free_port()}"]
+referee.token = "the whistle of main"
+[stage.groups]
+format = "round-robin"
+arena = "othello"
+settings.match.duration_s = 6.0
+settings.match.countdown_s = 2.0
+settings.match.start = "ready"
+""")
+    for team in TEAMS:
+        enter(file, team, None, "planner", "")
+    words = ("contest", "run", str(file), "--json", "--listen", f"127.0.0.1:{free_port()}")
+    with started(*words, stdout=subprocess.PIPE, text=True) as run:
+        try:
+            assert run.stdout is not None
+            yield json.loads(run.stdout.readline())["url"]
+        finally:
+            run.kill()
+
+
+def expected(contest: Contest) -> dict[str, tuple[str, int]]:
+    """Expect each open match at some court and time."""
+    matches = [match for view in contest.stages for match in view.matches]
+    return {
+        match.pairing.id: (f"hall {number % 4}", 1_800_000_000_000 + 300_000 * number)
+        for number, match in enumerate(matches)
+    }
+
+
+def fits(page: Page) -> None:
+    """Check that a slide fits, and that everybody can read it."""
+    found = page.evaluate(
+        """(least) => {
+          const slide = document.querySelector(".slide");
+          const sizes = [...slide.querySelectorAll("*")]
+            .filter((one) => [...one.childNodes].some((n) => n.nodeType === 3 && n.data.trim()))
+            .filter((one) => one.getClientRects().length && !one.closest(".hidden-text"))
+            .map((one) => {
+              const svg = one.closest("svg");
+              const scale = svg ? svg.getScreenCTM().a : 1;
+              return [scale * parseFloat(getComputedStyle(one).fontSize), one.textContent];
+            });
+          return {
+            over: [slide.scrollHeight - slide.clientHeight, slide.scrollWidth - slide.clientWidth],
+            small: sizes.filter(([size]) => size < least * innerHeight),
+          };
+        }""",
+        LEAST_SHARE,
+    )
+    assert found == {"over": [0, 0], "small": []}
+
+
+def show_all(page: Page, name: str) -> list[str]:
+    """Go through all slides, and check each; return what they are."""
+    shown: list[str] = []
+    seen: list[str] = []
+    while True:
+        slide = page.locator(".slide")
+        expect(slide).to_be_visible()
+        shown.append(str(slide.get_attribute("data-slide")))
+        fits(page)
+        seen.append(slide.inner_html())
+        page.keyboard.press("ArrowRight")
+        if slide.inner_html() in seen:
+            return shown
+
+
+@pytest.mark.parametrize(("size", "locale"), [(PROJECTOR, "en-GB"), (SMALL, "ja-JP")])
+def test_every_slide_can_be_read(
+    tmp_path: Path,
+    built_pages: Path,
+    open_page: OpenPage,
+    size: ViewportSize,
+    locale: str,
+) -> None:
+    """Tables, brackets, the next games and the podium fit both projectors, in large letters."""
+    kinds: set[str] = set()
+    write_pages(tmp_path)
+    with served(tmp_path) as url:
+        page = open_page(viewport=size, locale=locale)
+        page.clock.install()
+        for name, event in sheets():
+            made = sheet("Robot Cup 2027", event.contest, expected(event.contest))
+            (tmp_path / "contest.json").write_bytes(encode(made))
+            page.goto(f"{url}?big")
+            kinds |= {*show_all(page, name)}
+            assert page.locator("button:visible, a:visible").count() == 0
+    assert kinds == {"now", "tables", "bracket", "ratings", "podium"}
+
+
+def test_the_match_fills_the_projector_and_its_champion_stands_at_the_end(
+    tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
+) -> None:
+    """The picture is there while a match is played; between matches tables, then the podium."""
+    console.expect("WebSocket|ERR_CONNECTION")
+    with contest(tmp_path) as url:
+        big = open_page(viewport=PROJECTOR)
+        small = open_page(viewport=SMALL, locale="ja-JP")
+        for page in (big, small):
+            page.goto(f"{url}/contest?big&q=low")
+            expect(
+                page.locator(".overlay[data-shown=true] .score-bug .points").first
+            ).to_be_visible()
+            assert page.locator("button:visible, a:visible").count() == 0
+        for _ in range(3):
+            expect(big.locator(".overlay[data-shown=true] .result")).to_be_visible()
+            expect(big.locator(".slide")).to_be_visible()
+            fits(big)
+            if big.locator(".slide[data-slide=podium]").count():
+                break
+            expect(big.locator(".expected").last).to_contain_text("ourt main")
+            expect(big.locator(".overlay[data-shown=true]")).to_be_visible()
+        for page in (big, small):
+            # The same bot thrice: each game is a draw, and all are equal in everything.
+            first = page.locator(".slide[data-slide=podium] [data-rank='1'] b")
+            expect(first).to_have_text(TEAMS)
+            fits(page)
+            assert page.locator("button:visible, a:visible").count() == 0
