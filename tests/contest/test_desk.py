@@ -412,7 +412,11 @@ def test_a_first_stage_can_wait_too(tmp_path: Path) -> None:
     room.ask(CloseEntries(secret=KEY))
     office.step()
     assert office.contest.stages == ()
-    assert room.view.to_draw == ToDraw(stage="cup", entries=("Ann", "Ben"))
+    assert room.view.to_draw == ToDraw(
+        stage="cup",
+        title=say("stage.round-robin", number=None),
+        entries=("Ann", "Ben"),
+    )
 
 
 def test_a_team_that_is_in_with_the_same_files_waits_for_nothing(room: Room) -> None:
@@ -448,7 +452,7 @@ def test_a_stage_that_is_drawn_keeps_its_teams(tmp_path: Path) -> None:
     assert [view.name for view in room.book.contest.stages] == ["cup", "final"]
     seen = room.ask(Rule(secret=KEY, **changed))
     assert isinstance(seen, Effect)
-    assert seen.lines[-1] == say("decide.drawn", stage="final")
+    assert seen.lines[-1] == say("decide.drawn", stage=say("stage.single-knockout", number=None))
 
 
 def test_a_referee_sees_what_comes_and_what_a_result_changes(room: Room) -> None:

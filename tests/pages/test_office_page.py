@@ -333,7 +333,7 @@ def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> N
     office.goto(waiting.office)
     office.get_by_role("button", name="Close entries and draw").click()
     office.get_by_role("button", name="Close and draw with 2 teams").click()
-    draw = office.get_by_role("button", name="Draw Finals")
+    draw = office.get_by_role("button", name="Draw Knockout")
     expect(office.locator('.slot[data-state="running"]')).to_have_count(1)
     expect(draw).to_have_count(0)
     office.get_by_role("button", name="Decide about").click()
@@ -344,7 +344,7 @@ def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> N
     office.get_by_label("Reason").fill("the court is not ready")
     office.get_by_role("button", name="Decide this").click()
     draw.click()
-    dialog = office.get_by_role("dialog", name="Draw Finals")
+    dialog = office.get_by_role("dialog", name="Draw Knockout")
     expect(dialog.locator(".seeds li")).to_have_count(2)
     winner = dialog.locator(".seeds li").first.inner_text()
     assert winner in first
