@@ -52,7 +52,7 @@ def test_teams_follow_from_court_to_court(tmp_path: Path) -> None:
     """
     file, port = write_contest(tmp_path), free_port()
     pages = f'[contest]\npages = "http://127.0.0.1:{port}"\n'
-    file.write_text(file.read_text().replace("[contest]\n", pages))
+    file.write_text(pages + file.read_text())
     invited = run_lacoc("contest", "invite", "--contest", str(file), "--json")
     links = json.loads(invited.stdout)
     assert list(links) == list(PEOPLE)
@@ -94,5 +94,5 @@ def test_the_terminal_tells_what_happens(tmp_path: Path) -> None:
     assert ran.returncode == 0, ran.stderr
     told = ran.stderr
     assert told.count("Result: ") == 6
-    assert told.count(" is called. league, round ") == 6
+    assert told.count(" is called. Round robin, round ") == 6
     assert told.rstrip().endswith("The contest is over.")

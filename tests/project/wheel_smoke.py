@@ -130,7 +130,9 @@ def try_court(env: Environment) -> None:
     packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
     env.run("python", "-c", IMPORT_ALL.format(packages=packages))
     env.run("lacoc", "contest", "certificate")
-    assert "--connect tls/" in env.run("lacoc", "contest", "show").stdout
+    env.run("lacoc", "contest", "enter", "Bees")
+    invited = env.run("lacoc", "contest", "invite").stdout
+    assert re.search(r"https://\S+/play#token=[a-z2-7]+&authority=[0-9a-f]{64}", invited), invited
     env.run("lacoc", "demo", "--headless", "--seconds", "3")
 
 

@@ -36,6 +36,8 @@ from lacoc_shared.contest.link import Link
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
+_PAGES = ""
+"""Stands for the pages beside the names of the courts; no court has this name."""
 _STEP_S = 0.05
 """Time between two looks at the courts."""
 _FAREWELL_S = 5.0
@@ -125,27 +127,25 @@ def play_live(
         logs = stack.enter_context(Scratch("contest"))
         run_here = partial(_run_here, where, logs, speed, tell)
         addresses = {name: court.elsewhere for name, court in where.contest.courts.items()}
-        told = dict(addresses)
         link_to = partial(CourtLink, token=secrets.office, generation=tenure.generation)
-        links: dict[str, CourtLink | None] = dict.fromkeys(where.contest.courts)
         away = [
             stack.enter_context(AwayCourt(where, name, link_to, run_here, tell))
             for name in filter(addresses.get, addresses)
         ]
-        authority = where.contest.public.read_authority()
-        here = [name for name, elsewhere in addresses.items() if not elsewhere]
-        for name, address in _opened(stack, {name: run_here(name) for name in here}).items():
-            addresses[name] = address
-            told[name] = venue.told_address(where.contest, name, address)
-            session = stack.enter_context(open_client([address], authority=authority))
-            links[name] = link_to(session, name)
         rest_ms = round(1000 * where.contest.least_rest_s)
         draw_from_ms = (milliseconds(where.contest.entries_close) or None) if entering else 0
         stage, open_matches = where.open_stage, None
         if stage is not None:
             open_matches = OpenMatches(stage, secrets.seat, tell)
         office = Office(
-            store, where.entries, secrets.team, links, told, rest_ms, draw_from_ms, open_matches
+            store,
+            where.entries,
+            secrets.team,
+            dict.fromkeys(where.contest.courts),
+            addresses,
+            rest_ms,
+            draw_from_ms,
+            open_matches,
         )
         applications = stack.enter_context(Applications(where.applications))
         own_store = stack.enter_context(FactStore(where.facts))
@@ -157,11 +157,22 @@ def play_live(
         if standby is not None:
             door = stack.enter_context(StandbyDoor(where, tenure, applications, sealing))
             stack.enter_context(DeskService(door.judge, standby.listen))
+        # Courts and pages take some seconds each, so all of them open at the same time.
+        starting = {name: run_here(name) for name, away_at in addresses.items() if not away_at}
+        starting[_PAGES] = venue.pages(where, logs, listen, show, service.address)
+        found = _opened(stack, starting)
+        url = found.pop(_PAGES)
+        private = where.contest.public.read_authority()
+        for name, address in found.items():
+            addresses[name] = address
+            session = stack.enter_context(open_client([address], authority=private))
+            told = venue.told_address(where.contest, name, address)
+            office.connect(name, link_to(session, name), told)
+            office.expect(name)
         bots = stack.enter_context(venue.Bots(where, addresses))
         writer = SheetWriter(where, progress)
         writer(office.contest)
         ticker = Ticker(office.facts)
-        url = stack.enter_context(venue.pages(where, logs, listen, show, service.address))
         authority = where.contest.public.fingerprint
 
         def link(page: str, token: str) -> str:
@@ -214,20 +225,23 @@ def _run_here(
     return venue.court(where, name, logs / name, speed, tell, here=True)
 
 
-def _opened(stack: ExitStack, courts: Mapping[str, AbstractContextManager[str]]) -> dict[str, str]:
-    """Open courts, all at the same time, until the stack is closed; return their addresses.
+def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) -> dict[str, str]:
+    """Open courts and pages, all at the same time, until the stack is closed.
+
+    Returns:
+        Their addresses, by name.
 
     Raises:
         UserError: if one can't be opened.
     """
 
-    def open_one(court: AbstractContextManager[str]) -> tuple[ExitStack, str]:
+    def open_one(part: AbstractContextManager[str]) -> tuple[ExitStack, str]:
         with ExitStack() as own:
-            address = own.enter_context(court)
+            address = own.enter_context(part)
             return own.pop_all(), address
 
-    with ThreadPoolExecutor(max(1, len(courts)), "opens courts") as aside:
-        opening = {name: aside.submit(open_one, court) for name, court in courts.items()}
+    with ThreadPoolExecutor(len(parts), "opens") as aside:
+        opening = {name: aside.submit(open_one, part) for name, part in parts.items()}
         try:
             wait(opening.values())
         finally:  # Ctrl-C must close them, too
