@@ -1,5 +1,6 @@
 /** A bracket as a drawing: boxes of matches, and lines to where their winners go. */
 
+import type { ComponentChildren } from "preact";
 import { type Box, type Bracket, bracket, type Cut, type Line } from "../../core/contest/bracket";
 import { fit } from "../../core/contest/fit";
 import {
@@ -14,7 +15,7 @@ import {
 } from "../../core/contest/sheet";
 import { replayAddress } from "../../core/record_files";
 import { t } from "../../i18n";
-import { chosenTeam, matchId, teamAddress } from "./parts";
+import { big, chosenTeam, matchId, teamAddress } from "./parts";
 import { courtOf, matchTitle, numberTitle, roundTitle, shortOrigin } from "./words";
 
 const BOX = { width: 216, height: 56 };
@@ -142,14 +143,14 @@ function MatchBox({ sheet, view, box }: BoxProps) {
         <PlaceLine key={place} sheet={sheet} view={view} match={match} place={place} />
       ))}
       {scores && (
-        <a
+        <Link
           href={record ? replayAddress(record) : `#${matchId(match)}`}
-          aria-label={
+          label={
             record ? t("contest.replayOf", { ...versus, number: 1 }) : t("contest.gamesOf", versus)
           }
         >
           {scores}
-        </a>
+        </Link>
       )}
       {note && (
         <text class="note" x={BOX.width} y={BOX.height + 12}>
@@ -181,7 +182,7 @@ function PlaceLine({ sheet, view, match, place }: LineProps) {
   }
   const decided = isDecided(match);
   return (
-    <a href={teamAddress(team)} aria-label={team}>
+    <Link href={teamAddress(team)} label={team}>
       <text
         class="name"
         data-won={won(match, place) || undefined}
@@ -192,6 +193,22 @@ function PlaceLine({ sheet, view, match, place }: LineProps) {
       >
         {fit(team, NAME_EM)}
       </text>
+    </Link>
+  );
+}
+
+interface LinkProps {
+  href: string;
+  label: string;
+  children: ComponentChildren;
+}
+
+/** A link within the drawing; on a projector nobody can press it. */
+function Link({ href, label, children }: LinkProps) {
+  if (big) return <>{children}</>;
+  return (
+    <a href={href} aria-label={label}>
+      {children}
     </a>
   );
 }
