@@ -8,7 +8,7 @@ from hypothesis import settings
 
 # No deadline: the time of an example says more about the machine than about the code.
 settings.register_profile("quick", deadline=None, max_examples=40)
-settings.register_profile("thorough", deadline=None, max_examples=200)
+settings.register_profile("thorough", deadline=None, max_examples=120)
 
 # The commands of these tests print English, also on a machine whose language is Japanese.
 os.environ["LACOC_LANGUAGE"] = "en"

@@ -38,6 +38,8 @@ def test_a_court_that_was_started_alone() -> None:
     access = entrance.contestant(None, None, "10.0.0.7", "t" * 20)
     assert access == Access(court="main", connect="tcp/10.0.0.7:7447", token="t" * 20)
     assert entrance.one_court(None, "red", None).connect == "tcp/127.0.0.1:7447"
+    several = entrance.one_court(None, "red", "10.0.0.7,tls/hall:7448")
+    assert several.addresses == ["tcp/10.0.0.7:7447", "tls/hall:7448"]
     with refused("entrance.no-token"):
         entrance.referee(None, None, None, None)
     with refused("address.none"):

@@ -642,7 +642,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     expect(strike.locator(".act")).not_to_have_attribute("aria-disabled", "true")
     strike.locator(".act").click()
     preview = page.get_by_role("dialog").locator(".preview")
-    expect(preview).to_contain_text("is removed: strike flag")
+    expect(preview).to_contain_text("removed: strike of flag")
     then = preview.first.locator(".then").inner_text().split(" : ")
     assert then != before == scores(page)
     page.get_by_role("button", name="and if play went on").click()

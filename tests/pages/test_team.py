@@ -112,10 +112,10 @@ def asks_before_it_takes_over(driver: Contestant, other: Contestant, link: str) 
 
 def type_wrong_token(player: Contestant, link: str) -> None:
     """Type a token that no team has, and see that it is refused."""
-    player.page.goto(link.partition("&token=")[0])
+    player.page.goto(link.partition("#")[0])
     player.page.fill("#team-token", "a token that no team has")
     player.page.click("button[type=submit]")
-    player.sees("#team-token-error", "No team of this contest has this token.")
+    player.sees("#team-token-error", "Nobody here has this token.")
 
 
 def play_a_match(player: Contestant) -> str:

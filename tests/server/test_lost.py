@@ -211,10 +211,10 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     """Frozen watchers (spectator, gateway, referee) delay neither the court nor other clients."""
     hall.bot("left")
     hall.bot("right")
-    where = ("--contest", str(hall.contest), "--court", "main")
+    where = ("--connect", hall.court.address(), "--court", "main")
     watchers = [
         hall.lacoc("watch", "--json", "--hz", "50", *where),
-        hall.lacoc("web", "--contest", str(hall.contest), "--listen", f"127.0.0.1:{free_port()}"),
+        hall.lacoc("web", *where, "--listen", f"127.0.0.1:{free_port()}"),
         hall.lacoc(
             "referee", "log", "--follow", "--token", hall.plan.secrets.referee("main"), *where
         ),

@@ -26,7 +26,7 @@ def courts(
     Args:
         link: a link, or the address of pages.
         court: the court's name; without it, that of the link counts.
-        connect: address of a court, without a link.
+        connect: address of a court, without a link; several, with commas: it is at one of them.
         token: the token, without a link.
         authority: file with the certificate of a private authority, without a link.
 
@@ -119,7 +119,8 @@ def with_token(access: Access) -> Access:
 
 def _alone(court: str, connect: str, token: str, authority: Path | None) -> Access:
     trusted = "" if authority is None else _read(authority)
-    return Access(court=court, connect=endpoint(connect), token=token, authority=trusted)
+    first, *others = map(endpoint, connect.split(","))
+    return Access(court=court, connect=first, others=tuple(others), token=token, authority=trusted)
 
 
 def _read(authority: Path) -> str:

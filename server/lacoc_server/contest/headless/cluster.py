@@ -55,6 +55,7 @@ class Cluster:
     def submit(self, job: Job) -> "Future[Ended | Phrase]":
         """Play a game when a worker is free; its result is read with `pool.ended`."""
         from distributed import KilledWorker
+        from distributed.client import ClosedClientError
 
         ours: Future[Ended | Phrase] = Future()
         self._waiting.add(ours)
@@ -73,8 +74,12 @@ class Cluster:
                 ours.set_result(theirs.result())
 
         # The id is a hash of all that decides the game, so Dask need not make one.
-        theirs = self._client.submit(attempt, job, key=job.match_id, retries=_RETRIES)
-        theirs.add_done_callback(done)
+        try:
+            theirs = self._client.submit(attempt, job, key=job.match_id, retries=_RETRIES)
+        except ClosedClientError:  # the cluster was lost at this moment
+            self._lose()
+        else:
+            theirs.add_done_callback(done)
         return ours
 
     def _look(self) -> None:

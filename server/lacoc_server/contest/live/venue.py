@@ -199,7 +199,9 @@ class Bots:
         program = self._where.entries.path / files / "bot.py"
         name = str(program) if program.exists() else bot
         court, authority = self._where.contest.asked, self._where.contest.public.authority
-        words = ["bot", name, "--court", court, "--connect", self._addresses[court]]
+        stand_in = self._where.contest.courts[court].stand_in()
+        at = ",".join(filter(None, (self._addresses[court], stand_in)))
+        words = ["bot", name, "--court", court, "--connect", at]
         words += [] if authority is None else ["--authority", str(authority)]
         options = apart()
         options["env"] |= {"LACOC_TOKEN": self._where.contest.secrets.team(team)}
