@@ -79,10 +79,10 @@ def test_draw_shows_the_teams_and_asks(file: Path, lacoc: Run, answer: Answer) -
         store.append(new(Closed))
     before = facts(file)
     answer("n\n")
-    assert "swiss begins with these teams, the best seed first: Ants, Bees." in lacoc(*words)[1]
+    assert "These teams go into Swiss rounds, the best seed first: Ants, Bees." in lacoc(*words)[1]
     assert facts(file) == before
     answer("y\n")
-    assert "swiss is drawn with 2 teams." in lacoc(*words)[1]
+    assert "Swiss rounds is drawn with 2 teams." in lacoc(*words)[1]
     (fact,) = facts(file)[len(before) :]
     assert isinstance(fact, Drawn)
     assert fact.entries == ("Ants", "Bees")

@@ -796,7 +796,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "contest.name-alike": ["The name {team:quoted} looks like {there:quoted}, and that team has entered. To change its files, enter {there:quoted}. Another team needs another name.", "チーム名{team:quoted}は、登録済みの{there:quoted}と紛らわしいため使えません。ファイルを変更するには{there:quoted}と入力してください。別のチームなら、別の名前にしてください。"],
   "contest.nothing-to-draw": ["No stage waits for you to draw it. A stage does so if it has draw = \"organiser\" in the contest file, entries are closed, and the stage before it is over.", "主催者の操作を待っているステージはありません。大会ファイルで draw = \"organiser\" としたステージだけが、締め切りの後、前のステージが終わると待ちます。"],
   "contest.other-draw": ["The teams of {stage} have just changed, so nothing was drawn. Look at them again.", "{stage} の出場チームが変わったため、組み合わせを決めていません。もう一度確かめてください。"],
-  "contest.to-draw": ["{stage} begins with these teams, the best seed first: {teams}. Later corrections no longer change who is in it.", "{stage} に出場するチーム（シード順）：{teams}。この後に結果を訂正しても、出場チームは変わりません。"],
+  "contest.to-draw": ["These teams go into {stage}, the best seed first: {teams}. Later corrections no longer change who is in it.", "{stage} に出場するチーム（シード順）：{teams}。この後に結果を訂正しても、出場チームは変わりません。"],
   "contest.drawn": ["{stage} is drawn with {teams} teams.", "{stage} の組み合わせを {teams} チームで決めました。"],
   "contest.left": ["{team} has left the contest; its opponents win the matches that are not yet played.", "{team} は大会から外れました。残りの試合は相手の勝ちになります。"],
   "contest.not-in": ["{team} has not entered.< Teams: {teams}.>", "{team} は登録していません。<チーム：{teams}>"],
