@@ -416,7 +416,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
     assert numbers == [event.number for event in joined.events]
 
     show.drop(first)
-    show.sees(".notes", "stops at beat 699: it was never closed")
+    show.sees(".notes", "stops at 0:13.9: it was never closed")
     show.opened()
     assert show.ends[1] == Record.read([first]).last_beat
     show.drop(second)
@@ -442,14 +442,14 @@ def test_damage(
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     show.sees(".drop-here")
     show.drop(damaged)
-    show.sees(".notes", "damaged.mcap is damaged after beat")
+    show.sees(".notes", "damaged.mcap is damaged after 0:1")
     show.opened()
     last = show.ends[1]
     assert 700 < last < record.last_beat
     show.seek(last)
     show.has_scores(*(seat.score for seat in frame_at(record, last).seats))
     show.drop(cut)
-    show.sees(".notes", "cut.mcap stops at beat")
+    show.sees(".notes", "cut.mcap stops at 0:")
 
     text = tmp_path / "notes.mcap"
     text.write_text("no recording")
