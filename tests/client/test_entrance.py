@@ -5,7 +5,6 @@ import typer
 from typer.testing import CliRunner
 
 from lacoc_client.commands import entrance
-from lacoc_client.link import event
 from lacoc_client.link.event import Event, Found
 from lacoc_shared.command import options
 from lacoc_shared.contest.access import Access
@@ -29,7 +28,6 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
     def find(text: str) -> Found:
         return Found(Link.read(text), Event(protocol=PROTOCOL, courts=courts, authority="PEM"))
 
-    monkeypatch.setattr(event, "find", find)
     monkeypatch.setattr(entrance, "find", find)
 
 

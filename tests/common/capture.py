@@ -5,7 +5,6 @@ import struct
 import threading
 from collections import defaultdict
 from collections.abc import Collection
-from types import TracebackType
 from typing import Self
 
 _ALL = 3  # ETH_P_ALL
@@ -39,12 +38,7 @@ class Capture:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._ended = True
         self._thread.join()
         self._socket.close()

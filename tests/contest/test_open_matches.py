@@ -39,7 +39,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
-STAGE = OpenStage("friendly", "othello", {}, {}, ("left", "right"))
+STAGE = OpenStage("othello", {}, {}, ("left", "right"))
 ADDRESSES = {"red": "tcp/127.0.0.1:1", "blue": "tcp/127.0.0.1:2"}
 
 
@@ -64,7 +64,7 @@ class Link:
         self.answer = Answer()
 
     def assign(self, call: str, fixture: Phrase, seats: tuple[Any, ...], **_: Any) -> Answer:
-        assert fixture == say("fixture.open", stage="friendly")
+        assert fixture == say("fixture.open")
         assert [(seat.id, seat.team) for seat in seats] == [("left", ""), ("right", "")]
         self.assigned.append(call)
         self.answer = Answer()
@@ -260,7 +260,7 @@ def test_friends_play_match_after_match(tmp_path: Path) -> None:
             until(lambda: see() and view.sheet.match == first + 1)
             until(lambda: see() and all(player.hold is Hold.HELD for player in players))
             assert [seat.team for seat in view.sheet.seats] == ["Team left", "Team right"]
-            assert view.sheet.fixture == say("fixture.open", stage="friendly")
+            assert view.sheet.fixture == say("fixture.open")
     found = [*(tmp_path / "recordings").glob(f"*-red-00{first}.mcap")]
     assert len(found) == 1
     assigned = Record.read(found[0]).header.setup.assigned

@@ -91,7 +91,7 @@ def test_contest(
             slides.append(slide.get_attribute("data-slide"))
             assert slide.evaluate("(e) => e.scrollHeight <= e.clientHeight"), slides
             page.clock.run_for(12_500)
-        assert len({*slides}) > 1
+        assert {*slides} >= {"now", "bracket"}
 
 
 def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any) -> None:

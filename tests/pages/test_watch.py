@@ -140,7 +140,7 @@ def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> N
     }
     with open_client([address]) as session:
         link = CourtLink(session, "main", plan.secrets.office)
-        assert link.assign("open.1", say("fixture.open", stage=None), seats).wait() == Done()
+        assert link.assign("open.1", say("fixture.open"), seats).wait() == Done()
         assert link.tell(told).wait() == Done()
     venue.web()
     playing(venue)

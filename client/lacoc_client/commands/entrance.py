@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
-from lacoc_client.link.event import find
+from lacoc_client.link.event import Found, find
 from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
+from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
 MAIN = "main"
@@ -41,7 +42,15 @@ def courts(
         return {court or MAIN: _alone(court or MAIN, connect or _HERE, token or "", authority)}
     if connect is not None or token is not None:
         raise UserError(say("link.or-address"))
-    found = find(link)
+    return reached(find(link), court)
+
+
+def reached(found: Found, court: str | None) -> dict[str, Access]:
+    """Return the ways to all courts of a link that was found, or to the named one.
+
+    Raises:
+        UserError: if there is no such court, or none that a command can reach.
+    """
     there, name = found.courts, court or found.link.court
     if name and name not in there:
         raise UserError(say("gateway.no-court", court=name, courts=[*there]))
@@ -118,14 +127,6 @@ def with_token(access: Access) -> Access:
 
 
 def _alone(court: str, connect: str, token: str, authority: Path | None) -> Access:
-    trusted = "" if authority is None else _read(authority)
+    trusted = PublicAddress(authority=authority).read_authority()
     first, *others = map(endpoint, connect.split(","))
     return Access(court=court, connect=first, others=tuple(others), token=token, authority=trusted)
-
-
-def _read(authority: Path) -> str:
-    try:
-        return authority.read_text(encoding="ascii")
-    except (OSError, UnicodeDecodeError) as error:
-        why = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise UserError(say("public.no-authority", file=str(authority), why=why)) from None

@@ -1,8 +1,9 @@
 """`lacoc web`: serve the pages of a contest's courts to everybody at the venue."""
 
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 from urllib.parse import urlsplit
 
 import typer
@@ -15,19 +16,23 @@ from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home
 from lacoc_client.gateway.site import site
 from lacoc_client.gateway.wire import JOIN_BYTES
-from lacoc_client.link.event import find
+from lacoc_client.link.event import Found, find
 from lacoc_client.link.mirror import SheetMirror
 from lacoc_client.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.file import Contest
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.network.public import is_loopback
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
+
+_RECORDINGS = Path("recordings")
 
 
 @app.command(name="web")
@@ -99,13 +104,20 @@ def web_command(
     with ExitStack() as stack:
         if exporter is not None:
             stack.enter_context(exporter)
-        home = Home(
-            recordings=recordings or (plan.recordings if plan else Path("recordings")),
-            keeps_back=plan is not None and plan.replays != "at-once",
+        if link is not None:
+            if connect is not None:
+                raise UserError(say("link.or-address"))
+            home = _again(stack, find(link), court)
+        elif plan is not None and contest is not None:
+            home = _of_contest(plan, contest, court, urlsplit(address).hostname or "")
+        else:
+            home = _alone(entrance.courts(None, court, connect))
+        home = replace(
+            home,
+            recordings=recordings or home.recordings,
             desk=office is not None,
             viewers_most=viewers,
             exporter=exporter,
-            **_shown(stack, link, plan, contest, court, connect, urlsplit(address).hostname or ""),
         )
         has_contest = home.sheet is not None
 
@@ -133,42 +145,40 @@ def web_command(
         server.run(site(home, PageFiles(), desk), port, ready, DESK_BYTES if desk else JOIN_BYTES)
 
 
-def _shown(
-    stack: ExitStack,
-    link: str | None,
-    plan: Contest | None,
-    file: Path | None,
-    court: str | None,
-    connect: str | None,
-    host: str,
-) -> dict[str, Any]:
-    """Return what the settings of the gateway say of its courts and their contest."""
-    if link is not None:
-        found = find(link)
-        event = found.event
-        sheet = stack.enter_context(Scratch("mirror")) / "contest.json"
-        stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
-        courts = entrance.courts(link, court, connect)
-        told = {name: event.courts[name] for name in courts}
-        return {
-            "courts": {name: access.watching() for name, access in courts.items()},
-            "contest": event.name,
-            "sheet": sheet,
-            "told": told,
-            "authority": event.authority,
-        }
-    if plan is None or file is None:
-        courts = entrance.courts(None, court, connect)
-        told = {name: tuple(access.addresses) for name, access in courts.items()}
-        return {"courts": courts, "told": told}
+def _again(stack: ExitStack, found: Found, court: str | None) -> Home:
+    """Return the settings of a gateway that serves the pages of a link once more."""
+    event = found.event
+    sheet = stack.enter_context(Scratch("mirror")) / "contest.json"
+    stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
+    courts = entrance.reached(found, court)
+    return Home(
+        courts={name: access.watching() for name, access in courts.items()},
+        contest=event.name,
+        recordings=_RECORDINGS,
+        sheet=sheet,
+        told={name: event.courts[name] for name in courts},
+        authority=event.authority,
+    )
+
+
+def _alone(courts: dict[str, Access]) -> Home:
+    """Return the settings of a gateway of a court that was started alone."""
+    told = {name: tuple(access.addresses) for name, access in courts.items()}
+    return Home(courts=courts, recordings=_RECORDINGS, told=told)
+
+
+def _of_contest(plan: Contest, file: Path, court: str | None, host: str) -> Home:
+    """Return the settings of the gateway of a contest; `host` is that of its pages."""
     names = [plan.court(court)[0]] if court else [*plan.courts]
-    return {
-        "courts": {name: plan.access(name) for name in names},
-        "contest": plan.given_name,
-        "sheet": contests.sheet_path(file),
-        "told": {name: _told(plan, name, host) for name in names},
-        "authority": plan.public.read_authority(),
-    }
+    return Home(
+        courts={name: plan.access(name) for name in names},
+        contest=plan.given_name,
+        recordings=plan.recordings,
+        sheet=contests.sheet_path(file),
+        keeps_back=plan.replays != "at-once",
+        told={name: _told(plan, name, host) for name in names},
+        authority=plan.public.read_authority(),
+    )
 
 
 def _told(plan: Contest, court: str, host: str) -> tuple[str, ...]:

@@ -1,7 +1,6 @@
 """The courts of a gateway, and how many pages it lets in."""
 
 import asyncio
-import hashlib
 import hmac
 
 from lacoc_client.gateway import wire
@@ -12,6 +11,7 @@ from lacoc_client.gateway.programme import Programme
 from lacoc_client.gateway.referees import Referees
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
+from lacoc_shared.contest.tokens import digest
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
@@ -84,11 +84,11 @@ class Courts:
 
     def accept(self, token: str) -> None:
         """Remember that a court has accepted a token."""
-        self._accepted.add(_digest(token))
+        self._accepted.add(digest(token))
 
     def has_accepted(self, token: str | None) -> bool:
         """Return whether a court has accepted a token."""
-        return token is not None and _digest(token) in self._accepted
+        return token is not None and digest(token) in self._accepted
 
     def threads_for(self, token: str) -> Threads:
         """Return the threads that show a token to a court.
@@ -145,7 +145,3 @@ class Courts:
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
         self.threads.close()
         self.strangers.close()
-
-
-def _digest(token: str) -> bytes:
-    return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -88,7 +88,10 @@ class Page:
             case wire.JoinAsk():
                 feed, _ = self._acting()
                 _spend(self._tokens)
-                if viewer.is_own or self._courts.has_accepted(asked.token):
+                if viewer.is_own:
+                    self._join(asked, feed)
+                elif asked.token and self._courts.has_accepted(asked.token):
+                    self._accepted(asked.token)
                     self._join(asked, feed)
                 else:
                     answers.later(asked.id, self._proven_join(asked, feed))

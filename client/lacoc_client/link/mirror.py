@@ -5,8 +5,9 @@ import threading
 import urllib.error
 import urllib.request
 from pathlib import Path
-from types import TracebackType
 from typing import Self
+
+from lacoc_shared.command.replacing import write
 
 _EVERY_S = 2.0
 _WAIT_S = 10.0
@@ -36,12 +37,7 @@ class SheetMirror:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._ended.set()
 
     def _run(self) -> None:
@@ -56,8 +52,6 @@ class SheetMirror:
             with urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context) as answer:
                 data = answer.read(_MOST_BYTES)
                 self._tag = answer.headers.get("ETag", "")
-            new = self._path.with_suffix(".new")
-            new.write_bytes(data)
-            new.replace(self._path)
+            write(self._path, data)
         except (OSError, ValueError):  # also 304: what is here is the newest
             return

@@ -2,7 +2,6 @@
 
 import ipaddress
 import json
-import os
 from collections.abc import Iterator, Sequence
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
@@ -18,6 +17,7 @@ from cryptography.hazmat.primitives.serialization import (
 )
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from lacoc_shared.command.replacing import write
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.toml_text import BadToml, read_toml
@@ -204,13 +204,8 @@ def _pem(one: x509.Certificate | ec.EllipticCurvePrivateKey) -> bytes:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all; only its owner may ever read it."""
     path.parent.mkdir(mode=0o700, exist_ok=True)
-    new = path.with_name(f"{path.name}.new")
-    new.unlink(missing_ok=True)
-    with open(new, "xb", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
-        file.write(data)
-    new.replace(path)
+    write(path, data, secret=True)
 
 
 def doubts(

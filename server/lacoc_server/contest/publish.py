@@ -7,7 +7,6 @@ from pathlib import Path
 from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
-from lacoc_server.contest.kept.replacing import replace, write
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Entered, FilesChanged, Played
@@ -15,6 +14,7 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.sheet import ContestSheet
 from lacoc_shared.command import plugins, regular
 from lacoc_shared.command.csv_text import csv_text
+from lacoc_shared.command.replacing import replace, write
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.files import segment_paths

@@ -4,8 +4,6 @@ The contest file itself has no secret. Each token is made when it is first asked
 replaces a token in the file, or removes it, takes it from the person who has it.
 """
 
-import hashlib
-import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,8 +13,9 @@ from threading import RLock
 import msgspec
 
 from lacoc_shared.command.holding import hold
+from lacoc_shared.command.replacing import write
 from lacoc_shared.contest.codes import code_of
-from lacoc_shared.contest.tokens import new_token
+from lacoc_shared.contest.tokens import digest, new_token
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -81,9 +80,9 @@ class Secrets:
 
     def team_of(self, token: str) -> str | None:
         """Return the team that has a token; None: nobody has it."""
-        shown = _digest(token)
+        shown = digest(token)
         # Digests are compared, so the time that this takes tells nothing of a token.
-        found = [name for name, one in self._read().items() if _digest(one) == shown]
+        found = [name for name, one in self._read().items() if digest(one) == shown]
         return next((name[len(_TEAM) :] for name in found if name.startswith(_TEAM)), None)
 
     def forget(self, *teams: str) -> None:
@@ -127,15 +126,11 @@ class Secrets:
 
     def _change(self, changed: Callable[[dict[str, str]], dict[str, str]]) -> dict[str, str]:
         """Write other tokens in place of those that are there; return them."""
-        part = self._path.with_name(f".{self._path.name}.part")
         with self._lock:
             try:
-                with _alone(part.with_suffix(".lock")):
-                    tokens = changed(self._read())
-                    part.unlink(missing_ok=True)
-                    with open(part, "xb", opener=_for_its_owner) as file:
-                        file.write(msgspec.json.format(msgspec.json.encode(tokens)) + b"\n")
-                    part.replace(self._path)
+                with _alone(self._path.with_name(f".{self._path.name}.lock")):
+                    text = msgspec.json.format(msgspec.json.encode(changed(self._read())))
+                    write(self._path, text + b"\n", secret=True)
             except OSError as error:
                 path, why = str(self._path), error.strerror or str(error)
                 raise UserError(say("command.cannot-write", path=path, why=why)) from None
@@ -154,10 +149,6 @@ def _alone(path: Path) -> Iterator[None]:
         yield
 
 
-def _for_its_owner(name: str, flags: int) -> int:
-    return os.open(name, flags, 0o600)
-
-
 def _state(path: Path) -> tuple[int, int] | None:
     """Return numbers that differ each time the file is replaced; None: there is no file."""
     try:
@@ -165,7 +156,3 @@ def _state(path: Path) -> tuple[int, int] | None:
     except FileNotFoundError:
         return None
     return found.st_ino, found.st_mtime_ns
-
-
-def _digest(token: str) -> bytes:
-    return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -25,4 +25,12 @@ def lasting_hash(token: str) -> str:
     So the hash is the same after each restart. Whoever has the same hash in the next match of a
     court keeps the seat.
     """
-    return seal.hash_token(token, hashlib.blake2b(token.encode(), digest_size=16).digest())
+    return seal.hash_token(token, digest(token))
+
+
+def digest(token: str) -> bytes:
+    """Return a digest of a token, to find it among others.
+
+    The time that the comparison of digests takes tells nothing of a token.
+    """
+    return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

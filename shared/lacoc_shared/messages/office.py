@@ -92,18 +92,15 @@ WAITING = Assigned(call="", fixture=say("fixture.waiting"), seats=())
 """What a court has from the office while no match is assigned."""
 
 
-def open_match(
-    tokens: Mapping[str, Collection[str]], call: str = "", stage: str | None = None
-) -> Assigned:
+def open_match(tokens: Mapping[str, Collection[str]], call: str = "") -> Assigned:
     """Return an open match.
 
     Args:
         tokens: salted hashes of the tokens that open each seat, by the seat's name.
         call: id of the office's call; "": the court was started alone.
-        stage: the stage to which it belongs; None: none.
     """
     seats = (AssignedSeat(id=seat, token_hashes=tuple(hashes)) for seat, hashes in tokens.items())
-    return Assigned(call=call, fixture=say("fixture.open", stage=stage), seats=tuple(seats))
+    return Assigned(call=call, fixture=say("fixture.open"), seats=tuple(seats))
 
 
 EARLIER_OFFICE = say("refused.earlier-office")

@@ -86,6 +86,10 @@ export const office = {
   "office.copied": ["Copied", "コピーしました"],
   "office.qrOf": ["QR code of the link of {team}", "{team} のリンクの QR コード"],
   "office.seatOf": ["Court {court}, {seat} seat", "コート {court}・{seat}の席"],
+  "office.seatLink": [
+    "The link of this seat in open matches. Whoever has it sits there, with a name and files of their own.",
+    "オープン戦のこの席のリンクです。持っている人は、自分のチーム名とファイルで参加できます。",
+  ],
   "office.refereeOf": ["Referee, court {court}", "審判・コート {court}"],
   "office.refereeLink": [
     "The link of this court's referee. Whoever has it can decide about the games on this court.",

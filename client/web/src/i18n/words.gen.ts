@@ -721,7 +721,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "league.result-early": ["An earlier game of {pairing} has no result, so game {game} does not count yet.", "{pairing} はそれより前のゲームの結果がないため、第 {game} ゲームはまだ有効ではありません。"],
   "league.result-unneeded": ["{pairing} was decided without game {game}.", "{pairing} は第 {game} ゲームを行わずに決着しました。"],
   "fixture.waiting": ["Waiting for the next match", "次の試合を待っています"],
-  "fixture.open": ["<{stage}: >Open match", "<{stage}：>オープン戦"],
+  "fixture.open": ["Open match", "オープン戦"],
   "fixture.fork": ["What if: a fork of {match} at beat {beat}", "もしも：{match} のビート {beat} からの分岐"],
   "fixture.game": ["{match}, game {game} of {games}", "{match}・第 {game} ゲーム（全 {games} ゲーム）"],
   "fixture.round": ["{stage}<, group {group}>, round {round}", "{stage}<・グループ {group}>・第 {round} ラウンド"],

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lacoc_server.contest.kept.replacing import write
+from lacoc_shared.command.replacing import write
 from lacoc_shared.contest.codes import new_code
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say

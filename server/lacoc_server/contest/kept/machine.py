@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from lacoc_server.contest.kept.replacing import write
+from lacoc_shared.command.replacing import write
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 

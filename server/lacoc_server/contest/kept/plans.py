@@ -57,7 +57,6 @@ class _OpenTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 class OpenStage:
     """A stage of open matches: courts that have no game play one after another."""
 
-    name: str
     arena: str
     arena_settings: dict[str, Any]
     """Entries that replace those of the arena file."""
@@ -89,7 +88,7 @@ def open_stage(contest: Contest, file: Path) -> OpenStage | None:
     except UserError as error:
         raise wrong_entries(file, error) from None
     seats = tuple(seat.id for seat in arena.seats)
-    return OpenStage(text_of(name), table.arena, table.settings, contest.limits, seats)
+    return OpenStage(table.arena, table.settings, contest.limits, seats)
 
 
 def plans(contest: Contest, file: Path) -> list[Planned]:

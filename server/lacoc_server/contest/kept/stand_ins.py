@@ -5,7 +5,7 @@ An organiser who wants a court back on its own machine removes its line while it
 
 from pathlib import Path
 
-from lacoc_server.contest.kept.replacing import write
+from lacoc_shared.command.replacing import write
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 

@@ -98,7 +98,7 @@ class Office:
 
     @property
     def expected(self) -> Mapping[str, tuple[str, int]]:
-        """Where and when open matches will probably begin, by pairing; times are full minutes."""
+        """Where and when the next matches will probably begin, by pairing; in full minutes."""
         return self._teller.expected
 
     @property

@@ -66,7 +66,7 @@ class OpenMatches:
         self._asked_ms[court] = now_ms
         stage, call = self._stage, self._next.setdefault(court, new_call())
         tokens = {seat: [lasting_hash(self._token_of(court, seat))] for seat in stage.seats}
-        assigned = open_match(tokens, call, stage.name)
+        assigned = open_match(tokens, call)
         self._asked[court] = link.assign(
             call,
             assigned.fixture,
@@ -103,7 +103,7 @@ class OpenMatches:
                         address=addresses[court],
                         seat=seat,
                         call=one.call,
-                        fixture=say("fixture.open", stage=self._stage.name),
+                        fixture=say("fixture.open"),
                         open=True,
                     )
                 yield self._token_of(court, seat), there

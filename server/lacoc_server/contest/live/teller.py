@@ -60,7 +60,7 @@ class Teller:
         self.pace = Pace(0, 0, least_rest_ms)
         """How fast the contest goes, as of the newest estimate."""
         self.expected: dict[str, tuple[str, int]] = {}
-        """Where and when open matches will probably begin, by pairing, as of that estimate: times
+        """Where and when the next matches will probably begin, by pairing, as of it: times
         are full minutes, so that they seldom change."""
         self._teams: dict[str, Whereabouts] = {}
         self._contest: Contest | None = None

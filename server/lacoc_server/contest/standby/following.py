@@ -20,7 +20,6 @@ from lacoc_server.contest.kept.entries import Entry
 from lacoc_server.contest.kept.folder import ContestFolder, hash_of
 from lacoc_server.contest.kept.machine import Machine
 from lacoc_server.contest.kept.plans import open_stage, plans
-from lacoc_server.contest.kept.replacing import write
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played, generation
 from lacoc_server.contest.live.record_copy import Taken, have, take
@@ -29,6 +28,7 @@ from lacoc_server.contest.standby.door import hashes, small_files, unpacked, ver
 from lacoc_server.contest.standby.messages import Got, Kind, Part, Record, Step, There
 from lacoc_server.contest.standby.other import LacksIt, Other
 from lacoc_shared import codec
+from lacoc_shared.command.replacing import write
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import own_address

@@ -150,7 +150,7 @@ function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) 
           qr={qr}
           title={t("office.seatOf", { seat: seatName(seat), court })}
         >
-          <p>{t("office.link")}</p>
+          <p>{t("office.seatLink")}</p>
           <p class="address">{link}</p>
         </Card>
       ))}

@@ -5,20 +5,30 @@ from collections.abc import Callable
 from pathlib import Path
 
 
-def write(path: Path, content: bytes) -> None:
-    """Write a file in place of an older one.
+def write(path: Path, content: bytes, *, secret: bool = False) -> None:
+    """Write a file in place of an older one; only its owner may ever read a secret one.
 
     Raises:
         OSError: if it can't be written.
     """
-    replace(path, lambda part: part.write_bytes(content))
+
+    def write_part(part: Path) -> None:
+        with open(part, "xb", opener=_for_its_owner if secret else None) as file:
+            file.write(content)
+
+    replace(path, write_part)
 
 
 def replace(path: Path, write_part: Callable[[Path], object]) -> None:
     """Write a file beside a path with `write_part`; it gets the path when it is whole."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part.unlink(missing_ok=True)  # of a killed program that had this number
     try:
         write_part(part)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def _for_its_owner(name: str, flags: int) -> int:
+    return os.open(name, flags, 0o600)
