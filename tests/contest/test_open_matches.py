@@ -175,7 +175,7 @@ def record_open_match(folder: Path) -> Path:
     made = replace(
         setup("othello", QUICK),
         match_id="20260501-100000-main-001",
-        assigned=open_match(tokens, "open.1", "friendly"),
+        assigned=open_match(tokens, "open.1"),
     )
     journal = Journal(Match(made, World), folder)
     journal.beat([join(0), join(1)])
