@@ -1,17 +1,16 @@
 """A court on another machine: its records are copied, and the office stands in for it."""
 
 import shutil
-import signal
 import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 from lacoc_process import started
 from ports import free_port
+from power_cut import cut_power
 from waiting import LIMIT_S, until
 
 from lacoc_server.commands.contest.checking import NOT_PROVEN
@@ -55,14 +54,6 @@ def start(stack: ExitStack, *words: str) -> "subprocess.Popen[Any]":
 
     stack.callback(end)
     return process
-
-
-def lose_machine(process: "subprocess.Popen[Any]") -> None:
-    """Kill a command and all that it started, as a power cut does."""
-    children = psutil.Process(process.pid).children(recursive=True)
-    process.send_signal(signal.SIGKILL)
-    for child in children:
-        child.kill()
 
 
 def test_only_courts_with_an_address_elsewhere_run_elsewhere(tmp_path: Path, lacoc: Run) -> None:
@@ -109,7 +100,7 @@ def test_a_match_goes_on_here_if_its_machine_is_gone(tmp_path: Path, processes: 
 
         until(records, 240)
         until(lambda: beats(where.records, but=records()[0]) > 150, 240)
-        lose_machine(machine)
+        cut_power(machine)
         until(lambda: (here / "contest.stand-ins.txt").exists(), 240)
         again = start(processes, "serve", "--court", "blue", *words)
         until(lambda: again.poll() is not None, 240)

@@ -10,10 +10,10 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 from lacoc_process import run_lacoc, started
 from ports import free_port
+from power_cut import cut_power, everything_of
 from waiting import LIMIT_S, until
 
 from lacoc_server.commands.contest.checking import NOT_PROVEN
@@ -126,12 +126,6 @@ def other_port(_: object) -> str:
     return str(free_port())
 
 
-def everything_of(process: "subprocess.Popen[Any]") -> list[psutil.Process]:
-    """Return a process, and all that it started."""
-    found = psutil.Process(process.pid)
-    return [found, *found.children(recursive=True)]
-
-
 @pytest.mark.long(minutes=1)
 @pytest.mark.slow
 def test_the_contest_goes_on_at_the_second_machine(tmp_path: Path, processes: Processes) -> None:
@@ -146,8 +140,7 @@ def test_the_contest_goes_on_at_the_second_machine(tmp_path: Path, processes: Pr
     copier = processes.start("standby", second)
     until(lambda: any(isinstance(one, Played) for one in facts(second)))
     until(lambda: in_play(second) == 2)
-    for process in everything_of(first):
-        process.kill()
+    cut_power(first)
     before = facts(file)
     tokens = ContestFolder(file).secrets.read_bytes()
     file.parent.rename(tmp_path / "gone")

@@ -1,16 +1,13 @@
 """Tests of the six phases with a real gateway, a real studio and a real evidence file."""
 
-import os
-import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 from design_client import DesignClient
+from power_cut import cut_power
 from test_design_page import Gateway, sample
-from waiting import LIMIT_S
 
 from lacoc_client.design.designer import EVIDENCE_FILE
 from lacoc_client.phases.evidence import (
@@ -107,12 +104,7 @@ def test_two_phases_are_done_and_survive_a_kill(
     page.ask("phase", number=3)
     before = page.phases
 
-    children = psutil.Process(gateway.process.pid).children(recursive=True)
-    os.kill(gateway.process.pid, signal.SIGKILL)
-    for child in children:  # the studio and its processes go on without the gateway
-        child.kill()
-    gateway.process.communicate(timeout=LIMIT_S)
-    psutil.wait_procs(children, LIMIT_S)
+    cut_power(gateway.process)
     _, again = starts()
     assert states(again)[:3] == ["met", "met", "open"]
     assert again.phases["phase"] == before["phase"] == 3

@@ -28,7 +28,7 @@ class Show:
         self.page = page
         page.goto(url + path)
         if drawn:
-            self.until(lambda: self.view("drawnFrames") or 0, "no picture was drawn")
+            self.draws()
 
     def view(self, what: str, index: int = 0) -> Any:
         """Return a value that the picture's test hook gives; None before there is a picture."""
@@ -59,6 +59,10 @@ class Show:
 
     def has_scores(self, *points: int) -> None:
         expect(self.find(".score-bug .points")).to_have_text([str(one) for one in points])
+
+    def draws(self) -> None:
+        """Wait until the page has drawn a picture since it was loaded."""
+        self.until(lambda: self.view("drawnFrames") or 0, "no picture was drawn")
 
     def moves(self) -> None:
         """Wait until the picture shows another beat."""

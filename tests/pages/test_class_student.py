@@ -1,19 +1,17 @@
 """Tests of /design for a student of a class, and of unsaved tables that come back."""
 
 import json
-import os
-import signal
 from collections.abc import Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 from chromium import OpenPage
 from class_room import ClassRoom, until_kept
 from contestant import start_own_page
 from playwright.sync_api import expect
+from power_cut import cut_power
 from show import violations
 from test_design import Designer, write_sample
 from waiting import LIMIT_S
@@ -164,7 +162,7 @@ def test_goes_on_after_the_gateway_was_killed(
     page.joins(room, "Zoe")
     page.changes("20.375")
     until_kept(folder, 20.375)
-    kill(room.process)
+    cut_power(room.process)
     page.sees(".banner")
     page.go(0, 1)
     page.type("21")
@@ -178,16 +176,6 @@ def test_goes_on_after_the_gateway_was_killed(
     first = other.hello["draft"]["table"]["rows"][0]["angles_deg"]
     other.close()
     assert first[:2] == [20.375, 21.0]
-
-
-def kill(process: Any) -> None:
-    """End a gateway and its studio at once, as a power cut does."""
-    children = psutil.Process(process.pid).children(recursive=True)
-    os.kill(process.pid, signal.SIGKILL)
-    for child in children:
-        with suppress(psutil.NoSuchProcess):  # it has ended with its gateway
-            child.kill()
-    process.communicate(timeout=LIMIT_S)
 
 
 @pytest.mark.long
@@ -204,7 +192,7 @@ def test_alone_changes_come_back_after_a_kill(
     page.type("12.375")
     page.until(TOLD)
     until_kept(tmp_path, 12.375)
-    kill(process)
+    cut_power(process)
     page.page.close()
 
     process, url, key = start_own_page(tmp_path, "design")

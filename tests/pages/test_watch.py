@@ -502,6 +502,7 @@ def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> No
     show.misses("dialog")
     show.until(lambda: drawn() > 0.85, "the disc is not yellow")
     show.page.reload()
+    show.draws()
     show.sees(".result")
     seen(contrast)
     show.find(".result").get_by_role("button").click()
