@@ -3,29 +3,24 @@
 from pathlib import Path
 
 import pytest
+from office_room import CODE, KEY, NOW_MS, Room, said, sample
 
-from lacoc_robots.library import robot_folder, sample_gait_files
+from lacoc_robots.library import robot_folder
 from lacoc_server.contest.acts import organiser
-from lacoc_server.contest.desk.book import Book
-from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
-from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Called, Closed, Drawn, Played, Withdrawn, new
+from lacoc_server.contest.league.facts import Called, Closed, Drawn, Played, Withdrawn, new
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
-from lacoc_server.contest.league.timetable.schedule import due, playable
-from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
+from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
 from lacoc_shared.codec import encode
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import Refusal, SentFile
 from lacoc_shared.messages.desk import (
-    AnyRequest,
     Apply,
     Approve,
     Change,
@@ -40,7 +35,6 @@ from lacoc_shared.messages.desk import (
     Look,
     Move,
     NewCode,
-    OfficeView,
     Overview,
     Overviewed,
     Own,
@@ -54,81 +48,10 @@ from lacoc_shared.messages.desk import (
 )
 from lacoc_shared.words import say
 
-NOW_MS = 1_800_000_000_000
-KEY, CODE = "organiser", "K7QM3X"
-_FILE = """
-[stage.cup]
-format = "round-robin"
-[court.north]
-arena = "othello"
-listen = ["127.0.0.1:0"]
-[court.south]
-arena = "othello"
-listen = ["127.0.0.1:0"]
-"""
-
-
-def sample(change: bytes = b"") -> Files:
-    """Return the files of a team; another `change` gives them another hash."""
-    postures, locomotion = sample_gait_files("hexapod")
-    assert locomotion is not None
-    locomotion = SentFile(locomotion.name, locomotion.data.rstrip() + b"\n" + change)
-    return Files(postures=postures, locomotion=locomotion)
-
-
-class Room:
-    """A contest with its desk."""
-
-    def __init__(self, folder: Path, more: str = "") -> None:
-        self.file = folder / "contest.toml"
-        self.file.write_text(_FILE + more)
-        self.where = ContestFolder(self.file)
-        self.store = FactStore(self.where.facts)
-        note_plans(self.store, self.where.plans)
-        self.applications = Applications(self.where.applications)
-        self.secrets = self.where.contest.secrets
-        code = EventCode(self.where.event_code, CODE)
-        store = FactStore(self.where.facts)
-        self.book = Book(self.where, store, self.applications, code)
-        courts = {"north": Seen(NOW_MS), "south": Seen(NOW_MS)}
-        known = Known(courts, Pace(NOW_MS, 60_000), {})
-        self.desk = Desk(self.book, KEY, lambda: known)
-
-    def ask(self, request: AnyRequest) -> object:
-        """Encode a request as the network does, and return the desk's answer."""
-        return self.desk.judge(encode(request))
-
-    @property
-    def facts(self) -> tuple[AnyFact, ...]:
-        return self.store.facts()
-
-    @property
-    def view(self) -> OfficeView:
-        answer = self.ask(Overview(secret=KEY))
-        assert isinstance(answer, Overviewed)
-        assert answer.view is not None
-        return answer.view
-
-    def states(self) -> dict[str, str]:
-        return {row.team: row.state for row in self.view.teams}
-
-    def draw(self) -> None:
-        """Draw the stage that is due, as the office does when entries are closed."""
-        self.store.decide(lambda facts: filter(None, [due(compute(facts, FORMATS), FORMATS)]))
-
-    def enter(self, *teams: str) -> None:
-        for team in teams:
-            organiser.enter(self.file, team, None, "", "")
-
 
 @pytest.fixture
 def room(tmp_path: Path) -> Room:
     return Room(tmp_path)
-
-
-def said(answer: object) -> str:
-    assert isinstance(answer, Refusal), answer
-    return answer.why.code
 
 
 def test_a_team_enters_by_page(room: Room) -> None:

@@ -255,7 +255,7 @@ def test_a_lot_gives_the_same_order_to_everybody() -> None:
     st.integers(1, 4),
 )
 def test_teams_of_one_club_are_kept_apart(clubs: list[str], groups: int) -> None:
-    """Never do more of one club meet than before; nobody is lost, and no order changes for nothing."""
+    """Never do more of one club meet than before; nobody is lost; no order changes for nothing."""
     names = tuple(f"t{number}" for number in range(len(clubs)))
     club_of = dict(zip(names, clubs, strict=True))
 

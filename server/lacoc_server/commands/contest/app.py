@@ -10,6 +10,7 @@ from lacoc_server.commands.contest import (
     playing,
     setting_up,
     standby,
+    steering,
 )
 
 app = typer.Typer(
@@ -28,7 +29,15 @@ for command in (
     standby.standby,
     playing.standings,
     deciding.draw,
+    steering.undraw,
     deciding.decide,
+    steering.move,
+    steering.pause,
+    steering.resume,
+    steering.shift,
+    steering.announce,
+    steering.substitute,
+    steering.staff,
     checking.publish,
     checking.verify,
 ):

@@ -5,8 +5,9 @@ from collections.abc import Iterable
 from typing import Annotated, Literal
 
 import typer
+from msgspec.structs import replace
 
-from lacoc_server.commands.contest.playing import Contest, Reason, Team
+from lacoc_server.commands.contest.playing import By, Contest, Reason, Team
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
@@ -34,6 +35,7 @@ def decide(
     reason: Reason = "",
     yes: Yes = False,
     contest: Contest = FILE,
+    by: By = "",
 ) -> None:
     """Decide about a match: show what the decision changes, ask, then append it to the facts.
 
@@ -54,7 +56,7 @@ def decide(
         scores=_scores(score),
         reason=reason,
     )
-    with FactStore(ContestFolder(contest).facts) as store:
+    with FactStore(ContestFolder(contest).facts, by) as store:
         facts = store.facts()
         fact = deciding.decision(compute(facts, FORMATS), wanted)
         if not wanted_so(deciding.effect(facts, [fact]), yes):
@@ -71,6 +73,7 @@ def withdraw(
         bool, typer.Option("--disqualify", help="Expel the team: it is ranked last.")
     ] = False,
     yes: Yes = False,
+    by: By = "",
 ) -> None:
     """Take a team out of the contest: show what that changes, ask, then do it.
 
@@ -87,25 +90,55 @@ def withdraw(
     more = organiser.leaving(compute(facts, FORMATS), team, reason, disqualified=disqualify)
     if more and not wanted_so(deciding.effect(facts, more), yes):
         return
-    screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify))
+    screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify, by=by))
 
 
-def draw(contest: Contest = FILE, yes: Yes = False) -> None:
+def draw(
+    contest: Contest = FILE,
+    yes: Yes = False,
+    lot: Annotated[
+        str,
+        typer.Option(
+            metavar="TEXT",
+            help="Draw by lot: what was drawn in front of everybody, such as '4 2 6' of dice.",
+        ),
+    ] = "",
+    order: Annotated[
+        str,
+        typer.Option(
+            metavar="TEAM,TEAM,...",
+            help="The teams in the order that you want, the best first; it needs a reason.",
+        ),
+    ] = "",
+    reason: Reason = "",
+    by: By = "",
+) -> None:
     """Draw the stage that waits for you: show its teams, ask, then draw it.
 
     A stage with draw = "organiser" in the contest file waits when the stage before it is over.
-    Until you draw it, results before it can still be corrected.
+    Until you draw it, results before it can still be corrected. The order of the teams follows from
+    the ranking before, or from a lot: everybody who knows the lot can draw again.
     """
     from lacoc_server.contest.acts import organiser
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.draws import by_lot
     from lacoc_server.contest.league.formats.installed import FORMATS
     from lacoc_server.contest.league.titles import title
 
-    with FactStore(ContestFolder(contest).facts) as store:
+    if lot and order:
+        raise UserError(say("contest.lot-or-order"))
+    with FactStore(ContestFolder(contest).facts, by) as store:
         now = compute(store.facts(), FORMATS)
         shown = organiser.drawing(now)
+        if lot:
+            shown = replace(shown, how="lot", lot=lot, entries=by_lot(shown.entries, lot))
+        elif order:
+            teams = tuple(team.strip() for team in order.split(","))
+            if sorted(teams) != sorted(shown.entries):
+                raise UserError(say("contest.other-teams", teams=shown.entries))
+            shown = replace(shown, how="hand", reason=reason, entries=teams)
         stage = title(now, shown.stage)
         if wanted_so([say("contest.to-draw", stage=stage, teams=shown.entries)], yes):
             screen.show(organiser.draw(store, shown))

@@ -31,6 +31,11 @@ Reason = Annotated[
     str, typer.Option("--reason", metavar="TEXT", help="The reason; everybody can read it.")
 ]
 
+By = Annotated[
+    str,
+    typer.Option("--by", metavar="NAME", help="Who decides; by default the organiser."),
+]
+
 
 def enter(
     team: Team,
@@ -48,6 +53,14 @@ def enter(
     ] = "",
     contest: Contest = FILE,
     reason: Reason = "",
+    club: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Its school or club; a stage with apart = true draws teams of one club apart.",
+        ),
+    ] = "",
+    by: By = "",
 ) -> None:
     """Enter a team with its files; they are weighed in at once, and frozen.
 
@@ -56,11 +69,12 @@ def enter(
     postures, with the sequences of the sample's keys.
 
     A team can enter again with other files until entries are closed: at the time in the contest
-    file, or when the first stage is drawn. After that a change needs a reason.
+    file, or when the first stage is drawn. After that a change, or a late team, needs a reason.
     """
     from lacoc_server.contest.acts import organiser
 
-    screen.show(organiser.enter(contest, team, folder, bot, reason, _tell_found))
+    done = organiser.enter(contest, team, folder, bot, reason, _tell_found, club=club, by=by)
+    screen.show(done)
 
 
 def _tell_found(handed: "HandedIn") -> None:

@@ -140,7 +140,7 @@ def enter_weighed(
     return said
 
 
-def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phrase:
+def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str = "") -> Phrase:
     """Take a team out of a contest; return what was done.
 
     Args:
@@ -148,11 +148,12 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phras
         team: name of the team.
         reason: why; it is public.
         disqualified: True: the team is ranked last.
+        by: who of the staff decides; "": the organiser.
 
     Raises:
         UserError: if the team has not entered.
     """
-    with FactStore(ContestFolder(file).facts) as store:
+    with FactStore(ContestFolder(file).facts, by) as store:
         store.decide(
             lambda facts: leaving(compute(facts, FORMATS), team, reason, disqualified=disqualified)
         )
@@ -202,7 +203,7 @@ def draw(store: FactStore, shown: Drawn) -> Phrase:
     def decision(facts: tuple[AnyFact, ...]) -> list[AnyFact]:
         contest = compute(facts, FORMATS)
         made = drawing(contest)
-        order = sorted if shown.how == "hand" else tuple
+        order = sorted if shown.how else tuple
         if (made.stage, order(made.entries)) != (shown.stage, order(shown.entries)):
             raise UserError(say("contest.other-draw", stage=title(contest, made.stage)))
         if shown.how == "hand" and not shown.reason.strip():

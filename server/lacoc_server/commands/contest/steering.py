@@ -1,0 +1,244 @@
+"""Steer the day of a contest: what the office's page decides, from a terminal."""
+
+from collections.abc import Callable, Iterator
+from datetime import datetime, time
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lacoc_server.commands.contest.deciding import Yes, wanted_so
+from lacoc_server.commands.contest.playing import By, Contest, Reason, Team
+from lacoc_server.commands.contest.setting_up import FILE
+from lacoc_shared.command import screen
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.link import Link
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lacoc_server.contest.league.contest import Contest as Computed
+    from lacoc_server.contest.league.facts import AnyFact
+
+Clock = Annotated[
+    str, typer.Option(metavar="HH:MM", help="A time of today on this machine's clock.")
+]
+
+
+def move(
+    pairing: Annotated[
+        str, typer.Argument(metavar="PAIRING", help="The match, such as finals:w2.1.")
+    ],
+    court: Annotated[str, typer.Option(metavar="COURT", help="The only court for it.")] = "",
+    before: Annotated[
+        str, typer.Option(metavar="PAIRING", help="The match directly before which it comes.")
+    ] = "",
+    at: Clock = "",
+    contest: Contest = FILE,
+    by: By = "",
+) -> None:
+    """Move a match to another court, before another match, or to a later time.
+
+    Its teams need not be known, and its stage need not be drawn. The newest move of a match counts.
+    """
+    courts = [*contests.load(contest).courts]
+
+    def moved(now: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import moving
+
+        return moving(now, courts, pairing, court, before, _ms_of(at) if at else 0)
+
+    _steer(contest, by, moved)
+
+
+def pause(
+    until: Annotated[
+        str,
+        typer.Option("--until", metavar="HH:MM", help="It goes on by itself at this time."),
+    ] = "",
+    contest: Contest = FILE,
+    reason: Reason = "",
+    by: By = "",
+) -> None:
+    """Call no more games until the contest goes on; games that were called are played."""
+
+    def paused(now: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import pausing
+
+        return pausing(now, _ms_of(until) if until else 0, reason, _now_ms())
+
+    _steer(contest, by, paused)
+
+
+def resume(contest: Contest = FILE, by: By = "") -> None:
+    """Let a paused contest go on."""
+
+    def resumed(now: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import resuming
+
+        return resuming(now, _now_ms())
+
+    _steer(contest, by, resumed)
+
+
+def shift(
+    minutes: Annotated[
+        int, typer.Argument(metavar="MINUTES", help="By how many minutes.", min=1, max=1440)
+    ],
+    contest: Contest = FILE,
+    reason: Reason = "",
+    by: By = "",
+) -> None:
+    """Make all that is to come later: no game is called for so long, and all set times move."""
+
+    def shifted(_: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import MINUTE_MS, shifting
+
+        return shifting(minutes * MINUTE_MS, reason)
+
+    _steer(contest, by, shifted)
+
+
+def announce(
+    text: Annotated[str, typer.Argument(metavar="TEXT", help="The line; '' takes it away.")],
+    contest: Contest = FILE,
+    by: By = "",
+) -> None:
+    """Show a line to all, on all pages."""
+
+    def announced(_: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import announcing
+
+        return announcing(text)
+
+    _steer(contest, by, announced)
+
+
+def substitute(
+    team: Team,
+    other: Annotated[
+        str, typer.Argument(metavar="SUBSTITUTE", help="The team that comes in its place.")
+    ],
+    contest: Contest = FILE,
+    reason: Reason = "",
+    yes: Yes = False,
+    by: By = "",
+) -> None:
+    """Let a team take the place of another one that has not played: show what that changes, ask.
+
+    The other team leaves the contest. Where it has played already, it keeps its place.
+    """
+
+    def substituted(now: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import substituting
+
+        return substituting(now, team, other, reason)
+
+    _steer(contest, by, substituted, asks=True, yes=yes)
+
+
+def undraw(
+    stage: Annotated[str, typer.Argument(metavar="STAGE", help="Name in the contest file.")],
+    contest: Contest = FILE,
+    reason: Reason = "",
+    yes: Yes = False,
+    by: By = "",
+) -> None:
+    """Take the draw of a stage back that nobody has played in: show what that changes, ask.
+
+    It is drawn again, by the office or as you draw it: also with a team that came late.
+    """
+
+    def undrawn(now: "Computed") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import undrawing
+
+        return undrawing(now, stage, reason)
+
+    _steer(contest, by, undrawn, asks=True, yes=yes)
+
+
+def staff(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Who it is.")],
+    contest: Contest = FILE,
+    remove: Annotated[
+        bool, typer.Option("--remove", help="Take the link away: it opens nothing any more.")
+    ] = False,
+) -> None:
+    """Print a link to the organiser's page for somebody of the staff.
+
+    Whoever has it may do what you may, but give links. Facts say who decided.
+    """
+    from lacoc_server.contest.acts.organiser import team_name
+
+    plan = contests.load(contest)
+    who = team_name(name)
+    if remove:
+        plan.secrets.forget_staff(who)
+        screen.show(say("desk.staff-removed", name=who))
+        return
+    address = plan.public.pages or f"{plan.public.scheme}://{plan.own_host}:8080"
+    link = Link(
+        pages=address,
+        page="office",
+        token=plan.secrets.staff(who),
+        authority=plan.public.fingerprint,
+    )
+    screen.stdout.print(link.text, markup=False, soft_wrap=True)  # to be copied whole
+
+
+def _steer(
+    file: "Path",
+    by: str,
+    act: "Callable[[Computed], AnyFact]",
+    *,
+    asks: bool = False,
+    yes: bool = False,
+) -> None:
+    """Append the fact of an act, and say what was done.
+
+    Args:
+        file: the contest file.
+        by: who of the staff decides; "": the organiser.
+        act: returns the fact for the contest as it is.
+        asks: whether to show first what it changes, and to ask.
+        yes: do not ask.
+
+    Raises:
+        UserError: if it can't be done.
+    """
+    from lacoc_server.contest.acts import deciding, steering
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.kept.store import FactStore
+    from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.formats.installed import FORMATS
+
+    with FactStore(ContestFolder(file).facts, by) as store:
+        facts = store.facts()
+        now = compute(facts, FORMATS)
+        fact = act(now)
+        if asks and not wanted_so(deciding.effect(facts, [fact]), yes):
+            return
+
+        def decision(newest: "tuple[AnyFact, ...]") -> "Iterator[AnyFact]":
+            yield fact if newest == facts else act(compute(newest, FORMATS))
+
+        store.decide(decision)
+        screen.show(steering.done(now, fact))
+
+
+def _ms_of(clock: str) -> int:
+    """Return a time of today in milliseconds since 1970, UTC.
+
+    Raises:
+        UserError: if it is not written as 14:05.
+    """
+    try:
+        when = time.fromisoformat(clock)
+    except ValueError:
+        raise UserError(say("day.bad-time", found=clock)) from None
+    return round(1000 * datetime.combine(datetime.now(), when).astimezone().timestamp())
+
+
+def _now_ms() -> int:
+    return round(1000 * datetime.now().timestamp())

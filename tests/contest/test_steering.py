@@ -1,0 +1,275 @@
+"""Tests of a day that is steered from the office: who may, what it says, and that it is proven."""
+
+from typing import cast
+
+import pytest
+from msgspec.structs import replace
+from office_room import CODE, KEY, NOW_MS, Room, said, sample
+
+from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.facts import AnyFact, Drawn, Entered, Played, Substituted, Undrawn
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.sheet import sheet
+from lacoc_server.contest.verify.history import check_history
+from lacoc_server.contest.verify.published import check_published
+from lacoc_shared.messages.desk import (
+    PUBLISHED,
+    Announce,
+    AnyRequest,
+    Apply,
+    Approve,
+    CloseEntries,
+    Draw,
+    Effect,
+    Move,
+    Pause,
+    Publish,
+    Resume,
+    Said,
+    Shift,
+    Staff,
+    Substitute,
+    TokenList,
+    Tokens,
+    Undraw,
+)
+
+_KNOCKOUT = """
+[stage.finals]
+format = "single-knockout"
+after = "cup"
+teams = 2
+break_s = 600
+final_court = "south"
+"""
+_BY_HAND = '[stage.finals]\nformat = "single-knockout"\ndraw = "organiser"\n'
+
+
+@pytest.fixture
+def room(tmp_path_factory: pytest.TempPathFactory) -> Room:
+    """Give a contest of four teams, whose first stage is drawn."""
+    room = Room(tmp_path_factory.mktemp("cup"), _KNOCKOUT)
+    room.enter("Ants", "Bees", "Crabs", "Dogs")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    return room
+
+
+def code_of(answer: object) -> str:
+    """Return the code of what was done."""
+    assert isinstance(answer, Said), answer
+    return answer.said[0].code
+
+
+def effect_of(answer: object) -> list[str]:
+    assert isinstance(answer, Effect), answer
+    return [line.code for line in answer.lines]
+
+
+def wrongs(facts: tuple[AnyFact, ...]) -> list[str]:
+    """Return the codes of what can't come from an honest contest."""
+    return [one.code for one in check_history(facts, compute(facts, FORMATS))]
+
+
+def test_the_timetable_has_every_match(room: Room) -> None:
+    """Also the final of a stage that is not drawn: with its court, and after its break."""
+    slots = {slot.pairing: slot for slot in room.view.slots}
+    assert len(slots) == 6 + 1
+    final = slots["finals:w1.1"]
+    assert (final.court, final.teams) == ("south", ("", ""))
+    assert final.who is not None
+    assert [who.code for who in final.who] == ["who.seed"] * 2
+    last = max(slot.at_ms for slot in slots.values() if slot is not final)
+    assert final.at_ms >= last + 600_000
+    later = {one.pairing: one for one in sheet("", compute(room.facts, FORMATS)).later}
+    assert later["finals:w1.1"].fixture.code == "fixture.final"
+
+
+def test_a_match_that_is_not_drawn_is_moved(room: Room) -> None:
+    """The final goes to the other court, and stays there; who moves nothing is told why."""
+    move = Move(secret=KEY, pairing="finals:w1.1", court="north", not_before_ms=NOW_MS + 9_000_000)
+    assert code_of(room.ask(move)) == "desk.moved"
+    (final,) = (slot for slot in room.view.slots if slot.pairing == "finals:w1.1")
+    assert (final.court, final.at_ms) == ("north", NOW_MS + 9_000_000)
+    assert said(room.ask(Move(secret=KEY, pairing="finals:w9.1"))) == "decide.no-match"
+    assert said(room.ask(Move(secret=KEY, pairing="finals:w1.1", court="x"))) == "desk.no-court"
+
+
+def test_the_day_is_paused_shifted_and_goes_on(room: Room) -> None:
+    """Each is a fact; what can't be is told."""
+    assert said(room.ask(Resume(secret=KEY))) == "day.not-paused"
+    assert code_of(room.ask(Pause(secret=KEY, reason="a cable"))) == "day.paused"
+    assert (room.view.day.paused, room.view.day.reason) == (True, "a cable")
+    assert said(room.ask(Pause(secret=KEY))) == "day.paused-already"
+    assert said(room.ask(Pause(secret=KEY, until_ms=1))) == "day.in-the-past"
+    assert code_of(room.ask(Resume(secret=KEY))) == "day.goes-on"
+    before = [slot.at_ms for slot in room.view.slots]
+    assert code_of(room.ask(Shift(secret=KEY, by_ms=900_000))) == "day.shifted"
+    assert min(slot.at_ms for slot in room.view.slots) >= min(before)
+    assert wrongs(room.facts) == []
+
+
+def test_a_line_is_told_to_all(room: Room) -> None:
+    """It is in the sheet that all pages read."""
+    assert code_of(room.ask(Announce(secret=KEY, text=" Lunch\n until 1 "))) == "day.announced"
+    shown = sheet("", compute(room.facts, FORMATS)).announced
+    assert shown is not None
+    assert shown.text == room.view.announced == "Lunch until 1"
+    assert code_of(room.ask(Announce(secret=KEY, text=" "))) == "day.announced-nothing"
+    assert room.view.announced == ""
+
+
+def test_a_substitute_comes_for_a_team_that_is_ill(room: Room) -> None:
+    """A late team enters with a reason, takes a place, and the history is that of an honest one."""
+    apply = Apply(secret=CODE, team="Eels", files=sample(), contact="eel@x", club="North")
+    room.ask(apply)
+    (row,) = (row for row in room.view.teams if row.team == "Eels")
+    assert (row.contact, row.club) == ("eel@x", "North")
+    room.ask(Approve(secret=KEY, teams=("Eels",), reason="a reserve"))
+    assert [fact.club for fact in room.facts if isinstance(fact, Entered)][-1] == "North"
+
+    ill = {"team": "Bees", "substitute": "Eels"}
+    assert said(room.ask(Substitute(secret=KEY, **ill, reason=" "))) == "decide.needs-reason"
+    lines = effect_of(room.ask(Substitute(secret=KEY, **ill, reason="ill")))
+    assert "decide.leaves" in lines
+    assert not any(isinstance(fact, Substituted) for fact in room.facts)
+    room.ask(Substitute(secret=KEY, **ill, reason="ill", really=True))
+    (view,) = compute(room.facts, FORMATS).stages
+    assert view.stage.entries == ("Ants", "Eels", "Crabs", "Dogs")
+    assert said(room.ask(Substitute(secret=KEY, team="Ants", substitute="Eels", reason="x"))) == (
+        "day.no-place"
+    )
+    assert wrongs(room.facts) == []
+    decided = sheet("", compute(room.facts, FORMATS)).decided
+    assert [one.what.code for one in decided] == ["decided.substituted", "decided.entered-late"]
+
+
+def test_a_draw_is_taken_back_and_made_again(room: Room) -> None:
+    """Until somebody plays; the stage is drawn again with a team that came late."""
+    undrawable = room.view.undrawable
+    assert undrawable is not None
+    assert undrawable.stage == "cup"
+    assert said(room.ask(Undraw(secret=KEY, stage="finals", reason="x"))) == "league.not-drawn"
+    room.ask(Undraw(secret=KEY, stage="cup", reason="a late team", really=True))
+    assert room.view.undrawable is None
+    room.enter("Eels", reason="a late train")
+    room.draw()
+    (view,) = compute(room.facts, FORMATS).stages
+    assert view.stage.entries == ("Ants", "Bees", "Crabs", "Dogs", "Eels")
+    assert wrongs(room.facts) == []
+    match = view.matches[0]
+    assert match.next_seats is not None
+    room.store.append(
+        league_facts.new(
+            Played,
+            pairing=match.pairing.id,
+            game=1,
+            teams=match.next_seats,
+            scores=(1, 0),
+            outcome="left",
+        )
+    )
+    assert room.view.undrawable is None
+    assert said(room.ask(Undraw(secret=KEY, stage="cup", reason="x"))) == "day.draw-stays"
+
+
+@pytest.mark.parametrize(
+    ("given", "order", "decided"),
+    [
+        ({}, ["Ants", "Bees", "Crabs"], []),
+        ({"how": "lot", "lot": "4 2"}, None, ["decided.drawn-by-lot"]),
+        (
+            {"how": "hand", "reason": "last year", "entries": ("Crabs", "Ants", "Bees")},
+            ["Crabs", "Ants", "Bees"],
+            ["decided.drawn-by-hand"],
+        ),
+    ],
+)
+def test_a_stage_is_drawn_as_the_organiser_wants(
+    tmp_path_factory: pytest.TempPathFactory,
+    given: dict[str, object],
+    order: list[str] | None,
+    decided: list[str],
+) -> None:
+    """By the ranking, by lot or by hand; each draw is checked, and others are told."""
+    room = Room(tmp_path_factory.mktemp("cup"), stages=_BY_HAND)
+    room.enter("Ants", "Bees", "Crabs")
+    room.ask(CloseEntries(secret=KEY))
+    to_draw = room.view.to_draw
+    assert to_draw is not None
+    request = {"stage": "finals", "entries": to_draw.entries} | given
+    assert isinstance(room.ask(Draw(secret=KEY, **request)), Said)
+    drawn = next(fact for fact in room.facts if isinstance(fact, Drawn))
+    assert sorted(drawn.entries) == ["Ants", "Bees", "Crabs"]
+    assert order is None or [*drawn.entries] == order
+    found = sheet("", compute(room.facts, FORMATS)).decided
+    assert [one.what.code for one in found] == decided
+    assert wrongs(room.facts) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "code"),
+    [
+        (Drawn, {"how": "lot"}, "verify.other-draw"),
+        (Drawn, {"how": "lot", "lot": "7"}, "verify.other-draw"),
+        (Drawn, {"how": "hand"}, "verify.other-draw"),
+        (Drawn, {"entries": ("Bees", "Ants", "Crabs", "Dogs")}, "verify.other-draw"),
+        (Drawn, {"how": "hand", "reason": "x", "entries": ("Ants", "Bees")}, "verify.other-draw"),
+        (Entered, {"reason": ""}, "verify.entered-late"),
+        (Substituted, {"substitute": "Gnus"}, "verify.unused"),
+        (Substituted, {"team": "Gnus"}, "verify.unused"),
+        (Undrawn, {"stage": "finals"}, "verify.unused"),
+    ],
+)
+def test_forged_facts_of_a_day_are_found(
+    room: Room, kind: type[AnyFact], change: dict[str, object], code: str
+) -> None:
+    """A changed fact of each kind is no honest history."""
+    room.ask(Undraw(secret=KEY, stage="cup", reason="a late team", really=True))
+    room.enter("Eels", reason="a late train")
+    room.draw()
+    room.enter("Fish", reason="a reserve")
+    ill = Substitute(secret=KEY, team="Bees", substitute="Fish", reason="ill", really=True)
+    assert isinstance(room.ask(ill), Effect)
+    facts = list(room.facts)
+    assert wrongs(tuple(facts)) == []
+    at = max(number for number, fact in enumerate(facts) if isinstance(fact, kind))
+    facts[at] = replace(facts[at], **change)
+    assert code in wrongs(tuple(facts))
+
+
+def test_the_staff_decide_under_their_names(room: Room) -> None:
+    """Each has a link; facts say who decided; only the organiser gives links, and takes them."""
+    assert code_of(room.ask(Staff(secret=KEY, name="Aiko"))) == "desk.staff-added"
+    tokens = cast("TokenList", room.ask(Tokens(secret=KEY)))
+    token = tokens.staff["Aiko"]
+    assert isinstance(room.ask(Pause(secret=token, reason="a cable")), Said)
+    assert [fact.by for fact in room.facts][-1] == "Aiko"
+    assert isinstance(room.ask(Resume(secret=KEY)), Said)
+    assert [fact.by for fact in room.facts][-1] == ""
+    assert cast("TokenList", room.ask(Tokens(secret=token))).staff == {}
+    assert said(room.ask(Staff(secret=token, name="Ben"))) == "desk.not-organiser"
+    room.ask(Staff(secret=KEY, name="Aiko", remove=True))
+    assert said(room.ask(Pause(secret=token))) == "desk.not-organiser"
+    assert room.view.staff == ()
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [Pause(), Resume(), Shift(by_ms=60_000), Announce(text="x"), Publish(), Staff(name="x")],
+)
+def test_only_the_staff_may(room: Room, asked: AnyRequest) -> None:
+    """Neither the event code nor a team's token steers the day."""
+    before = room.facts
+    for secret in ("", CODE, room.secrets.team("Ants")):
+        assert said(room.ask(replace(asked, secret=secret))) == "desk.not-organiser"
+    assert room.facts == before
+
+
+def test_the_office_publishes(room: Room) -> None:
+    """The published folder stands beside the contest file, and can be checked."""
+    assert room.view.published == ""
+    assert code_of(room.ask(Publish(secret=KEY))) == "desk.published"
+    assert room.view.published == PUBLISHED
+    assert [one.code for one in check_published(room.where.published, room.facts)] == []
