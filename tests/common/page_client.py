@@ -66,6 +66,7 @@ class PageClient:
         self.seat: dict[str, Any] = {}
         self.referee: dict[str, Any] = {}
         self.files: dict[str, Any] = {}
+        self.notice: dict[str, Any] = {}
         self.sheet: Sheet | None = None
         self.scene: tuple[bytes, Scene] | None = None
         self.frame: Frame | None = None
@@ -201,6 +202,8 @@ class PageClient:
                 self.referee = body
             case Kind.FILES:
                 self.files = body
+            case Kind.NOTICE:
+                self.notice = body
             case Kind.REPLY if body["id"] in self._signed:
                 self._signed.discard(body["id"])
             case Kind.REPLY:

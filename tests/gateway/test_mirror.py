@@ -1,6 +1,7 @@
 """Tests of a gateway that knows nothing but the address of other pages."""
 
 import json
+import urllib.error
 import urllib.request
 
 import pytest
@@ -34,3 +35,40 @@ def test_a_gateway_without_secrets_shows_all_courts_and_the_contest(venue: Venue
             page.wait(lambda: page.frame is not None)
     finally:
         second.close()
+
+
+def test_a_line_reaches_all_pages_and_the_published_contest_is_served(venue: Venue) -> None:
+    """Pages that are open hear it, others when they come; the folder is served below the pages."""
+    sheet = venue.contest.with_suffix(".json")
+    sheet.write_text('{"stages": []}')
+    venue.court()
+    venue.web()
+    url = venue.url
+
+    def tell(text: str) -> None:
+        day = {"paused": True, "until_ms": 0, "reason": "a cable"}
+        sheet.write_text(json.dumps({"stages": [], "announced": {"text": text}, "day": day}))
+
+    with PageClient(url) as page:
+        tell("Lunch")
+        page.wait(lambda: page.notice.get("text") == "Lunch")
+        assert page.notice == {"text": "Lunch", "paused": True, "until_ms": 0, "reason": "a cable"}
+        with PageClient(url) as late:
+            late.wait(lambda: late.notice == page.notice)
+
+    def status(path: str) -> int:
+        try:
+            with urllib.request.urlopen(f"{url}/published/{path}", timeout=LIMIT_S) as answer:
+                return int(answer.status)
+        except urllib.error.HTTPError as error:
+            return error.code
+
+    assert status("") == 404
+    folder = sheet.with_name(f"{sheet.stem}-published")
+    (folder / "records").mkdir(parents=True)
+    (folder / "index.html").write_text("<title>Cup</title>")
+    (folder / "records" / "a.mcap").write_bytes(b"x" * 9)
+    (folder / "out").symlink_to(venue.contest)
+    assert [status(one) for one in ("", "records/a.mcap")] == [200, 200]
+    hidden = ("out", "../contest.toml", "%2e%2e/contest.toml", "records", "x", "%00")
+    assert [status(one) for one in hidden] == [404] * len(hidden)

@@ -116,6 +116,15 @@ def sheet_path(path: Path) -> Path:
     return path.resolve().with_suffix(".json")
 
 
+def published_path(file: Path) -> Path:
+    """Return the folder in which the office publishes a contest.
+
+    Args:
+        file: the contest file, or its sheet.
+    """
+    return file.with_name(f"{file.stem}-published")
+
+
 def facts_path(path: Path) -> Path:
     """Return where the database of a contest's facts is: beside its contest file."""
     return path.resolve().with_suffix(".db")

@@ -280,6 +280,8 @@ class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
     """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them."""
     replays: Replays
     """From when everybody may see the records of games."""
+    announced: str = ""
+    """The organiser's line to all; "": there is none."""
 
 
 class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):

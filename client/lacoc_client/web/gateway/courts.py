@@ -7,6 +7,7 @@ from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.audience import Audience
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.home import ACTING_MOST, CLAIMING_MOST, Home
+from lacoc_client.web.gateway.notice import Notice
 from lacoc_client.web.gateway.programme import Programme
 from lacoc_client.web.gateway.referees import Referees
 from lacoc_client.web.gateway.threads import Threads
@@ -41,6 +42,10 @@ class Courts:
         self.claiming: set[Viewer] = set()
         """Pages that were let in only because they have a token, which no court has accepted yet.
         """
+        self.pages: set[Viewer] = set()
+        """All pages that have named a court, or follow the director."""
+        self.notice = Notice(home.sheet)
+        """What the organiser tells all pages."""
         self._accepted: set[bytes] = set()
         """Digests of the tokens that a court has accepted."""
         self.sent_away = 0
@@ -131,13 +136,19 @@ class Courts:
         return say("gateway.full", most=most)
 
     async def watch_files(self) -> None:
-        """Watch the files on this machine; when they change, tell the pages of their owner."""
+        """Watch the files on this machine; tell the pages what has changed.
+
+        Own files concern the pages of their owner; a contest's sheet has a line to all.
+        """
         own = self.home.prefill.files if self.home.prefill is not None else None
-        while own is not None:
+        while own is not None or self.home.sheet is not None:
             await asyncio.sleep(_FILES_S)
-            if await asyncio.to_thread(own.look):
+            if own is not None and await asyncio.to_thread(own.look):
                 for feed in self.feeds:
                     feed.audience.send_own(wire.files_message(own))
+            if await asyncio.to_thread(self.notice.look):
+                for page in self.pages:
+                    page.send(self.notice.message)
 
     async def close(self) -> None:
         """Close all connections."""

@@ -129,12 +129,14 @@ class Page:
             await self._websocket.close(TRY_LATER, "full")
             return False
         self._leave_court()
+        self._courts.pages.add(viewer)
         if viewer in self._courts.claiming and self._leaving is None:
             loop = asyncio.get_running_loop()
             self._leaving = loop.call_later(_CLAIM_S, self._give_up)
         if asked.director:
             self._follows = programme = self._courts.programme
             viewer.send(self._welcome(None))
+            viewer.send(self._courts.notice.message)
             programme.add(viewer, asked.aside)
             self._answers.reply(asked.id, {})
             return True
@@ -147,6 +149,7 @@ class Page:
         prefill = self._home.prefill
         if viewer.is_own and prefill is not None and prefill.files is not None:
             viewer.send(wire.files_message(prefill.files))
+        viewer.send(self._courts.notice.message)
         self._feed.add(viewer)
         if self._may_act:
             viewer.send(self._referees.state(viewer))
@@ -299,6 +302,7 @@ class Page:
 
     def _gone(self) -> None:
         self._leave_court()
+        self._courts.pages.discard(self._viewer)
         self._courts.claiming.discard(self._viewer)
         if self._leaving is not None:
             self._leaving.cancel()

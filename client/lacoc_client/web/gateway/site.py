@@ -31,6 +31,7 @@ from lacoc_client.web.gateway.health import Health
 from lacoc_client.web.gateway.home import Home
 from lacoc_client.web.gateway.metrics import GatewayMetrics
 from lacoc_client.web.gateway.page import Page
+from lacoc_client.web.gateway.published_route import published_routes
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.scores import scores_route
 from lacoc_client.web.gateway.shown import Shown
@@ -99,6 +100,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         *fork_routes(shelf, forks, courts.lets_act),
         event_route(home),
         sheet_route(home.sheet),
+        *published_routes(home.sheet),
         scores_route(courts),
         WebSocketRoute("/ws", page),
     ]

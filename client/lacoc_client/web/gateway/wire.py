@@ -60,6 +60,7 @@ class Kind(IntEnum):
     GONE = 20
     TOURNAMENT = 21
     PROGRAMME = 22
+    NOTICE = 23
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]

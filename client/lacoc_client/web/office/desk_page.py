@@ -152,8 +152,16 @@ class DeskPage:
         seats = tuple(
             self._make.seat(one.court, one.seat, one.token) for one in tokens.seats if not wanted
         )
+        staff = tuple(
+            self._make.staff(name, token) for name, token in tokens.staff.items() if not wanted
+        )
         return Links(
-            enter=enter, enter_qr=qr_code(enter), teams=teams, referees=referees, seats=seats
+            enter=enter,
+            enter_qr=qr_code(enter),
+            teams=teams,
+            referees=referees,
+            seats=seats,
+            staff=staff,
         )
 
     async def _asked(self, request: bytes) -> bytes:

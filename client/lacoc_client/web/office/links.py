@@ -31,6 +31,15 @@ class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
     """The link as a QR code: a picture in SVG."""
 
 
+class StaffLink(msgspec.Struct, frozen=True, kw_only=True):
+    """The link of one of the staff to the organiser's page."""
+
+    name: str
+    link: str
+    qr: str
+    """The link as a QR code: a picture in SVG."""
+
+
 class SeatLink(msgspec.Struct, frozen=True, kw_only=True):
     """The link of a seat in open matches."""
 
@@ -51,6 +60,7 @@ class Links(msgspec.Struct, frozen=True, kw_only=True):
     teams: tuple[TeamLink, ...]
     referees: tuple[RefereeLink, ...]
     seats: tuple[SeatLink, ...] = ()
+    staff: tuple[StaffLink, ...] = ()
 
 
 class LinkMaker:
@@ -67,13 +77,18 @@ class LinkMaker:
 
     def team(self, team: str, token: str) -> TeamLink:
         """Make the link of a team with its token."""
-        link = self._play(token)
+        link = self._link("play", token)
         return TeamLink(team=team, link=link, qr=qr_code(link))
 
     def seat(self, court: str, seat: str, token: str) -> SeatLink:
         """Make the link of an open seat with its token."""
-        link = self._play(token)
+        link = self._link("play", token)
         return SeatLink(court=court, seat=seat, link=link, qr=qr_code(link))
+
+    def staff(self, name: str, token: str) -> StaffLink:
+        """Make the link of one of the staff with the token."""
+        link = self._link("office", token)
+        return StaffLink(name=name, link=link, qr=qr_code(link))
 
     def referee(self, court: str, token: str) -> RefereeLink:
         """Make the link of a court's referee with the desk's token."""
@@ -86,8 +101,8 @@ class LinkMaker:
         ).text
         return RefereeLink(court=court, link=link, qr=qr_code(link))
 
-    def _play(self, token: str) -> str:
-        return Link(pages=self.address, page="play", token=token, authority=self._authority).text
+    def _link(self, page: str, token: str) -> str:
+        return Link(pages=self.address, page=page, token=token, authority=self._authority).text
 
 
 @lru_cache(maxsize=1024)  # one takes some milliseconds, and a large contest has hundreds

@@ -176,6 +176,7 @@ export interface EventInfo {
   open: boolean;
   closes_ms: number;
   replays: "at-once" | "after-stage" | "after-contest";
+  announced: string;
 }
 
 export interface OwnEntry {
@@ -289,6 +290,7 @@ export interface Links {
   teams: TeamLink[];
   referees: RefereeLink[];
   seats: SeatLink[];
+  staff: unknown[];
 }
 
 export interface CourtScore {

@@ -93,6 +93,7 @@ export const MESSAGE_KINDS = [
   "gone",
   "tournament",
   "programme",
+  "notice",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */

@@ -73,6 +73,7 @@ class Book:
             open=not self.contest.closed,
             closes_ms=milliseconds(plan.entries_close),
             replays=plan.replays,
+            announced=said.text if (said := self.contest.announced) is not None else "",
         )
 
     def team(self, name: str) -> Team | None:

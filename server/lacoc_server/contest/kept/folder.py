@@ -44,7 +44,7 @@ class ContestFolder:
         """All tokens."""
         self.contacts = folder / f"{file.stem}.contacts.json"
         """How to reach the teams."""
-        self.published = folder / f"{file.stem}-published"
+        self.published = contests.published_path(file)
         """The published contest, if the office has published it."""
         self.event_code = folder / f"{file.stem}.code.txt"
         """The event code, if it was changed."""

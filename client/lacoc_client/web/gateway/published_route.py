@@ -1,0 +1,47 @@
+"""Serves the folder in which the office has published its contest, as any web server would."""
+
+import asyncio
+import mimetypes
+from pathlib import Path
+
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import BaseRoute, Route
+
+from lacoc_client.web.gateway.cached import ASK_AGAIN, large_response
+from lacoc_client.web.gateway.guard import answer
+from lacoc_shared.contest.file import published_path
+from lacoc_shared.words import say
+
+
+def published_routes(sheet: Path | None) -> list[BaseRoute]:
+    """Return the route of a published contest.
+
+    Args:
+        sheet: the contest's newest sheet, beside which the folder is; None: there is no contest.
+    """
+    if sheet is None:
+        return []
+    folder = published_path(sheet).resolve()
+
+    async def published(request: Request) -> Response:
+        name = request.path_params["name"] or "index.html"
+        path = await asyncio.to_thread(_find, folder, name)
+        kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
+        try:
+            if path is not None:
+                return large_response(request, path, kind, ASK_AGAIN)
+        except OSError:  # it was written again at this moment
+            pass
+        return answer(request.scope, say("gateway.no-page"), 404)
+
+    return [Route("/published/{name:path}", published)]
+
+
+def _find(folder: Path, name: str) -> Path | None:
+    """Return a file of a folder; None if there is none, or it lies outside."""
+    try:
+        path = (folder / name).resolve()
+        return path if path.is_relative_to(folder) and path.is_file() else None
+    except (OSError, ValueError):  # a NUL in the name
+        return None
