@@ -145,6 +145,9 @@ CONTEST_STRUCTS = (
     decided.Decided,
     rating.Rating,
     sheet.Coming,
+    sheet.Later,
+    contest.Day,
+    league_facts.Announced,
     sheet.ContestSheet,
 )
 DESK_STRUCTS = (
@@ -157,6 +160,8 @@ DESK_STRUCTS = (
     desk.Moved,
     desk.Slot,
     desk.ToDraw,
+    desk.Undrawable,
+    desk.DayState,
     desk.OfficeView,
     desk.Overviewed,
     desk.Effect,
@@ -165,6 +170,7 @@ DESK_STRUCTS = (
     links.TeamLink,
     links.RefereeLink,
     links.SeatLink,
+    links.StaffLink,
     links.Links,
     scores.CourtScore,
 )

@@ -13,6 +13,7 @@ import {
   type HeldSeat,
   type Link,
   type Message,
+  type Notice,
   type OwnFiles,
   PROTOCOL,
   type Programme,
@@ -51,6 +52,8 @@ export class Court implements Match {
   readonly events = signal<readonly Event[]>([]);
   readonly health = signal<Health | null>(null);
   readonly link = signal<Link | null>(null);
+  /** What the organiser tells all; null until the gateway says so. */
+  readonly notice = signal<Notice | null>(null);
   readonly seat = signal<HeldSeat | null>(null);
   /** What the director shows in this picture; null where the page follows a court. */
   readonly programme = signal<Programme | null>(null);
@@ -195,6 +198,9 @@ export class Court implements Match {
         break;
       case "link":
         this.takeLink(message.body);
+        break;
+      case "notice":
+        this.notice.value = message.body;
         break;
       case "seat":
         this.seat.value = message.body;

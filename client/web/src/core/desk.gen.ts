@@ -230,6 +230,17 @@ export interface ToDraw {
   entries: string[];
 }
 
+export interface Undrawable {
+  stage: string;
+  title: Phrase;
+}
+
+export interface DayState {
+  paused: boolean;
+  until_ms: number;
+  reason: string;
+}
+
 export interface OfficeView {
   version: string;
   event: EventInfo;
@@ -239,9 +250,9 @@ export interface OfficeView {
   teams: TeamRow[];
   courts: CourtRow[];
   slots: Slot[];
-  day: unknown;
+  day: DayState;
   announced: string;
-  undrawable: unknown | null;
+  undrawable: Undrawable | null;
   published: string;
   staff: string[];
   me: string;
@@ -284,13 +295,19 @@ export interface SeatLink {
   qr: string;
 }
 
+export interface StaffLink {
+  name: string;
+  link: string;
+  qr: string;
+}
+
 export interface Links {
   enter: string;
   enter_qr: string;
   teams: TeamLink[];
   referees: RefereeLink[];
   seats: SeatLink[];
-  staff: unknown[];
+  staff: StaffLink[];
 }
 
 export interface CourtScore {

@@ -86,6 +86,17 @@ export interface HeldSeat {
   reason: Phrase | null;
 }
 
+/** What the organiser of a contest tells everybody. */
+export interface Notice {
+  /** A line to all; "" if there is none. */
+  text: string;
+  /** Whether no game is called before somebody says so. */
+  paused: boolean;
+  /** No game is called before this time, in milliseconds since 1970; 0: at any time. */
+  until_ms: number;
+  reason: string;
+}
+
 /** Who acts as referee through this gateway. */
 export interface RefereeState {
   acting: string | null;
@@ -197,6 +208,7 @@ export type Message =
   | { kind: "health"; body: Health }
   | { kind: "link"; body: Link }
   | { kind: "seat"; body: HeldSeat }
+  | { kind: "notice"; body: Notice }
   | { kind: "reply"; body: GoodReply | BadReply }
   | { kind: "referee"; body: RefereeState }
   | { kind: "files"; body: OwnFiles }

@@ -43,6 +43,10 @@ export const common = {
     "コート {court} を待っています（{seconds} 秒間応答なし）…",
   ],
   "link.noCourt": ["Waiting for court {court} …", "コート {court} を待っています…"],
+  "notice.paused": ["A pause: no game is called now", "一時停止中（試合の呼び出しはありません）"],
+  "notice.until": ["No game is called before {time}", "{time} まで試合の呼び出しはありません"],
+  "notice.reason": [" ({reason})", "（{reason}）"],
+  "notice.seen": ["OK", "OK"],
   "link.over": [
     "The match is over, and its court has closed.",
     "試合は終了し、コートは閉じました。",

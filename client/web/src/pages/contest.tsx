@@ -11,6 +11,7 @@ import {
   stateOf,
 } from "../core/contest/sheet";
 import { said, t } from "../i18n";
+import { NoticeBanner } from "../ui/banner";
 import { Big } from "./contest/big";
 import { BracketView } from "./contest/bracket";
 import { Decisions } from "./contest/decisions";
@@ -20,7 +21,7 @@ import { addressed, big } from "./contest/parts";
 import { Schedule } from "./contest/schedule";
 import { Tables, Ties } from "./contest/standings";
 import { TeamDialog, Teams } from "./contest/teams";
-import { roundsLeft, stageHeading, stageTitle } from "./contest/words";
+import { expected, roundsLeft, stageHeading, stageTitle } from "./contest/words";
 import "./contest/contest.css";
 
 const feed = new Feed();
@@ -38,6 +39,9 @@ export default function Contest() {
         <p class="banner" role="alert">
           {t(`contest.trouble.${trouble}`)}
         </p>
+      )}
+      {sheet && !trouble && (
+        <NoticeBanner notice={{ text: sheet.announced?.text ?? "", ...sheet.day }} />
       )}
       {sheet && (big ? <Big sheet={sheet} /> : <Whole sheet={sheet} />)}
       {!sheet && (
@@ -107,11 +111,29 @@ function ToCome({ sheet, plan }: { sheet: ContestSheet; plan: Planned }) {
       <h2 id={`title-${stage}`}>
         {stageTitle(sheet, stage)} <small>{stageHeading(sheet, plan)}</small>
       </h2>
+      <Later sheet={sheet} stage={stage} />
       <p class="muted">
         {after ? t(follows, { stage: stageTitle(sheet, after) }) : t("contest.planned")}{" "}
         {!!teams && t("contest.best", { count: teams })}
       </p>
     </section>
+  );
+}
+
+/** The matches that a stage will have, with what is known of them. */
+function Later({ sheet, stage }: { sheet: ContestSheet; stage: string }) {
+  const matches = sheet.later.filter((one) => one.stage === stage);
+  if (!matches.length) return null;
+  return (
+    <ol class="coming">
+      {matches.map(({ pairing, fixture, who, court, at_ms }) => (
+        <li key={pairing}>
+          <b>{said(fixture)}</b>
+          <p class="muted">{who.map(said).join(" – ")}</p>
+          <p class="expected">{expected({ court, at_ms })}</p>
+        </li>
+      ))}
+    </ol>
   );
 }
 

@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { t } from "../i18n";
-import { Banner, waitsForGateway } from "../ui/banner";
+import { Banner, NoticeBanner, waitsForGateway } from "../ui/banner";
 import { Dropping, useDrop } from "../ui/drop";
 import { IconButton } from "../ui/icons";
 import { Settings } from "../ui/settings";
@@ -24,7 +24,7 @@ export default function Enter() {
   const waits = waitsForGateway(entrant.desk.connection.state.value);
   return (
     <>
-      {waits && <Banner>{waits}</Banner>}
+      {waits ? <Banner>{waits}</Banner> : <NoticeBanner notice={entrant.notice.value} />}
       <main class="enter">
         <div class="card">
           {entrant.entry.value && <EntryCard entrant={entrant} entry={entrant.entry.value} />}

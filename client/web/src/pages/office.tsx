@@ -8,6 +8,15 @@ import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
 import { CloseDialog, DrawDialog } from "./office/closing";
 import {
+  DayBar,
+  LaterDialog,
+  LineDialog,
+  PauseDialog,
+  StaffDialog,
+  SubstituteDialog,
+  UndrawDialog,
+} from "./office/day";
+import {
   ApproveDialog,
   CodeDialog,
   DeclineDialog,
@@ -53,7 +62,10 @@ export default function Office() {
             {view.drawn && organiser.waiting.value.length > 0 && (
               <Entries organiser={organiser} view={view} waiting />
             )}
-            {view.drawn && <Timetable organiser={organiser} view={view} />}
+            <DayBar organiser={organiser} view={view} />
+            {(view.drawn || view.slots.length > 0) && (
+              <Timetable organiser={organiser} view={view} />
+            )}
             {view.drawn && <Rulings organiser={organiser} />}
             <Entries organiser={organiser} view={view} />
           </>
@@ -61,6 +73,14 @@ export default function Office() {
       </main>
       {over?.is === "close" && view && <CloseDialog organiser={organiser} view={view} />}
       {over?.is === "draw" && view && <DrawDialog organiser={organiser} view={view} />}
+      {over?.is === "pause" && <PauseDialog organiser={organiser} />}
+      {over?.is === "later" && <LaterDialog organiser={organiser} />}
+      {over?.is === "line" && view && <LineDialog organiser={organiser} view={view} />}
+      {over?.is === "undraw" && view && <UndrawDialog organiser={organiser} view={view} />}
+      {over?.is === "staff" && view && <StaffDialog organiser={organiser} view={view} />}
+      {over?.is === "substitute" && view && (
+        <SubstituteDialog organiser={organiser} view={view} team={over.team} />
+      )}
       {over?.is === "team" && <TeamDialog organiser={organiser} team={over.team} />}
       {over?.is === "leave" && <LeaveDialog organiser={organiser} team={over.team} />}
       {over?.is === "approve" && <ApproveDialog organiser={organiser} team={over.team} />}

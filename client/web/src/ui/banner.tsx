@@ -1,11 +1,12 @@
 /** Says across the top what the page waits for; nothing while all is well. */
 
-import { useComputed } from "@preact/signals";
+import { signal, useComputed } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import type { SocketState } from "../core/connection";
 import type { Court } from "../core/court";
-import { Phase } from "../core/wire";
+import { type Notice, Phase } from "../core/wire";
 import { said, t } from "../i18n";
+import { timeOf } from "../i18n/words";
 
 /** A sentence that says why the gateway is not there for this page; "" if it is. */
 export function waitsForGateway({ open, attempt, refused }: SocketState): string {
@@ -70,6 +71,41 @@ export function Banner({ role = "status", calm = false, children }: Props) {
   );
 }
 
+/** The notice that this reader has put away. */
+const seen = signal("");
+
+/** The notice as one text; "" if there is none. */
+export function noticeText({ text, paused, until_ms, reason }: Notice, nowMs: number): string {
+  const held = paused || until_ms > nowMs;
+  const why = reason && held ? t("notice.reason", { reason }) : "";
+  const day = paused
+    ? t("notice.paused")
+    : held
+      ? t("notice.until", { time: timeOf(until_ms) })
+      : "";
+  return [text, day && day + why].filter(Boolean).join(" · ");
+}
+
+/** The notice across the top; whoever has read it can put it away. */
+export function NoticeBanner({ notice }: { notice: Notice | null }) {
+  const text = notice ? noticeText(notice, Date.now()) : "";
+  if (!text || seen.value === text) return null;
+  return (
+    <Banner calm>
+      {text}
+      <button
+        class="button small"
+        type="button"
+        onClick={() => {
+          seen.value = text;
+        }}
+      >
+        {t("notice.seen")}
+      </button>
+    </Banner>
+  );
+}
+
 export function LinkBanner({ court }: { court: Court }) {
   const over = useComputed(() => isOver(court)).value;
   if (court.outdated.value) {
@@ -84,6 +120,6 @@ export function LinkBanner({ court }: { court: Court }) {
   }
   // That the director has not begun yet is no trouble: the page says it more calmly.
   const text = waitsForGateway(court.connection.state.value) || troubleOf(court);
-  if (!text) return null;
+  if (!text) return <NoticeBanner notice={court.notice.value} />;
   return over ? <Banner calm>{t("link.over")}</Banner> : <Banner>{text}</Banner>;
 }

@@ -176,6 +176,30 @@ export interface Coming {
   at_ms: number;
 }
 
+export interface Later {
+  pairing: string;
+  stage: string;
+  fixture: Phrase;
+  who: [Phrase, Phrase];
+  court: string;
+  at_ms: number;
+}
+
+export interface Day {
+  paused: boolean;
+  until_ms: number;
+  reason: string;
+}
+
+export interface Announced {
+  fact: "announced";
+  id: string;
+  number: number;
+  at_ms?: number;
+  by?: string;
+  text: string;
+}
+
 export interface ContestSheet {
   version: number;
   name: string;
@@ -186,9 +210,9 @@ export interface ContestSheet {
   planned: Planned[];
   running: Called[];
   coming: Coming[];
-  later: unknown[];
-  day: unknown;
-  announced: unknown | null;
+  later: Later[];
+  day: Day;
+  announced: Announced | null;
   decided: Decided[];
   ratings: Rating[];
   side_elo: number;

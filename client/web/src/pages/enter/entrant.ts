@@ -1,6 +1,6 @@
 /** What the page knows of a team that enters, and what it asks of the office. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { keepToken, ownToken } from "../../core/address";
 import { Refused } from "../../core/connection";
 import {
@@ -13,13 +13,18 @@ import {
 import { checkSizes, chosenFiles, forgetAll, keepGiven } from "../../core/files";
 import { filesOf } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
-import type { Mistake } from "../../core/wire";
+import type { Mistake, Notice } from "../../core/wire";
 
 const LOOK_MS = 3000;
 
 export class Entrant {
   readonly desk = new Desk();
   readonly event = signal<EventInfo | null>(null);
+  /** What the organiser tells all. */
+  readonly notice = computed<Notice | null>(() => {
+    const text = (this.entry.value?.event ?? this.event.value)?.announced;
+    return text ? { text, paused: false, until_ms: 0, reason: "" } : null;
+  });
   /** The entry of the team whose token this browser keeps; null: there is none. */
   readonly entry = signal<OwnEntry | null>(null);
   readonly link = signal<TeamLink | null>(null);
@@ -45,8 +50,8 @@ export class Entrant {
   }
 
   /** Enter with the event's code. */
-  apply(code: string, team: string): Promise<boolean> {
-    return this.send((files) => ({ do: "apply", secret: code, team, files }));
+  apply(code: string, team: string, contact: string, club: string): Promise<boolean> {
+    return this.send((files) => ({ do: "apply", secret: code, team, files, contact, club }));
   }
 
   /** Hand in other files for the team. */

@@ -1,6 +1,6 @@
 /** The form with which a team enters, and the card of a team that has entered. */
 
-import { useSignal } from "@preact/signals";
+import { type Signal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { type EventInfo, type OwnEntry, pictureUrl } from "../../core/desk";
 import { said, t } from "../../i18n";
@@ -16,6 +16,8 @@ interface Props {
 export function Form({ entrant }: Props) {
   const code = useSignal("");
   const team = useSignal("");
+  const contact = useSignal("");
+  const club = useSignal("");
   const event = entrant.event.value;
   const wrongCode = entrant.why.value?.code === "desk.wrong-code";
   const wrongName = ["desk.name-taken", "contest.team-name"].includes(
@@ -26,7 +28,7 @@ export function Form({ entrant }: Props) {
       aria-labelledby="enter-title"
       onSubmit={(submit) => {
         submit.preventDefault();
-        void entrant.apply(code.peek(), team.peek());
+        void entrant.apply(code.peek(), team.peek(), contact.peek(), club.peek());
       }}
     >
       {event && <p class="muted">{event.name}</p>}
@@ -65,6 +67,8 @@ export function Form({ entrant }: Props) {
           }}
         />
       </label>
+      <Told label={t("enter.contact")} text={contact} most={200} />
+      <Told label={t("enter.club")} text={club} most={64} />
       <Files />
       {event && <p class="muted">{t(`enter.replays.${event.replays}`)}</p>}
       <Refusal entrant={entrant} />
@@ -72,6 +76,28 @@ export function Form({ entrant }: Props) {
         {t(entrant.isWeighing.value ? "enter.weighing" : "enter.go")}
       </button>
     </form>
+  );
+}
+
+interface ToldProps {
+  label: string;
+  text: Signal<string>;
+  most: number;
+}
+
+/** A field that may stay empty. */
+function Told({ label, text, most }: ToldProps) {
+  return (
+    <label class="field">
+      <span>{label}</span>
+      <input
+        value={text.value}
+        maxLength={most}
+        onInput={(change) => {
+          text.value = change.currentTarget.value;
+        }}
+      />
+    </label>
   );
 }
 

@@ -1,8 +1,10 @@
 /** Asks before entries are closed or a stage is drawn, because that can't be undone. */
 
+import { useSignal } from "@preact/signals";
 import type { OfficeView } from "../../core/desk";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
+import { Reason } from "./dialogs";
 import type { Organiser } from "./organiser";
 
 interface Props {
@@ -38,32 +40,98 @@ export function CloseDialog({ organiser, view }: Props) {
   );
 }
 
-/** A stage that waits for the organiser: its teams, and the draw. */
+const HOW = ["", "lot", "hand"] as const;
+
+/** A stage that waits for the organiser: its teams, in which order they come, and the draw. */
 export function DrawDialog({ organiser, view }: Props) {
+  const how = useSignal<(typeof HOW)[number]>("");
+  const lot = useSignal("");
+  const reason = useSignal("");
+  const order = useSignal<readonly string[]>(view.to_draw?.entries ?? []);
   if (!view.to_draw) return null;
   const { stage, title, entries } = view.to_draw;
+  const byHand = how.value === "hand";
+  const teams = byHand ? order.value : entries;
+  const ready = how.value === "lot" ? lot.value.trim() : !byHand || reason.value.trim();
   return (
     <Dialog title={t("office.draw", { stage: said(title) })} onClose={() => organiser.close()}>
-      <div class="asks">
+      <form
+        class="asks"
+        onSubmit={async (event) => {
+          event.preventDefault();
+          const wish = {
+            stage,
+            entries: [...teams],
+            how: how.value,
+            lot: how.value === "lot" ? lot.value.trim() : "",
+            reason: byHand ? reason.value.trim() : "",
+          };
+          if (await organiser.do({ do: "draw", ...wish })) organiser.close();
+        }}
+      >
         <p>{t("office.draw.text")}</p>
-        <ol class="seeds">
-          {entries.map((team) => (
-            <li key={team}>{team}</li>
+        <fieldset>
+          <legend>{t("office.draw.order")}</legend>
+          {HOW.map((one) => (
+            <label key={one} class="check">
+              <input
+                type="radio"
+                name="how"
+                checked={how.value === one}
+                onChange={() => {
+                  how.value = one;
+                }}
+              />
+              {t(`office.draw.how.${one || "rank"}`)}
+            </label>
           ))}
-        </ol>
+        </fieldset>
+        {how.value === "lot" && (
+          <label class="field">
+            <span>{t("office.draw.lot")}</span>
+            <input
+              value={lot.value}
+              maxLength={64}
+              onInput={(event) => {
+                lot.value = event.currentTarget.value;
+              }}
+            />
+          </label>
+        )}
+        {how.value !== "lot" && (
+          <ol class="seeds">
+            {teams.map((team, at) => (
+              <li key={team}>
+                {team}
+                {byHand && at > 0 && (
+                  <button
+                    class="button quiet small"
+                    type="button"
+                    aria-label={t("office.draw.upOf", { team })}
+                    onClick={() => {
+                      order.value = raised(order.value, at);
+                    }}
+                  >
+                    ↑
+                  </button>
+                )}
+              </li>
+            ))}
+          </ol>
+        )}
+        {byHand && <Reason reason={reason} />}
         <a href="contest" target="_blank" rel="noreferrer">
           {t("office.draw.table")}
         </a>
-        <button
-          class="button strong"
-          type="button"
-          onClick={async () => {
-            if (await organiser.do({ do: "draw", stage, entries })) organiser.close();
-          }}
-        >
+        <button class="button strong" type="submit" disabled={!ready}>
           {t("office.draw.go", { count: entries.length })}
         </button>
-      </div>
+      </form>
     </Dialog>
   );
+}
+
+/** The same teams with the one at a place one place higher. */
+function raised(teams: readonly string[], at: number): string[] {
+  return [...teams.slice(0, at - 1), teams[at]!, teams[at - 1]!, ...teams.slice(at + 1)];
 }

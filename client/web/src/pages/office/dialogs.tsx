@@ -48,6 +48,19 @@ export function TeamDialog({ organiser, team }: Props) {
             </div>
           </div>
         )}
+        {row.contact && <p>{t("office.contact", { contact: row.contact })}</p>}
+        {row.club && <p>{t("office.club", { club: row.club })}</p>}
+        {row.substitute && (
+          <button
+            class="button"
+            type="button"
+            onClick={() => {
+              organiser.over.value = { is: "substitute", team };
+            }}
+          >
+            {t("office.substitute")}
+          </button>
+        )}
         {isIn && (
           <button
             class="button danger"
@@ -64,9 +77,10 @@ export function TeamDialog({ organiser, team }: Props) {
   );
 }
 
-/** Files that came after the end of entries: the organiser allows them, and says why. */
+/** A team or files that came after the end of entries: the organiser allows it, and says why. */
 export function ApproveDialog({ organiser, team }: Props) {
   const reason = useSignal("");
+  const row = organiser.view.value?.teams.find((one) => one.team === team);
   return (
     <Dialog title={t("office.late.title", { team })} onClose={() => organiser.close()}>
       <form
@@ -81,7 +95,7 @@ export function ApproveDialog({ organiser, team }: Props) {
           if (done) organiser.close();
         }}
       >
-        <p>{t("office.late.text")}</p>
+        <p>{t(row?.state === "waits" ? "office.late.team" : "office.late.text")}</p>
         <Reason reason={reason} />
         <button class="button strong" type="submit" disabled={!reason.value.trim()}>
           {t("office.approve")}
@@ -194,14 +208,20 @@ export function LeaveDialog({ organiser, team }: Props) {
 }
 
 /** The field for a reason, which everybody can read. */
-export function Reason({ reason }: { reason: { value: string } }) {
+export function Reason({
+  reason,
+  optional = false,
+}: {
+  reason: { value: string };
+  optional?: boolean;
+}) {
   return (
     <label class="field">
-      <span>{t("office.reason")}</span>
+      <span>{t(optional ? "office.reason.optional" : "office.reason")}</span>
       <input
         value={reason.value}
         maxLength={200}
-        required
+        required={!optional}
         onInput={(event) => {
           reason.value = event.currentTarget.value;
         }}

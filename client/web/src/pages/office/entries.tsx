@@ -80,7 +80,7 @@ interface RowProps {
 function Row({ organiser, row, open }: RowProps) {
   const { team, state, files, bot, mistakes } = row;
   const approve = () => {
-    if (state === "late") organiser.over.value = { is: "approve", team };
+    if (state === "late" || !open) organiser.over.value = { is: "approve", team };
     else void organiser.do({ do: "approve", teams: [team] });
   };
   return (
@@ -100,7 +100,7 @@ function Row({ organiser, row, open }: RowProps) {
         {files && <code title={t("office.hash")}>{files.slice(0, 8)}</code>}
       </span>
       <span class="acts">
-        {(state === "late" || (state === "waits" && open)) && (
+        {(state === "late" || state === "waits") && (
           <button
             class="button"
             type="button"

@@ -6,6 +6,7 @@ import { clockOf, momentOf } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import type { Organiser } from "./organiser";
+import { versusOf } from "./timetable";
 
 interface Props {
   organiser: Organiser;
@@ -37,7 +38,7 @@ export function MoveDialog({ organiser, view, pairing }: Props) {
         }}
       >
         <p>
-          <b>{slot.teams.join(" – ")}</b> <span class="muted">{said(slot.fixture)}</span>
+          <b>{versusOf(slot)}</b> <span class="muted">{said(slot.fixture)}</span>
         </p>
         <label class="field">
           <span>{t("office.move.court")}</span>
@@ -66,7 +67,7 @@ export function MoveDialog({ organiser, view, pairing }: Props) {
             <option value="">{t("office.move.usual")}</option>
             {others.map((one) => (
               <option key={one.pairing} value={one.pairing}>
-                {one.teams.join(" – ")}
+                {said(one.fixture)}: {versusOf(one)}
               </option>
             ))}
           </select>

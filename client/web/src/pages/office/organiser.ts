@@ -33,6 +33,12 @@ export type Over =
   | { is: "rule"; pairing: string }
   | { is: "close" }
   | { is: "draw" }
+  | { is: "pause" }
+  | { is: "later" }
+  | { is: "line" }
+  | { is: "undraw" }
+  | { is: "staff" }
+  | { is: "substitute"; team: string }
   | { is: "paper"; paper: Paper };
 
 export const PAPERS = ["schedule", "results", "certificates", "links"] as const;

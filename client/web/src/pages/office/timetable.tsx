@@ -119,12 +119,18 @@ function CourtColumn({ organiser, column, dragged }: ColumnProps) {
   );
 }
 
+/** Who plays, as far as that is known. */
+export function versusOf({ teams, who }: Slot): string {
+  return who ? who.map(said).join(" – ") : teams.join(" – ");
+}
+
 function Card({ organiser, slot }: { organiser: Organiser; slot: Slot }) {
-  const [left, right] = slot.teams;
-  const versus = `${left} – ${right}`;
+  const versus = versusOf(slot);
   return (
     <>
-      <span class="time">{slot.running ? t("office.now") : timeOf(slot.at_ms)}</span>
+      <span class="time">
+        {slot.running ? t("office.now") : slot.at_ms ? timeOf(slot.at_ms) : "–"}
+      </span>
       <b class="versus">{versus}</b>
       <span class="muted">{said(slot.fixture)}</span>
       {slot.moved && <small class="moved">{t("office.moved")}</small>}
