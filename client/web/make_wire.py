@@ -244,6 +244,7 @@ def desk_types() -> str:
     parts = [
         *_head("./"),
         'import type { Mistake, SentFile } from "./wire.gen";',
+        _constants({"TEAM_NAME_MAX": desk.TEAM_NAME_MAX}),
         *map(_interface, DESK_STRUCTS),
         f"export type AnyRequest = {names};",
     ]

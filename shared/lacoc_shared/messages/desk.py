@@ -20,6 +20,9 @@ REPLY_MAX_BYTES = 2 << 20
 PUBLISHED = "published/"
 """Path of a published contest below the address of the pages."""
 
+TEAM_NAME_MAX = 24
+"""Most characters of a team's name."""
+
 Replays = Literal["at-once", "after-stage", "after-contest"]
 """From when everybody may see the record of a game: at once, or when its stage or the contest is
 over."""

@@ -4,6 +4,8 @@ import type { Phrase } from "./phrase";
 
 import type { Mistake, SentFile } from "./wire.gen";
 
+export const TEAM_NAME_MAX = 24;
+
 export interface Files {
   robot?: SentFile | null;
   postures?: SentFile | null;

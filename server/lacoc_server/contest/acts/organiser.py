@@ -33,11 +33,9 @@ from lacoc_server.contest.league.sheet import ContestSheet
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.contest.names import look_alike, read_name
+from lacoc_shared.messages.desk import TEAM_NAME_MAX
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
-
-NAME_MAX = 24
-"""Most characters of a team's name."""
 
 
 def enter(
@@ -82,9 +80,9 @@ def team_name(text: str) -> str:
     Raises:
         UserError: if nothing of it can be seen, it is too long, or has signs that can't be printed.
     """
-    team = read_name(text, NAME_MAX)
+    team = read_name(text, TEAM_NAME_MAX)
     if team is None:
-        raise UserError(say("contest.team-name", most=NAME_MAX))
+        raise UserError(say("contest.team-name", most=TEAM_NAME_MAX))
     return team
 
 

@@ -17,18 +17,27 @@ export interface Place {
 
 /**
  * The final places, the best first: of each team in the last stage that it reached and that is over
- * for it. Teams without a final place, and those that were disqualified, are left out.
+ * for it. Teams without a final place, those that were disqualified, and those that left without
+ * a game are left out.
  */
 export function places(sheet: ContestSheet): Place[] {
   const found = new Map<string, Place>();
   const best = champions(sheet);
+  const absent = neverCame(sheet);
   for (const view of sheet.stages.toReversed()) {
     const last = view === sheet.stages.at(-1) && !sheet.planned.length;
     for (const table of view.tables) {
       for (const row of table.rows) {
         const { team, rank, out } = row;
         const open = !isOver(view) && isStillIn(view, team);
-        if (out || open || found.has(team) || (!isOver(view) && !knockedOut(sheet, team))) continue;
+        if (
+          out ||
+          open ||
+          absent.has(team) ||
+          found.has(team) ||
+          (!isOver(view) && !knockedOut(sheet, team))
+        )
+          continue;
         found.set(team, {
           team,
           rank,
@@ -41,6 +50,14 @@ export function places(sheet: ContestSheet): Place[] {
     }
   }
   return [...found.values()];
+}
+
+/** The teams that have left the contest and have played no game. */
+function neverCame(sheet: ContestSheet): Set<string> {
+  const matches = sheet.stages.flatMap((view) => view.matches);
+  const played = new Set(matches.flatMap(({ games = [] }) => games.flatMap(({ teams }) => teams)));
+  const gone = sheet.teams.filter(({ name, withdrawn }) => withdrawn && !played.has(name));
+  return new Set(gone.map(({ name }) => name));
 }
 
 /** Whether a team has lost a match after which it is out of a bracket. */

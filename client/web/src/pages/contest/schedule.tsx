@@ -14,7 +14,7 @@ import {
 } from "../../core/contest/sheet";
 import { t } from "../../i18n";
 import { addressed, chosenTeam, GameScore, matchId, TeamLink } from "./parts";
-import { courtOf, numberTitle, originTitle, scheduleTitle } from "./words";
+import { courtOf, expectedOf, numberTitle, originTitle, scheduleTitle } from "./words";
 
 /** With more matches than this, only the current round is open. */
 const OPEN_MOST = 60;
@@ -77,6 +77,7 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
   const games = match.games ?? [];
   const many = countsGames(match, view) && games.length > 0;
   const court = courtOf(sheet.running, match);
+  const when = isDecided(match) || court ? "" : expectedOf(sheet, match.pairing.id);
   const group = view.tables.length > 1 ? match.pairing.section.toUpperCase() : "";
   const wanted = chosenTeam.value
     ? match.teams.includes(chosenTeam.value)
@@ -98,6 +99,7 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
       <Place sheet={sheet} match={match} place={other} />
       <span class="notes">
         {court && <b class="live">{t("contest.on", { court })}</b>}
+        {when && <span class="expected">{when}</span>}
         {how && <span>{t(`contest.how.${how}`)}</span>}
         {match.pairing.only_if_second_won && !games.length && <span>{t("contest.ifNeeded")}</span>}
         {many && (

@@ -31,6 +31,13 @@ export function expected({ at_ms = 0, court = "" }: Pick<Coming, "at_ms" | "cour
   return at_ms && court ? t("contest.expected", { time: timeOf(at_ms), court }) : "";
 }
 
+/** About when and where a match begins that is still to come; "" if nobody knows. */
+export function expectedOf(sheet: ContestSheet, pairing: string): string {
+  const to_come = [...sheet.coming, ...sheet.later];
+  const one = to_come.find((one) => one.pairing === pairing);
+  return one ? expected(one) : "";
+}
+
 /** How many rounds are still to be drawn; a format may have its own words for that. */
 export function roundsLeft({ plan, rounds_to_draw: count }: StageView): string {
   const own = `contest.roundsLeft.${plan.format}`;

@@ -2,7 +2,7 @@
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { type EventInfo, type OwnEntry, pictureUrl } from "../../core/desk";
+import { type EventInfo, type OwnEntry, pictureUrl, TEAM_NAME_MAX } from "../../core/desk";
 import { said, t } from "../../i18n";
 import { Mistakes } from "../../ui/mistakes";
 import { dayTime } from "../office/head";
@@ -58,7 +58,7 @@ export function Form({ entrant }: Props) {
           value={team.value}
           autocomplete="off"
           spellcheck={false}
-          maxLength={40}
+          maxLength={TEAM_NAME_MAX}
           required
           aria-invalid={wrongName}
           aria-describedby="enter-why"

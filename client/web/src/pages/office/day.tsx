@@ -2,7 +2,7 @@
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { type Effect, type OfficeView, pictureUrl } from "../../core/desk";
+import { type Effect, type OfficeView, pictureUrl, TEAM_NAME_MAX } from "../../core/desk";
 import { momentOf } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { noticeText } from "../../ui/banner";
@@ -309,7 +309,7 @@ export function StaffDialog({ organiser, view }: Props) {
             <span>{t("office.staff.name")}</span>
             <input
               value={name.value}
-              maxLength={24}
+              maxLength={TEAM_NAME_MAX}
               required
               onInput={(event) => {
                 name.value = event.currentTarget.value;

@@ -61,11 +61,11 @@ function Times({ view }: { view: OfficeView }) {
             </tr>
           </thead>
           <tbody>
-            {slots.map(({ pairing, at_ms, teams, fixture }) => (
+            {slots.map(({ pairing, at_ms, teams, who, fixture }) => (
               <tr key={pairing}>
                 <td>{timeOf(at_ms)}</td>
-                <th scope="row">{teams[0]}</th>
-                <th scope="row">{teams[1]}</th>
+                <th scope="row">{who ? said(who[0]) : teams[0]}</th>
+                <th scope="row">{who ? said(who[1]) : teams[1]}</th>
                 <td>{said(fixture)}</td>
               </tr>
             ))}
@@ -124,43 +124,47 @@ function Certificates({ sheet }: { sheet: ContestSheet }) {
   );
 }
 
-/** Cards: the link of each team and of each referee, and the address of /enter while entries are open. */
+/** Cards: the links of teams, and the address of /enter while entries are open; on another sheet those of referees. */
 function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) {
   const links = organiser.links.value;
   if (!links) return <p class="muted">{t("contest.loading")}</p>;
   return (
-    <div class="cards">
-      {view.event.open && (
-        <Card qr={links.enter_qr} alt={t("office.qrEnter")} title={t("office.enterAt")}>
-          <p class="address">{links.enter}</p>
-          <p>
-            {t("office.code")}: <b class="code">{view.code}</b>
-          </p>
-        </Card>
-      )}
-      {links.teams.map(({ team, link, qr }) => (
-        <Card key={team} qr={qr} title={team}>
-          <p>{t("office.link")}</p>
-          <p class="address">{link}</p>
-        </Card>
-      ))}
-      {links.seats.map(({ court, seat, link, qr }) => (
-        <Card
-          key={`seat ${court} ${seat}`}
-          qr={qr}
-          title={t("office.seatOf", { seat: seatName(seat), court })}
-        >
-          <p>{t("office.seatLink")}</p>
-          <p class="address">{link}</p>
-        </Card>
-      ))}
-      {links.referees.map(({ court, link, qr }) => (
-        <Card key={`court ${court}`} qr={qr} title={t("office.refereeOf", { court })}>
-          <p>{t("office.refereeLink")}</p>
-          <p class="address">{link}</p>
-        </Card>
-      ))}
-    </div>
+    <>
+      <div class="cards">
+        {view.event.open && (
+          <Card qr={links.enter_qr} alt={t("office.qrEnter")} title={t("office.enterAt")}>
+            <p class="address">{links.enter}</p>
+            <p>
+              {t("office.code")}: <b class="code">{view.code}</b>
+            </p>
+          </Card>
+        )}
+        {links.teams.map(({ team, link, qr }) => (
+          <Card key={team} qr={qr} title={team}>
+            <p>{t("office.link")}</p>
+            <p class="address">{link}</p>
+          </Card>
+        ))}
+        {links.seats.map(({ court, seat, link, qr }) => (
+          <Card
+            key={`seat ${court} ${seat}`}
+            qr={qr}
+            title={t("office.seatOf", { seat: seatName(seat), court })}
+          >
+            <p>{t("office.seatLink")}</p>
+            <p class="address">{link}</p>
+          </Card>
+        ))}
+      </div>
+      <div class="cards apart">
+        {links.referees.map(({ court, link, qr }) => (
+          <Card key={`court ${court}`} qr={qr} title={t("office.refereeOf", { court })}>
+            <p>{t("office.refereeLink")}</p>
+            <p class="address">{link}</p>
+          </Card>
+        ))}
+      </div>
+    </>
   );
 }
 
