@@ -80,6 +80,8 @@ export const referee = {
   "referee.keyHelp": ["these shortcuts", "この一覧"],
   "decide.ready": ["Say ready", "代理で準備完了"],
   "decide.start": ["Start", "開始"],
+  "referee.haltFor": ["Halt because of", "理由を付けて中断"],
+  "referee.haltForOf": ["Halt: {reason}", "中断：{reason}"],
   "decide.halt": ["Halt", "中断"],
   "decide.resume": ["Resume", "再開"],
   "decide.restart": ["Restart", "再スタート"],

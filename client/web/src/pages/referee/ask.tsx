@@ -7,19 +7,13 @@ import { type DecisionName, type DecisionReply, NEED_A_REASON } from "../../core
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Standings } from "./day";
-import { type Desk, reasonOf } from "./desk";
+import { COMMON_REASONS, type Desk, reasonOf } from "./desk";
 import type { Draft } from "./drafts";
 import { Outlook } from "./outlook";
 
 const OTHER = "other";
 /** Codes of the table; with "other" the words alone are the reason. */
-const REASONS = [
-  "reason.fell-over",
-  "reason.stuck",
-  "reason.network",
-  "reason.rule",
-  OTHER,
-] as const;
+const REASONS = [...COMMON_REASONS, OTHER] as const;
 type Reason = (typeof REASONS)[number];
 
 /** Decisions after which play can go on. */

@@ -37,6 +37,14 @@ export const ANSWER_MS = 20_000;
 const BELONGS_MS = 1500;
 
 /** A decision that begins, stops or goes on with play: taken without a question. */
+/** Why a match is mostly halted: codes of the table. */
+export const COMMON_REASONS = [
+  "reason.fell-over",
+  "reason.stuck",
+  "reason.network",
+  "reason.rule",
+] as const;
+
 export type Step = "start" | "halt" | "resume";
 
 /** So long after a step a click may still be the second of a double one. */
@@ -159,10 +167,10 @@ export class Desk {
   }
 
   /** Take a step of the match; the second click of a double one does not take it again. */
-  async step(type: Step): Promise<void> {
+  async step(type: Step, reason: Phrase | string = ""): Promise<void> {
     if (this.justTaken === type) return;
     this.justTaken = type;
-    await this.decide({ type }, "");
+    await this.decide({ type }, reason);
     setTimeout(() => {
       if (this.justTaken === type) this.justTaken = null;
     }, SECOND_CLICK_MS);

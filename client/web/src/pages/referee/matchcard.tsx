@@ -9,7 +9,7 @@ import { type MessageName, said, t } from "../../i18n";
 import { seatName, team } from "../../i18n/words";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
-import type { Answer, Desk, Step } from "./desk";
+import { type Answer, COMMON_REASONS, type Desk, type Step } from "./desk";
 import * as drafts from "./drafts";
 import { Advice } from "./health";
 import { Outlook } from "./outlook";
@@ -164,6 +164,18 @@ function Groups({ desk }: { desk: Desk }) {
         <Act why={desk.whyNot("abort")} tone="danger" onAct={() => ask(drafts.abort())}>
           {t("decide.abort")}
         </Act>
+      </Group>
+      <Group title={t("referee.haltFor")}>
+        {COMMON_REASONS.map((code) => (
+          <Act
+            key={code}
+            why={desk.whyNot("halt")}
+            label={t("referee.haltForOf", { reason: said({ code }) })}
+            onAct={() => void desk.step("halt", { code, values: { note: null } })}
+          >
+            {said({ code })}
+          </Act>
+        ))}
       </Group>
       <Group title={t("referee.time")}>
         <Act why={desk.whyNot("clock")} onAct={() => ask(drafts.moveClock(court, -CLOCK_S))}>
