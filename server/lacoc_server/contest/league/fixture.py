@@ -41,7 +41,7 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
     """Say what a match is in its contest: "Semi-final 1"; arguments as in `fixture`."""
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
-    knockouts = [one for one in contest.stages if any(_is_knockout(m) for m in one.matches)]
+    knockouts = [one for one in contest.stages if any(map(_is_knockout, one.matches[:1]))]
     stage = title(contest, view.name) if len(knockouts) > 1 else None
     # Groups of a round robin have letters too: group F is no final.
     match pairing.section if view in knockouts else "":
@@ -55,7 +55,9 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
             return say("fixture.losers", stage=stage, round=pairing.round, number=number)
         case "w":
             return _winners(view, match, stage, number)
-    several = len({one.pairing.section for one in view.matches}) > 1
+    several = view.plan.settings.groups > 1 and any(
+        one.pairing.section != pairing.section for one in view.matches
+    )
     group = pairing.section.upper() if several else None
     return say("fixture.round", stage=title(contest, view.name), group=group, round=pairing.round)
 

@@ -302,6 +302,8 @@ def _needed(one: Foreseen, ends: Mapping[str, int]) -> Iterator[str]:
     pairing = one.pairing
     sources = {s.pairing for s in pairing.sources if isinstance(s, WinnerOf | LoserOf)}
     waits_for_round = one.match.state == "waits" and not sources
+    if not (sources or waits_for_round or is_final(one.match)):
+        return
     for earlier in ends:
         if stage_of(earlier) == stage_of(pairing.id) and (
             earlier in sources
