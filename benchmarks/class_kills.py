@@ -18,9 +18,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_client.phases.class_file import Document
-from lacoc_client.phases.evidence import Guessed
-from lacoc_client.phases.store import ClassStore
+from lacoc_client.workshop.phases.class_file import Document
+from lacoc_client.workshop.phases.evidence import Guessed
+from lacoc_client.workshop.phases.store import ClassStore
 
 STUDENT, FILE = "Ada", "Loco-data.txt"
 OLDEST_S = 2.0

@@ -27,12 +27,12 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from benchmarks.processes import LACOC, read_line, started
-from lacoc_client.classroom.classroom import CLASS_FILE
-from lacoc_client.design.learning.draft import NAME as DRAFT
-from lacoc_client.design.learning.draft import Draft, read_draft
-from lacoc_client.gateway.wire import Kind
-from lacoc_client.phases.class_file import ClassFile
-from lacoc_client.phases.evidence import Edited, Tried
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.workshop.classroom.classroom import CLASS_FILE
+from lacoc_client.workshop.design.learning.draft import NAME as DRAFT
+from lacoc_client.workshop.design.learning.draft import Draft, read_draft
+from lacoc_client.workshop.phases.class_file import ClassFile
+from lacoc_client.workshop.phases.evidence import Edited, Tried
 
 _EDIT_S, _TRY_S = 5.0, 10.0
 _AGAIN_S = 0.2

@@ -28,7 +28,7 @@ from playwright.sync_api import Browser, Locator, Page, TimeoutError
 from benchmarks.own_page import SLOW_SCREEN, chromium
 from benchmarks.processes import LACOC, free_port, hush, read_line, started
 from lacoc_robots.library import sample_gait_files
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_shared.seat import Phase
 
 TEAMS = ("Ants", "六脚の会", "Crabs & Co", "Dogs", "Eels", "Foxes", "Gnus", "Hens")

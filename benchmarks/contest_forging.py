@@ -25,13 +25,22 @@ from msgspec.structs import replace
 
 from benchmarks import contest_played, game_forger
 from benchmarks.forger import Forger
-from lacoc_server.contest import organiser
-from lacoc_server.contest import sheet as sheets
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.publish import (
+    ENTRIES,
+    FACTS,
+    GAMES,
+    RECORDS,
+    SHEET,
+    STANDINGS,
+    tables,
+)
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league import sheet as sheets
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
@@ -47,7 +56,6 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.publish import ENTRIES, FACTS, GAMES, RECORDS, SHEET, STANDINGS, tables
 from lacoc_server.contest.verify.games import check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, decisions
 from lacoc_server.contest.verify.published import check_published, read

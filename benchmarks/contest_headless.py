@@ -29,7 +29,7 @@ from distributed import LocalCluster
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import installed_robots, robot_folder
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.cluster import Cluster
 from lacoc_server.contest.headless.play import Engine, play
 from lacoc_server.contest.headless.pool import Pool

@@ -28,7 +28,7 @@ import psutil
 
 from benchmarks.machines_lost import Relay
 from benchmarks.processes import LACOC, free_port, read_line, started
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, Played, Recalled

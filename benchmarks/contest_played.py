@@ -5,7 +5,7 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Self
 
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
 from lacoc_shared.words import Phrase
 

@@ -24,7 +24,7 @@ from typing import Any
 import msgspec
 
 from lacoc_robots.library import sample_gait_files
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
@@ -34,9 +34,9 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import due
-from lacoc_server.contest.live.calling import Seen
-from lacoc_server.contest.live.whereabouts import Known, Pace
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.schedule import due
+from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
 from lacoc_shared.codec import encode
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import DESK

@@ -41,9 +41,9 @@ from typing import Any, NamedTuple
 import msgspec
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.director.courts import LAST_S, CourtNow
-from lacoc_client.director.director import AHEAD_S, Director
-from lacoc_client.director.plan import CUTS_MOST, MINUTE_S
+from lacoc_client.web.director.courts import LAST_S, CourtNow
+from lacoc_client.web.director.director import AHEAD_S, Director
+from lacoc_client.web.director.plan import CUTS_MOST, MINUTE_S
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.messages import Frame
 from lacoc_shared.record.schema import Setup

@@ -17,8 +17,8 @@ from contextlib import ExitStack
 from typing import Any
 
 from benchmarks.measured import NAME, MeasuredCourt, measured_court
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
 from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Start
 from lacoc_shared.keyspace import Keys

@@ -29,9 +29,9 @@ import msgspec
 
 from benchmarks import alone
 from benchmarks.processes import free_port
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access

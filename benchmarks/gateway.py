@@ -19,8 +19,8 @@ from typing import Any
 
 from benchmarks.processes import LACOC, Opened, ask, read_line, started, used_s
 from benchmarks.processes import court as open_court
-from lacoc_client.controller import Controller
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
 

@@ -34,9 +34,9 @@ from urllib.parse import urlsplit
 
 from benchmarks.processes import LACOC
 from benchmarks.spectators import Page
-from lacoc_client.asking import NoCourt, NotNow
-from lacoc_client.team_way import where
-from lacoc_server.contest import organiser
+from lacoc_client.play.asking import NoCourt, NotNow
+from lacoc_client.play.team_way import where
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Closed, Played, new

@@ -25,8 +25,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.processes import free_port
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.codec import decode

@@ -9,7 +9,7 @@ from typing import Any
 
 from benchmarks.echo import PING, PONG
 from benchmarks.processes import court, read_line, started
-from lacoc_client.controller import Controller
+from lacoc_client.play.controller import Controller
 from lacoc_shared.network.session import Mailbox, Publisher, open_client
 from lacoc_shared.seat import BEAT_S, Phase
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import psutil
 
 from benchmarks.processes import LACOC, hush, read_line, started
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played

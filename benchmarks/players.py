@@ -13,8 +13,8 @@ import time
 from contextlib import ExitStack
 from typing import Any
 
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
 from lacoc_shared.decisions import Start
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase

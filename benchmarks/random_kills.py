@@ -22,9 +22,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from benchmarks.processes import LACOC, free_port
-from lacoc_client.asking import NoCourt, NotNow
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.asking import NoCourt, NotNow
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.contest.file import load
 from lacoc_shared.contest.secrets import Secrets
 from lacoc_shared.decisions import DECISIONS, Decision

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from prometheus_client.parser import text_string_to_metric_families
 
-from lacoc_client.controller import Controller
+from lacoc_client.play.controller import Controller
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
 

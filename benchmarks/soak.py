@@ -26,9 +26,9 @@ from typing import NamedTuple
 import psutil
 
 from benchmarks.processes import LACOC, Opened, ask, court, hush, read_line, started
-from lacoc_client.asking import NoCourt
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.asking import NoCourt
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.decisions import Decision, Next, Official, Start
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client

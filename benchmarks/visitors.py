@@ -18,7 +18,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from benchmarks.spectators import Page
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 

@@ -32,7 +32,7 @@ from lacoc_shared.messages import SentFile
 
 Numbers = npt.NDArray[np.float32]
 
-WALK = "lacoc_server.simulate.environments:lacoc/Walk-v0"
+WALK = "lacoc:lacoc/Walk-v0"
 BEATS = 5
 """Beats in a step: a joint moves by at most 12 degrees in it."""
 ENVIRONMENTS = 4

@@ -19,19 +19,27 @@ from typing import Any
 import msgspec
 
 from lacoc_arenas import brains
-from lacoc_client import simulation
-from lacoc_client.classroom import cards, tournament
-from lacoc_client.design import folder, requests
-from lacoc_client.design.learning import diary, draft, learner, rules
-from lacoc_client.design.table import FileRow, FileTable
-from lacoc_client.gateway import scores
-from lacoc_client.gateway.page import TRY_LATER
-from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
-from lacoc_client.gateway.wire import Kind
-from lacoc_client.office import links
-from lacoc_client.phases import facts
-from lacoc_server.contest import sheet
-from lacoc_server.contest.league import contest, decided, draws, matches, pairing, rating, standings
+from lacoc_client.play import simulation
+from lacoc_client.web.gateway import scores
+from lacoc_client.web.gateway.page import TRY_LATER
+from lacoc_client.web.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.office import links
+from lacoc_client.workshop.classroom import cards, tournament
+from lacoc_client.workshop.design import folder, requests
+from lacoc_client.workshop.design.learning import diary, draft, learner, rules
+from lacoc_client.workshop.design.table import FileRow, FileTable
+from lacoc_client.workshop.phases import facts
+from lacoc_server.contest.league import (
+    contest,
+    decided,
+    draws,
+    matches,
+    pairing,
+    rating,
+    sheet,
+    standings,
+)
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.formats import format as formats
 from lacoc_server.doors.inbox import NAME_MAX

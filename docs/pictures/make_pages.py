@@ -31,7 +31,7 @@ from show import Show
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.record.schema import Setup
 

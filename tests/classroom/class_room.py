@@ -11,7 +11,7 @@ from lacoc_process import Lacoc
 from page_connection import PageConnection
 from waiting import LIMIT_S
 
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 
 
 class ClassRoom:

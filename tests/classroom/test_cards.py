@@ -7,10 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.classroom.cards import QUIET_S, Seen, card, failure, foot_runs, hand_times, stuck
-from lacoc_client.phases.evidence import Evidence, Hand, Moved, Tried
-from lacoc_client.phases.facts import TrialFacts
-from lacoc_client.phases.progress import progress
+from lacoc_client.workshop.classroom.cards import (
+    QUIET_S,
+    Seen,
+    card,
+    failure,
+    foot_runs,
+    hand_times,
+    stuck,
+)
+from lacoc_client.workshop.phases.evidence import Evidence, Hand, Moved, Tried
+from lacoc_client.workshop.phases.facts import TrialFacts
+from lacoc_client.workshop.phases.progress import progress
 from lacoc_shared.studio import TrialReply
 
 WALKS: dict[str, Any] = {

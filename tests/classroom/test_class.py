@@ -21,7 +21,7 @@ from typer.testing import CliRunner
 from waiting import LIMIT_S
 
 from lacoc_client.commands import class_
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_robots.library import find_robot
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lacoc_client.gateway.guesses import Guesses
+from lacoc_client.web.gateway.guesses import Guesses
 from lacoc_shared.contest.codes import new_code, read_code
 
 

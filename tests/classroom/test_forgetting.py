@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 from aside import run_async
 
-from lacoc_client.classroom.class_student import ClassStudent
-from lacoc_client.classroom.classroom import CLASS_FILE, Classroom
-from lacoc_client.design.learning.diary import Diary
-from lacoc_client.design.learning.draft import Draft
-from lacoc_client.design.learning.keeper import Keeper
-from lacoc_client.design.requests import Hello
-from lacoc_client.design.studios.asker import Asker
-from lacoc_client.design.studios.studios import Studios
-from lacoc_client.design.table import FileTable
-from lacoc_client.phases.class_file import ClassFile
-from lacoc_client.phases.evidence import Moved, Named
+from lacoc_client.workshop.classroom.class_student import ClassStudent
+from lacoc_client.workshop.classroom.classroom import CLASS_FILE, Classroom
+from lacoc_client.workshop.design.learning.diary import Diary
+from lacoc_client.workshop.design.learning.draft import Draft
+from lacoc_client.workshop.design.learning.keeper import Keeper
+from lacoc_client.workshop.design.requests import Hello
+from lacoc_client.workshop.design.studios.asker import Asker
+from lacoc_client.workshop.design.studios.studios import Studios
+from lacoc_client.workshop.design.table import FileTable
+from lacoc_client.workshop.phases.class_file import ClassFile
+from lacoc_client.workshop.phases.evidence import Moved, Named
 from lacoc_shared.mistakes import UserError
 
 WORD = "a-word-that-only-ada-has"
@@ -133,9 +133,9 @@ def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
 FULL = """
 import asyncio, resource, signal, sys
 from pathlib import Path
-from lacoc_client.design.learning.diary import Diary
-from lacoc_client.design.learning.keeper import Keeper
-from lacoc_client.phases.evidence import Moved
+from lacoc_client.workshop.design.learning.diary import Diary
+from lacoc_client.workshop.design.learning.keeper import Keeper
+from lacoc_client.workshop.phases.evidence import Moved
 from lacoc_shared.mistakes import UserError
 
 async def forget(path):

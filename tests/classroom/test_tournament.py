@@ -8,8 +8,8 @@ import psutil
 import pytest
 from aside import run_async
 
-from lacoc_client.classroom.tournament import Tournament, TournamentState
-from lacoc_client.phases.export import free_name
+from lacoc_client.workshop.classroom.tournament import Tournament, TournamentState
+from lacoc_client.workshop.phases.export import free_name
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.messages import SentFile

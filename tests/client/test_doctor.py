@@ -17,9 +17,9 @@ from court_stub import CourtStub
 from ports import free_port
 from proxies import issue
 
-from lacoc_client.doctor import machine as doctor
-from lacoc_client.doctor.link import link
-from lacoc_client.doctor.machine import Status
+from lacoc_client.commands.checks import machine as doctor
+from lacoc_client.commands.checks.link import link
+from lacoc_client.commands.checks.machine import Status
 from lacoc_shared.command import cli
 from lacoc_shared.contest.access import Access
 from lacoc_shared.words import render, say
@@ -88,7 +88,7 @@ def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
     code = (
-        "from lacoc_client.doctor import machine as doctor; import json; "
+        "from lacoc_client.commands.checks import machine as doctor; import json; "
         "found = [one.in_words() for one in doctor.packages()]; "
         "print(json.dumps([[f.about, f.status, f.found, f.todo] for f in found]))"
     )

@@ -14,12 +14,12 @@ from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket
 from waiting import LIMIT_S
 
-from lacoc_client.doctor.machine import Finding, Status
-from lacoc_client.doctor.pages import _reached, pages, plain_courts
-from lacoc_client.gateway import server
-from lacoc_client.gateway.files import PageFiles
-from lacoc_client.gateway.health import Health
-from lacoc_client.gateway.site import page_routes
+from lacoc_client.commands.checks.machine import Finding, Status
+from lacoc_client.commands.checks.pages import _reached, pages, plain_courts
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.files import PageFiles
+from lacoc_client.web.gateway.health import Health
+from lacoc_client.web.gateway.site import page_routes
 from lacoc_shared.contest import file as contests
 from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import Phrase

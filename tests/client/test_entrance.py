@@ -5,7 +5,7 @@ import typer
 from typer.testing import CliRunner
 
 from lacoc_client.commands import entrance
-from lacoc_client.link.event import Event, Found
+from lacoc_client.play.link.event import Event, Found
 from lacoc_shared.command import options
 from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.link import Link

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.terminal.pipe_keys import PipeKeys
+from lacoc_client.play.terminal.pipe_keys import PipeKeys
 from lacoc_shared.gait.key_script import KeyScript
 from lacoc_shared.words import render
 

@@ -14,10 +14,10 @@ from proxies import issue
 from starlette.applications import Starlette
 from waiting import LIMIT_S
 
-from lacoc_client.gateway import server
-from lacoc_client.gateway.home import Home
-from lacoc_client.gateway.site import event_route
-from lacoc_client.link.event import find
+from lacoc_client.play.link.event import find
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.home import Home
+from lacoc_client.web.gateway.site import event_route
 from lacoc_shared.contest.link import Link
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.certificate import fingerprint

@@ -13,9 +13,9 @@ import pytest
 from court_process import CourtProcess, OpenCourt
 from waiting import LIMIT_S
 
-from lacoc_client.asking import NoAnswer
 from lacoc_client.commands.referee import _default_name, _show_reply
-from lacoc_client.referee import RefereeClient
+from lacoc_client.play.asking import NoAnswer
+from lacoc_client.play.referee import RefereeClient
 from lacoc_shared.command import cli
 from lacoc_shared.decisions import DECISIONS
 from lacoc_shared.messages import DecisionReply

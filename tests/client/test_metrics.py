@@ -12,7 +12,7 @@ from court_process import OpenCourt
 from prometheus_client.parser import text_string_to_metric_families
 from waiting import LIMIT_S
 
-from lacoc_client.controller import Controller
+from lacoc_client.play.controller import Controller
 from lacoc_shared import __version__
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import Level

@@ -9,9 +9,9 @@ import pytest
 from rich.console import Console
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.terminal import words
-from lacoc_client.terminal.board_picture import BoardPicture, Field, Grid, seat_letters
-from lacoc_client.terminal.plain import event_dict, frame_dict
+from lacoc_client.play.terminal import words
+from lacoc_client.play.terminal.board_picture import BoardPicture, Field, Grid, seat_letters
+from lacoc_client.play.terminal.plain import event_dict, frame_dict
 from lacoc_shared.codec import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
 from lacoc_shared.messages.office import WAITING

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_client.own_files import OwnFiles
+from lacoc_client.play.own_files import OwnFiles
 from lacoc_robots.library import sample_gait_files
 from lacoc_robots.seat_files import SeatFiles, as_text, gaits_in, gather, remarks, with_level_b
 from lacoc_shared.gait.cells import leg_labels

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.terminal.keys import KeyDecoder
+from lacoc_client.play.terminal.keys import KeyDecoder
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from ports import free_port
 
-from lacoc_client.asking import NoCourt, NotNow, Patience
+from lacoc_client.play.asking import NoCourt, NotNow, Patience
 from lacoc_shared.command import cli
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NotConnected, Session, open_client, open_court

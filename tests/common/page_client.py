@@ -20,7 +20,7 @@ from websockets.frames import Opcode
 from websockets.sync.client import ClientConnection, connect
 from websockets.uri import parse_uri
 
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase

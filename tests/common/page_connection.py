@@ -10,7 +10,7 @@ from waiting import LIMIT_S
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 
 _OF_COURTS = (Kind.FRAME, Kind.EVENT, Kind.SHEET, Kind.SCENE, Kind.HEALTH)
 """Kinds of messages that a gateway passes on from a court; the connection does not keep them."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from benchmarks.contest_played import CONTEST, FINAL, SWISS
 
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore

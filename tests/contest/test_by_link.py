@@ -10,8 +10,8 @@ from lacoc_process import run_lacoc, started
 from ports import free_port
 from waiting import LIMIT_S
 
-from lacoc_server.contest.certificate import make_certificate
-from lacoc_server.contest.organiser import enter
+from lacoc_server.contest.acts.certificate import make_certificate
+from lacoc_server.contest.acts.organiser import enter
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.link import Link
 

@@ -7,7 +7,7 @@ from cup import NOW_MS, Cup
 
 from lacoc_server.contest.league.facts import Called, Moved, Played, Recalled, Withdrawn
 from lacoc_server.contest.league.fixture import fixture
-from lacoc_server.contest.live.calling import (
+from lacoc_server.contest.league.timetable.calling import (
     LOST_MS,
     Ended,
     Seen,

@@ -13,7 +13,7 @@ from benchmarks.contest_played import CONTEST, SWISS, enter
 from distributed import LocalCluster
 from waiting import until
 
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless import cluster as cluster_module
 from lacoc_server.contest.headless.cluster import Cluster
 from lacoc_server.contest.headless.pool import Pool

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from lacoc_robots.library import robot_folder, sample_gait_files
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.kept.applications import Applications
@@ -16,10 +16,10 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Closed, Drawn, Played, Withdrawn, new
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import due, playable
-from lacoc_server.contest.live.calling import Seen
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.schedule import due, playable
+from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
 from lacoc_server.contest.live.office import Office
-from lacoc_server.contest.live.whereabouts import Known, Pace
 from lacoc_server.contest.verify.history import check_history
 from lacoc_shared.codec import encode
 from lacoc_shared.gait.text import read_gait

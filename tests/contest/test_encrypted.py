@@ -11,11 +11,11 @@ from lacoc_process import started
 from ports import free_port
 from waiting import LIMIT_S, until
 
-from lacoc_client.spectator import Spectator
-from lacoc_server.contest.certificate import make_certificate
+from lacoc_client.play.spectator import Spectator
+from lacoc_server.contest.acts.certificate import make_certificate
+from lacoc_server.contest.acts.organiser import enter
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.live import venue
-from lacoc_server.contest.organiser import enter
 from lacoc_shared.contest import file as contests
 from lacoc_shared.network.session import open_client
 from lacoc_shared.record.reader import Record

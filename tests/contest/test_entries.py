@@ -16,7 +16,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, robot_folder
 from lacoc_robots.seat_files import gaits_in
 from lacoc_server.commands.contest import playing
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import EntryFolder, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder

@@ -16,14 +16,14 @@ from lacoc_process import Lacoc
 from waiting import LIMIT_S, until
 
 from lacoc_arenas import time_limit
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import play
 from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
 from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.publish import tables
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
-from lacoc_server.contest.publish import tables
 from lacoc_server.contest.verify.published import check_published, read
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack

@@ -19,12 +19,12 @@ sys.path.append(str(Path(__file__).parents[1] / "server"))
 from msgspec.structs import replace
 from stage import QUICK, join, setup
 
-from lacoc_client.controller import Controller, Hold
-from lacoc_client.team_way import where
+from lacoc_client.play.controller import Controller, Hold
+from lacoc_client.play.team_way import where
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import OpenStage
-from lacoc_server.contest.live.calling import LOST_MS, Seen, calls, is_open_call
+from lacoc_server.contest.league.timetable.calling import LOST_MS, Seen, calls, is_open_call
 from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match

@@ -13,11 +13,11 @@ from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS
 
 from lacoc_client.film import contest as film_contest
 from lacoc_server.commands.contest.checking import NOT_PROVEN
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.publish import GAMES, STANDINGS
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Closed, new
-from lacoc_server.contest.publish import GAMES, STANDINGS
 from lacoc_shared.mistakes import UserError
 
 Run = Callable[..., tuple[int, str, str]]

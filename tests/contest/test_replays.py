@@ -4,11 +4,11 @@ from pathlib import Path
 
 from msgspec.structs import replace
 
-from lacoc_client.gateway.recordings import Recordings
-from lacoc_client.gateway.shown import Shown
-from lacoc_server.contest import organiser
+from lacoc_client.web.gateway.recordings import Recordings
+from lacoc_client.web.gateway.shown import Shown
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.replays import shown
-from lacoc_server.contest.sheet import ContestSheet, encode
+from lacoc_server.contest.league.sheet import ContestSheet, encode
 from lacoc_shared.contest import file as contests
 from lacoc_shared.messages.desk import Replays
 

@@ -27,6 +27,7 @@ from lacoc_server.contest.desk.service import DeskService
 from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.machine import Machine, Retired
+from lacoc_server.contest.kept.publish import entries_of
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import (
     Called,
@@ -37,7 +38,6 @@ from lacoc_server.contest.league.facts import (
     generation,
     new,
 )
-from lacoc_server.contest.publish import entries_of
 from lacoc_server.contest.standby.following import Ended
 from lacoc_server.contest.standby.lookout import Lookout
 from lacoc_server.contest.standby.messages import AnyAsk, Knock, Known, Part, Step

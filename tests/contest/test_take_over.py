@@ -17,7 +17,7 @@ from power_cut import cut_power, everything_of
 from waiting import LIMIT_S, until
 
 from lacoc_server.commands.contest.checking import NOT_PROVEN
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, Played, Recalled, TakenOver

@@ -10,7 +10,7 @@ from lacoc_process import run_lacoc, started
 from ports import free_port
 from waiting import LIMIT_S
 
-from lacoc_server.contest.organiser import enter
+from lacoc_server.contest.acts.organiser import enter
 
 TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
 PEOPLE = TEAMS[:2]

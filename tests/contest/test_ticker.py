@@ -17,9 +17,9 @@ from lacoc_server.contest.league.facts import (
     Played,
     Recalled,
 )
-from lacoc_server.contest.live.calling import Seen
-from lacoc_server.contest.live.ticker import Ticker
-from lacoc_server.contest.live.whereabouts import Known, Pace
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.ticker import Ticker
+from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
 from lacoc_shared.words import Phrase, render, say
 
 PACE = Pace(now_ms=0, game_ms=1, least_rest_ms=0)

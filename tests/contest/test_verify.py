@@ -18,14 +18,15 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from lacoc_arenas.arena import load
-from lacoc_server.contest import organiser
-from lacoc_server.contest import sheet as sheets
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.headless.pool import setup_of
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
+from lacoc_server.contest.kept.publish import SHEET, tables
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league import sheet as sheets
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
@@ -43,7 +44,6 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.publish import SHEET, tables
 from lacoc_server.contest.verify.alone import Checked, Side, check_inputs, ends_alike
 from lacoc_server.contest.verify.check import check
 from lacoc_server.contest.verify.games import Found, check_game, games_of

@@ -14,10 +14,10 @@ from lacoc_server.contest.league.facts import (
     Settings,
     Withdrawn,
 )
-from lacoc_server.contest.league.schedule import assign
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.schedule import assign
+from lacoc_server.contest.league.timetable.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_server.contest.league.titles import titles
-from lacoc_server.contest.live.calling import Seen
-from lacoc_server.contest.live.whereabouts import Courts, Pace, game_ms, whereabouts
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import faults, render
 

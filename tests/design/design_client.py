@@ -4,7 +4,7 @@ from typing import Any
 
 from page_connection import PageConnection, Refused
 
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 
 __all__ = ["DesignClient", "Refused"]
 

@@ -20,8 +20,8 @@ from page_connection import PageConnection
 from ports import free_port
 from waiting import LIMIT_S, until
 
-from lacoc_client.design import requests
-from lacoc_client.gateway.wire import Kind, Unreadable
+from lacoc_client.web.gateway.wire import Kind, Unreadable
+from lacoc_client.workshop.design import requests
 from lacoc_robots.library import find_robot
 from lacoc_shared.studio import STUDIO_MAX_BYTES
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lacoc_client.design.files import file_bytes, read_file
-from lacoc_client.design.folder import ABSENT, Conflict, Folder, Saved
-from lacoc_client.design.saving.text_edit import edit_text
-from lacoc_client.design.table import FileRow, FileTable, gait_of, page_table
+from lacoc_client.workshop.design.files import file_bytes, read_file
+from lacoc_client.workshop.design.folder import ABSENT, Conflict, Folder, Saved
+from lacoc_client.workshop.design.saving.text_edit import edit_text
+from lacoc_client.workshop.design.table import FileRow, FileTable, gait_of, page_table
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.text import read_gait

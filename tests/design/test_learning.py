@@ -9,8 +9,8 @@ from design_client import DesignClient
 from power_cut import cut_power
 from test_design_page import Gateway, sample
 
-from lacoc_client.design.designer import EVIDENCE_FILE
-from lacoc_client.phases.evidence import (
+from lacoc_client.workshop.design.designer import EVIDENCE_FILE
+from lacoc_client.workshop.phases.evidence import (
     Checked,
     Compared,
     Edited,
@@ -19,7 +19,7 @@ from lacoc_client.phases.evidence import (
     Tried,
     Voted,
 )
-from lacoc_client.phases.store import ClassStore
+from lacoc_client.workshop.phases.store import ClassStore
 
 pytestmark = pytest.mark.slow
 

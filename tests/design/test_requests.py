@@ -5,8 +5,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from lacoc_client.design.requests import EditAsk, read
-from lacoc_client.gateway.wire import Unreadable
+from lacoc_client.web.gateway.wire import Unreadable
+from lacoc_client.workshop.design.requests import EditAsk, read
 
 ROW = {"key": 0, "posture": 0, "angles_deg": [0.0] * 18}
 

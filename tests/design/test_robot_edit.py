@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.design.saving.robot_edit import RobotEntry, edit_robot
+from lacoc_client.workshop.design.saving.robot_edit import RobotEntry, edit_robot
 from lacoc_robots.library import find_robot
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot_file import read_robot

@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from lacoc_client.design.saving.sheet_xml import NotEditable, SheetXml
+from lacoc_client.workshop.design.saving.sheet_xml import NotEditable, SheetXml
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 PLAIN = f"""<?xml version="1.0" encoding="UTF-8"?>

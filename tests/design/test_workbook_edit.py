@@ -19,7 +19,7 @@ from openpyxl.formatting.rule import CellIsRule
 from openpyxl.styles import PatternFill
 from openpyxl.worksheet.datavalidation import DataValidation
 
-from lacoc_client.design.saving.workbook_edit import edit_workbook, formulas_in
+from lacoc_client.workshop.design.saving.workbook_edit import edit_workbook, formulas_in
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait.cells import leg_labels, posture_cells
 from lacoc_shared.gait.tables import PostureTable

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lacoc_client.director.courts import CourtNow
-from lacoc_client.director.director import AHEAD_S, RESULT_S, Director
-from lacoc_client.director.moments import Track
-from lacoc_client.director.plan import CUTS_MOST, MINUTE_S
-from lacoc_client.director.results import Result, Results
-from lacoc_client.director.stakes import USUAL, stake
+from lacoc_client.web.director.courts import CourtNow
+from lacoc_client.web.director.director import AHEAD_S, RESULT_S, Director
+from lacoc_client.web.director.moments import Track
+from lacoc_client.web.director.plan import CUTS_MOST, MINUTE_S
+from lacoc_client.web.director.results import Result, Results
+from lacoc_client.web.director.stakes import USUAL, stake
 from lacoc_shared.seat import BEAT_S, Phase
 from lacoc_shared.words import Phrase, say
 

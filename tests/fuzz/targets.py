@@ -11,7 +11,7 @@ from typing import Any
 import doors
 
 from lacoc_arenas.arena import Arena, from_settings
-from lacoc_client.gateway import wire
+from lacoc_client.web.gateway import wire
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.match.entry import Entry
 from lacoc_server.world.world import World

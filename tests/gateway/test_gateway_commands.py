@@ -14,7 +14,7 @@ from lacoc_process import Lacoc, run_lacoc
 from page_client import PageClient
 from waiting import LIMIT_S
 
-from lacoc_client.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import render

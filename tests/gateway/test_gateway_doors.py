@@ -18,10 +18,10 @@ from waiting import LIMIT_S, until
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from lacoc_client.gateway import wire
-from lacoc_client.gateway.home import ACTING_MOST
-from lacoc_client.gateway.page import TRY_LATER
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.home import ACTING_MOST
+from lacoc_client.web.gateway.page import TRY_LATER
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase
 

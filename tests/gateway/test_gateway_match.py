@@ -11,7 +11,7 @@ from page_client import PageClient, Refused, SleepyPage, refusal, x_of
 from venue import REFEREE, TOKENS, Venue
 from waiting import LIMIT_S
 
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.codec import encode
 from lacoc_shared.messages import Event
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag

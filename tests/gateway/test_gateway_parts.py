@@ -25,19 +25,19 @@ from starlette.websockets import WebSocket
 from waiting import LIMIT_S
 from websockets.sync.client import connect
 
-from lacoc_client.asking import NoAnswer, NoCourt, NotNow
-from lacoc_client.controller import Hold
-from lacoc_client.event_log import EventLog
-from lacoc_client.gateway import home, page_seat, page_socket, published, server, wire
-from lacoc_client.gateway.answers import Answers
-from lacoc_client.gateway.browser import open_browser
-from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.guard import Guard
-from lacoc_client.gateway.page_seat import PageSeat
-from lacoc_client.gateway.recordings import Recordings
-from lacoc_client.gateway.site import PATHS, sheet_route
-from lacoc_client.gateway.viewer import Frames, Viewer
+from lacoc_client.play.asking import NoAnswer, NoCourt, NotNow
+from lacoc_client.play.controller import Hold
+from lacoc_client.web.gateway import home, page_seat, page_socket, published, server, wire
+from lacoc_client.web.gateway.answers import Answers
+from lacoc_client.web.gateway.browser import open_browser
+from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.web.gateway.guard import Guard
+from lacoc_client.web.gateway.page_seat import PageSeat
+from lacoc_client.web.gateway.recordings import Recordings
+from lacoc_client.web.gateway.site import PATHS, sheet_route
+from lacoc_client.web.gateway.viewer import Frames, Viewer
 from lacoc_shared.contest.access import Access
+from lacoc_shared.event_log import EventLog
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.office.hand_ins import HandIns
+from lacoc_client.web.office.hand_ins import HandIns
 from lacoc_shared.codec import encode
 from lacoc_shared.messages.desk import Apply, Change, Files, Own
 from lacoc_shared.mistakes import UserError

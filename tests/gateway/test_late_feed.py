@@ -3,13 +3,13 @@
 import time
 from typing import Any
 
-from lacoc_client.gateway import wire
-from lacoc_client.gateway.feed import CourtFeed
-from lacoc_client.gateway.late_feed import LateFeed
-from lacoc_client.gateway.programme import Channel
-from lacoc_client.gateway.threads import Threads
-from lacoc_client.gateway.viewer import Viewer
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.feed import CourtFeed
+from lacoc_client.web.gateway.late_feed import LateFeed
+from lacoc_client.web.gateway.programme import Channel
+from lacoc_client.web.gateway.threads import Threads
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.contest.access import Access
 
 BEHIND_S = 10.0

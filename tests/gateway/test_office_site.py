@@ -7,8 +7,8 @@ from starlette.applications import Starlette
 from waiting import LIMIT_S
 from websockets.sync.client import connect
 
-from lacoc_client.gateway import server
-from lacoc_client.office.site import DeskSite
+from lacoc_client.web.gateway import server
+from lacoc_client.web.office.site import DeskSite
 
 
 def test_a_page_learns_the_address_of_the_network() -> None:

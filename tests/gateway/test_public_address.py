@@ -21,7 +21,7 @@ from waiting import LIMIT_S, until
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
-from lacoc_client.gateway import guard, page_socket, server
+from lacoc_client.web.gateway import guard, page_socket, server
 from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.certificate import Certificate, Pair

@@ -13,8 +13,8 @@ from page_client import PageClient, Refused
 from venue import REFEREE, TOKENS, Venue
 from waiting import LIMIT_S
 
-from lacoc_client.controller import Controller
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.play.controller import Controller
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.contest.file import secrets_path
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.network.session import Session, open_client

@@ -27,7 +27,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.schedule import Assignment, assign
+from lacoc_server.contest.league.timetable.schedule import Assignment, assign
 
 _Kind = TypeVar("_Kind", bound=AnyFact)
 

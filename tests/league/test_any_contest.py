@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import Played, decode, encode
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import Assignment
+from lacoc_server.contest.league.timetable.schedule import Assignment
 
 FORMAT_NAMES = ("round-robin", "swiss", "sequential", "single-knockout", "double-knockout")
 

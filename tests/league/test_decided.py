@@ -20,7 +20,7 @@ from lacoc_server.contest.league.facts import (
     Withdrawn,
     new,
 )
-from lacoc_server.contest.sheet import sheet
+from lacoc_server.contest.league.sheet import sheet
 from lacoc_shared.words import render
 
 TEAMS = ("t001", "t004")

@@ -34,7 +34,7 @@ from lacoc_server.contest.league.formats.knockout import double_bracket, single_
 from lacoc_server.contest.league.formats.round_robin import groups
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.pairing import Entry, WinnerOf
-from lacoc_server.contest.league.schedule import assign
+from lacoc_server.contest.league.timetable.schedule import assign
 from lacoc_shared.mistakes import UserError
 
 FIRST = "s:w1.1"

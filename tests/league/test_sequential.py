@@ -12,7 +12,7 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Drawn, Planned, Played, Replaced, Settings, Withdrawn
 from lacoc_server.contest.league.formats.sequential import lead
 from lacoc_server.contest.league.matches import Game
-from lacoc_server.contest.league.schedule import Assignment
+from lacoc_server.contest.league.timetable.schedule import Assignment
 
 TEAMS = 4
 LAP = 3

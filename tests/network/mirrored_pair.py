@@ -18,10 +18,10 @@ from page_client import PageClient
 from slow_link import SlowLink
 from waiting import LIMIT_S, until
 
-from lacoc_client.controller import Controller, Seen
-from lacoc_client.gateway.wire import Kind
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.controller import Controller, Seen
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import KeySeat

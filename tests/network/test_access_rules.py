@@ -7,8 +7,8 @@ import pytest
 from court_stub import KEYS, TOKENS, CourtStub
 from waiting import until
 
-from lacoc_client.controller import Controller
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Scene, Sheet
 from lacoc_shared.network.session import Session, open_client

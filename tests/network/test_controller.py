@@ -10,9 +10,9 @@ from court_stub import BOOK, KEYS, SEATS, SLOW, TOKENS, WRONG, CourtStub
 from slow_link import SlowLink
 from waiting import until
 
-from lacoc_client.asking import NotNow
-from lacoc_client.controller import Controller, Hold
-from lacoc_client.gateway.seat_thread import SeatThread
+from lacoc_client.play.asking import NotNow
+from lacoc_client.play.controller import Controller, Hold
+from lacoc_client.web.gateway.seat_thread import SeatThread
 from lacoc_robots.seat_files import SeatFiles, to_send
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import seal

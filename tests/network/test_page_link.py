@@ -13,11 +13,11 @@ from aside import run_async
 from court_stub import TOKENS, CourtStub
 from waiting import LIMIT_S, until
 
-from lacoc_client.controller import Controller, Seen
-from lacoc_client.gateway import wire
-from lacoc_client.gateway.answers import Answers
-from lacoc_client.gateway.page_seat import PageSeat
-from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.play.controller import Controller, Seen
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.answers import Answers
+from lacoc_client.web.gateway.page_seat import PageSeat
+from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_shared.contest.access import Access
 from lacoc_shared.inputs import HeardSeat, KeySeat, SilentSeat
 from lacoc_shared.network.session import Session

@@ -7,9 +7,9 @@ import pytest
 from court_stub import KEYS, WHISTLE, CourtStub, make_event, make_scene
 from waiting import until
 
-from lacoc_client.asking import understand
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.asking import understand
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.inputs import Decide

@@ -13,7 +13,7 @@ from court_stub import TOKENS, CourtStub
 from proxies import issue
 from waiting import until
 
-from lacoc_client.controller import Controller, Hold
+from lacoc_client.play.controller import Controller, Hold
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import address
 from lacoc_shared.network.certificate import Pair

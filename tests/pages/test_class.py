@@ -14,7 +14,7 @@ from contestant import Contestant
 from playwright.sync_api import expect
 from show import violations
 
-from lacoc_client.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import Kind
 from lacoc_robots.library import sample_gait_files
 
 pytestmark = pytest.mark.slow

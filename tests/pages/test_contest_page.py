@@ -14,7 +14,7 @@ from stand import served
 from venue import Venue
 
 from lacoc_robots.library import robot_folder
-from lacoc_server.contest import organiser
+from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.pool import Pool
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import (
@@ -26,7 +26,7 @@ from lacoc_server.contest.league.facts import (
     decode,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.sheet import ContestSheet, encode, sheet
+from lacoc_server.contest.league.sheet import ContestSheet, encode, sheet
 
 pytestmark = pytest.mark.slow
 

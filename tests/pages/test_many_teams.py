@@ -21,8 +21,8 @@ sys.path.append(str(Path(__file__).parents[1] / "league"))
 
 from chance_event import Event
 
-from lacoc_server.contest import organiser
-from lacoc_server.contest.sheet import encode, sheet
+from lacoc_server.contest.acts import organiser
+from lacoc_server.contest.league.sheet import encode, sheet
 from lacoc_shared.command import plugins
 
 pytestmark = [pytest.mark.slow, pytest.mark.long]

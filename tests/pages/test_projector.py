@@ -16,10 +16,10 @@ from playwright.sync_api import Page, ViewportSize, expect
 from ports import free_port
 from stand import served
 
-from lacoc_client.gateway.published import write_pages
+from lacoc_client.web.gateway.published import write_pages
+from lacoc_server.contest.acts.organiser import enter
 from lacoc_server.contest.league.contest import Contest
-from lacoc_server.contest.organiser import enter
-from lacoc_server.contest.sheet import encode, sheet
+from lacoc_server.contest.league.sheet import encode, sheet
 
 sys.path.append(str(Path(__file__).parent / "core"))
 

@@ -11,7 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
-from lacoc_client.gateway.browser import unseen
+from lacoc_client.web.gateway.browser import unseen
 
 pytestmark = pytest.mark.slow
 

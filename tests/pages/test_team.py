@@ -17,7 +17,7 @@ from ports import free_port
 from show import violations
 from waiting import LIMIT_S
 
-from lacoc_server.contest.organiser import enter
+from lacoc_server.contest.acts.organiser import enter
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_client.phases.facts import TrialFacts, trial_facts
+from lacoc_client.workshop.phases.facts import TrialFacts, trial_facts
 from lacoc_server.studio.floors import answered
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.gait.tables import LocomotionTable, Posture, PostureTable

@@ -8,7 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.phases.facts import TrialFacts, differences, foot_ways, pace, trial_facts, way
+from lacoc_client.workshop.phases.facts import (
+    TrialFacts,
+    differences,
+    foot_ways,
+    pace,
+    trial_facts,
+    way,
+)
 from lacoc_robots.leg import LegSpec
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot

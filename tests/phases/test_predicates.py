@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.phases.evidence import (
+from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
     Checked,
     Coached,
@@ -26,9 +26,9 @@ from lacoc_client.phases.evidence import (
     from_json,
     to_json,
 )
-from lacoc_client.phases.facts import TrialFacts
-from lacoc_client.phases.phases import PHASES
-from lacoc_client.phases.predicates import (
+from lacoc_client.workshop.phases.facts import TrialFacts
+from lacoc_client.workshop.phases.phases import PHASES
+from lacoc_client.workshop.phases.predicates import (
     MET,
     After,
     All,
@@ -40,7 +40,7 @@ from lacoc_client.phases.predicates import (
     TriedWhere,
     once,
 )
-from lacoc_client.phases.progress import progress
+from lacoc_client.workshop.phases.progress import progress
 from lacoc_shared.words import Phrase, faults, render
 
 NUMBERS = st.floats(-1000, 1000) | st.sampled_from([0.0, 1.0, 2.0, 5.0, 15.0, 100.0, math.nan])

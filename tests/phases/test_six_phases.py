@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import pytest
 
-from lacoc_client.phases.evidence import (
+from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
     By,
     Checked,
@@ -21,9 +21,16 @@ from lacoc_client.phases.evidence import (
     Voted,
     edited,
 )
-from lacoc_client.phases.facts import TrialFacts, differences
-from lacoc_client.phases.phases import A_CYCLE, CONCEPT, CREATIVE, HALF_CYCLE, PHASES, THREE_LEGS
-from lacoc_client.phases.progress import progress
+from lacoc_client.workshop.phases.facts import TrialFacts, differences
+from lacoc_client.workshop.phases.phases import (
+    A_CYCLE,
+    CONCEPT,
+    CREATIVE,
+    HALF_CYCLE,
+    PHASES,
+    THREE_LEGS,
+)
+from lacoc_client.workshop.phases.progress import progress
 from lacoc_shared.gait.tables import SAMPLE_KEYS, Posture, PostureTable, to_locomotion
 from lacoc_shared.words import faults, render
 

@@ -12,10 +12,18 @@ from pathlib import Path
 import pytest
 from benchmarks.class_kills import OLDEST_S, kill_once
 
-from lacoc_client.phases.class_file import ClassFile, Document, forget
-from lacoc_client.phases.evidence import Edited, Evidence, Guessed, Hand, Joined, LegEdit, Named
-from lacoc_client.phases.export import evidence_csv, tables_zip
-from lacoc_client.phases.store import ClassStore
+from lacoc_client.workshop.phases.class_file import ClassFile, Document, forget
+from lacoc_client.workshop.phases.evidence import (
+    Edited,
+    Evidence,
+    Guessed,
+    Hand,
+    Joined,
+    LegEdit,
+    Named,
+)
+from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
+from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render
 
@@ -62,7 +70,7 @@ def test_a_table_is_on_the_disk_with_the_evidence_after_it(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """When a student's evidence is acknowledged, the student's newest table is on the disk too."""
-    monkeypatch.setattr("lacoc_client.phases.store.DOCUMENT_S", 1e6)
+    monkeypatch.setattr("lacoc_client.workshop.phases.store.DOCUMENT_S", 1e6)
     copy = tmp_path / "copy.sqlite"
     with ClassStore(path) as store:
         store.keep(table("Ada", "1"))
@@ -192,9 +200,9 @@ def test_damage_while_the_class_runs_keeps_everybodys_tables(path: Path) -> None
 FULL = """
 import resource, sys
 from pathlib import Path
-from lacoc_client.phases.evidence import Hand
-from lacoc_client.phases.class_file import Document
-from lacoc_client.phases.store import ClassStore
+from lacoc_client.workshop.phases.evidence import Hand
+from lacoc_client.workshop.phases.class_file import Document
+from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
 import signal
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

@@ -42,7 +42,9 @@ def tree(tmp_path: Path) -> Path:
     """Give a copy of all packages and of pyproject.toml."""
     for room in ROOMS:
         shutil.copytree(
-            ROOT / room, tmp_path / room, ignore=shutil.ignore_patterns("__pycache__", "web")
+            ROOT / room,
+            tmp_path / room,
+            ignore=shutil.ignore_patterns("__pycache__", "node_modules"),
         )
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     return tmp_path
@@ -55,6 +57,8 @@ def test_the_walls_stand(tree: Path) -> None:
 
 ONE_WAY = "Imports go one way"
 BEAT = "A court's packages stand above one another"
+CONTEST = "A contest's packages stand above one another"
+PAGES = "A client's packages stand above one another"
 CONTRACT = "What all share has the contract below everything else"
 PURE = "What decides is pure: time and chance come in as arguments"
 MUJOCO = "Only models, fields and the world know MuJoCo"
@@ -73,6 +77,8 @@ PLANTED = [
         "import lacoc_server.match.match",
         {LEAGUE},
     ),
+    ("server/lacoc_server/contest/kept/store.py", "import lacoc_server.contest.acts", {CONTEST}),
+    ("client/lacoc_client/play/asking.py", "import lacoc_client.web.gateway.wire", {PAGES}),
     ("shared/lacoc_shared/messages/__init__.py", "import lacoc_shared.gait.tables", {CONTRACT}),
     ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
     ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),
@@ -96,10 +102,12 @@ MORE = [
     ("server/lacoc_server/doors/inbox.py", "import lacoc_server.match.match", {BEAT}),
     ("server/lacoc_server/doors/inbox.py", "import secrets", {PURE}),
     ("server/lacoc_server/court/health.py", "import time", {PURE}),
-    ("server/lacoc_server/contest/league/schedule.py", "import time", {PURE}),
+    ("server/lacoc_server/contest/league/timetable/schedule.py", "import time", {PURE}),
     ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
-    ("client/lacoc_client/phases/predicates.py", "import time", {PURE}),
+    ("client/lacoc_client/workshop/phases/predicates.py", "import time", {PURE}),
     ("client/lacoc_client/__init__.py", "import lacoc_arenas.othello.field", {CLIENT}),
+    ("client/lacoc_client/film/site.py", "import lacoc_client.workshop.phases", {PAGES}),
+    ("server/lacoc_server/contest/standby/door.py", "import lacoc_server.contest.live", {CONTEST}),
 ]
 
 

@@ -20,7 +20,8 @@ _LIMIT_S = 300  # longer than any command needs, unless it hangs
 README = "import importlib.metadata as m; print(m.metadata('lacoc').get_payload())"
 IMPORT_ALL = """
 import importlib, pkgutil
-EXTRAS = "lacoc_client.film", "lacoc_server.simulate.environments"
+SIMULATE = "lacoc_server.simulate."
+EXTRAS = "lacoc_client.film", SIMULATE + "environments", SIMULATE + "registering"
 def failed(name):
     if not name.startswith(EXTRAS):
         raise
@@ -107,7 +108,7 @@ def try_both(env: Environment) -> None:
 def try_contestant(env: Environment, archive: Path) -> None:
     """Try a contestant's machine: MuJoCo is missing, and `serve` says in a line what to install."""
     try_both(env)
-    env.run("python", "-c", IMPORT_ALL.format(packages=["lacoc_shared", "lacoc_client"]))
+    env.run("python", "-c", IMPORT_ALL.format(packages=["lacoc", "lacoc_shared", "lacoc_client"]))
     error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr
     assert error.count("\n") == 1, error
     assert f"{archive.resolve()}[server]" in error, error
@@ -128,6 +129,8 @@ def try_court(env: Environment) -> None:
     """Try a court's machine: every module can be imported, and a short match can be played."""
     try_both(env)
     packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
+    walk = "import lacoc; print(lacoc.walk('gaits/Loco-data.txt'))"
+    assert env.run("python", "-c", walk).stdout.startswith("speed forward")
     env.run("python", "-c", IMPORT_ALL.format(packages=packages))
     env.run("lacoc", "contest", "certificate")
     env.run("lacoc", "contest", "enter", "Bees")

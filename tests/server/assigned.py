@@ -15,8 +15,8 @@ from running import served
 from waiting import LIMIT_S
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.bot_player import BotPlayer
-from lacoc_client.controller import Controller
+from lacoc_client.play.bot_player import BotPlayer
+from lacoc_client.play.controller import Controller
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.contest.live.court_link import Asked, CourtLink, CourtResult, NoAnswer
 from lacoc_shared.contest.tokens import hash_token

@@ -10,9 +10,9 @@ from lacoc_process import started
 from running import served, until, write_contest
 from waiting import LIMIT_S
 
-from lacoc_client.asking import fetch
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.asking import fetch
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.contest.file import Contest, load
 from lacoc_shared.decisions import Resume, Start
 from lacoc_shared.messages import Event, Frame, Health, SeatFrame

@@ -11,9 +11,9 @@ from lacoc_process import ALONE, started
 from ports import free_port
 from waiting import LIMIT_S
 
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Decision, Start
 from lacoc_shared.messages import Frame

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.contest.live.record_copy import continues
+from lacoc_server.contest.kept.copying import continues
 from lacoc_server.court.copying import next_part
 from lacoc_shared.keyspace import COPY_PART_BYTES
 from lacoc_shared.messages.office import Copied

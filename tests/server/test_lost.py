@@ -20,8 +20,8 @@ from real_cable import pull_a_real_cable
 from slow_link import SlowLink
 from waiting import LIMIT_S
 
-from lacoc_client.asking import NoAnswer, ask
-from lacoc_client.controller import Controller, Hold
+from lacoc_client.play.asking import NoAnswer, ask
+from lacoc_client.play.controller import Controller, Hold
 from lacoc_shared.decisions import Adjust, Declare, Halt, Start
 from lacoc_shared.inputs import SilentSeat
 from lacoc_shared.keyspace import Keys

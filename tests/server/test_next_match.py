@@ -13,8 +13,8 @@ import pytest
 from running import until
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_server.court.court import Court, CourtSettings

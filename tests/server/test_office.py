@@ -20,10 +20,10 @@ from assigned import (
 )
 from waiting import LIMIT_S
 
-from lacoc_client.asking import NotNow
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
-from lacoc_client.team_way import where
+from lacoc_client.play.asking import NotNow
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.team_way import where
 from lacoc_server.contest.live.court_link import CourtLink, NoAnswer
 from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_server.journal.replay import verify

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from running import served, until, write_contest
 
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.spectator import Spectator
 from lacoc_shared.command.priority import go_first, take_turns
 from lacoc_shared.contest.file import load
 from lacoc_shared.network.session import open_client

@@ -12,9 +12,9 @@ from verdicts import verdict
 from waiting import LIMIT_S, until
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
 from lacoc_server.journal.recovery import unfinished
 from lacoc_server.journal.verdict import Kind
 from lacoc_shared.contest.file import load

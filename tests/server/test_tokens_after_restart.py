@@ -12,8 +12,8 @@ from lacoc_process import Lacoc, run_lacoc
 from running import frame, phase, until
 from waiting import LIMIT_S
 
-from lacoc_client.controller import Controller
-from lacoc_client.team_way import where
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.team_way import where
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client

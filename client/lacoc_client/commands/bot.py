@@ -11,12 +11,12 @@ import typer
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_arenas.arena import Arena
-from lacoc_client.asking import NoCourt, NotNow, Patience
-from lacoc_client.bot_player import BotPlayer
 from lacoc_client.commands import entrance
-from lacoc_client.controller import Controller, Hold
-from lacoc_client.stopping import stop_signals
-from lacoc_client.team_way import TeamWay, is_gone, is_over
+from lacoc_client.play.asking import NoCourt, NotNow, Patience
+from lacoc_client.play.bot_player import BotPlayer
+from lacoc_client.play.controller import Controller, Hold
+from lacoc_client.play.stopping import stop_signals
+from lacoc_client.play.team_way import TeamWay, is_gone, is_over
 from lacoc_robots.seat_files import SeatFiles, gather
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.access import Access

@@ -9,19 +9,19 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from lacoc_client.classroom import kept
-from lacoc_client.classroom.classroom import CLASS_FILE, Classroom
-from lacoc_client.classroom.site import PATH, class_site
-from lacoc_client.classroom.tournament import RECORDINGS
 from lacoc_client.commands import pages
 from lacoc_client.commands.design import own_studio
-from lacoc_client.design.requests import MESSAGE_BYTES
-from lacoc_client.design.studios.asker import Asker
-from lacoc_client.design.studios.studios import Studios
-from lacoc_client.gateway import server
-from lacoc_client.gateway.browser import open_browser, unseen
-from lacoc_client.gateway.files import PageFiles
-from lacoc_client.phases.class_file import forget
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.browser import open_browser, unseen
+from lacoc_client.web.gateway.files import PageFiles
+from lacoc_client.workshop.classroom import kept
+from lacoc_client.workshop.classroom.classroom import CLASS_FILE, Classroom
+from lacoc_client.workshop.classroom.site import PATH, class_site
+from lacoc_client.workshop.classroom.tournament import RECORDINGS
+from lacoc_client.workshop.design.requests import MESSAGE_BYTES
+from lacoc_client.workshop.design.studios.asker import Asker
+from lacoc_client.workshop.design.studios.studios import Studios
+from lacoc_client.workshop.phases.class_file import forget
 from lacoc_shared.command import keep, options, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say

@@ -8,14 +8,14 @@ from typing import Annotated
 import typer
 
 from lacoc_client.commands import pages
-from lacoc_client.design.designer import Designer
-from lacoc_client.design.folder import Folder
-from lacoc_client.design.requests import MESSAGE_BYTES
-from lacoc_client.design.site import PATH, design_site
-from lacoc_client.design.studios.asker import Asker
-from lacoc_client.design.studios.studios import Studios
-from lacoc_client.gateway import server
-from lacoc_client.gateway.files import PageFiles
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.files import PageFiles
+from lacoc_client.workshop.design.designer import Designer
+from lacoc_client.workshop.design.folder import Folder
+from lacoc_client.workshop.design.requests import MESSAGE_BYTES
+from lacoc_client.workshop.design.site import PATH, design_site
+from lacoc_client.workshop.design.studios.asker import Asker
+from lacoc_client.workshop.design.studios.studios import Studios
 from lacoc_shared.command import options
 from lacoc_shared.command.child import kept_child
 from lacoc_shared.command.scratch import Scratch

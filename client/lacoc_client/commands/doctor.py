@@ -10,10 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_client.commands import entrance
-from lacoc_client.doctor import machine as doctor
-from lacoc_client.doctor.link import link as look_at
-from lacoc_client.doctor.machine import Finding, Status
-from lacoc_client.doctor.pages import pages, plain_courts
+from lacoc_client.commands.checks import machine as doctor
+from lacoc_client.commands.checks.link import link as look_at
+from lacoc_client.commands.checks.machine import Finding, Status
+from lacoc_client.commands.checks.pages import pages, plain_courts
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access

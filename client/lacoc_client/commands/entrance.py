@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lacoc_client.link.event import Found, find
+from lacoc_client.play.link.event import Found, find
 from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint

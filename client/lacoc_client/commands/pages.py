@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 from starlette.types import ASGIApp
 
-from lacoc_client.gateway import server
-from lacoc_client.gateway.browser import open_browser, unseen
-from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.home import Home
-from lacoc_client.gateway.site import site
-from lacoc_client.gateway.wire import JOIN_BYTES
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.browser import open_browser, unseen
+from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.web.gateway.home import Home
+from lacoc_client.web.gateway.site import site
+from lacoc_client.web.gateway.wire import JOIN_BYTES
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.public import PublicAddress

@@ -9,16 +9,16 @@ import typer
 from rich.console import Group
 from rich.text import Text
 
-from lacoc_client.asking import NoCourt, NotNow, Patience
 from lacoc_client.commands import entrance, pages
-from lacoc_client.controller import Controller
-from lacoc_client.gateway.home import Prefill, player_home
-from lacoc_client.own_files import OwnFiles
-from lacoc_client.stopping import stop_signals
-from lacoc_client.team_way import TeamWay, is_gone, is_over
-from lacoc_client.terminal.keys import Keys, open_keys
-from lacoc_client.terminal.play import TerminalPlay, keys_table
-from lacoc_client.terminal.words import played
+from lacoc_client.play.asking import NoCourt, NotNow, Patience
+from lacoc_client.play.controller import Controller
+from lacoc_client.play.own_files import OwnFiles
+from lacoc_client.play.stopping import stop_signals
+from lacoc_client.play.team_way import TeamWay, is_gone, is_over
+from lacoc_client.play.terminal.keys import Keys, open_keys
+from lacoc_client.play.terminal.play import TerminalPlay, keys_table
+from lacoc_client.play.terminal.words import played
+from lacoc_client.web.gateway.home import Prefill, player_home
 from lacoc_robots.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.access import Access

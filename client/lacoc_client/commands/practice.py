@@ -10,7 +10,7 @@ from rich.text import Text
 
 from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, own_files, play
-from lacoc_client.gateway.home import Prefill, player_home
+from lacoc_client.web.gateway.home import Prefill, player_home
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.command import options
 from lacoc_shared.command.child import child

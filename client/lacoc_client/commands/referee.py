@@ -20,14 +20,14 @@ from rich.table import Table
 from rich.text import Text
 from typer.core import TyperGroup
 
-from lacoc_client.asking import NoAnswer, Patience
 from lacoc_client.commands import entrance
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
-from lacoc_client.stopping import stop_signals
-from lacoc_client.terminal import words
-from lacoc_client.terminal.line_view import event_columns
-from lacoc_client.terminal.plain import event_dict, frame_dict, outlook_dict, reply_dict
+from lacoc_client.play.asking import NoAnswer, Patience
+from lacoc_client.play.referee import RefereeClient
+from lacoc_client.play.spectator import Spectator
+from lacoc_client.play.stopping import stop_signals
+from lacoc_client.play.terminal import words
+from lacoc_client.play.terminal.line_view import event_columns
+from lacoc_client.play.terminal.plain import event_dict, frame_dict, outlook_dict, reply_dict
 from lacoc_shared.command import options, screen
 from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Clock, Decision, Restart, TakeBack
 from lacoc_shared.messages import (

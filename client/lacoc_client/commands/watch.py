@@ -10,12 +10,12 @@ from rich.live import Live
 from rich.text import Text
 
 from lacoc_client.commands import entrance, pages
-from lacoc_client.gateway.home import Home
-from lacoc_client.spectator import Spectator
-from lacoc_client.stopping import stop_signals
-from lacoc_client.terminal.board_view import BoardView
-from lacoc_client.terminal.line_view import LineView, event_columns
-from lacoc_client.terminal.plain import event_dict, frame_dict
+from lacoc_client.play.spectator import Spectator
+from lacoc_client.play.stopping import stop_signals
+from lacoc_client.play.terminal.board_view import BoardView
+from lacoc_client.play.terminal.line_view import LineView, event_columns
+from lacoc_client.play.terminal.plain import event_dict, frame_dict
+from lacoc_client.web.gateway.home import Home
 from lacoc_shared.command import options, screen
 from lacoc_shared.messages import Event
 from lacoc_shared.network.session import open_client

@@ -10,15 +10,15 @@ import typer
 
 from lacoc_client.commands import entrance
 from lacoc_client.commands.pages import public_address
-from lacoc_client.gateway import server
-from lacoc_client.gateway.browser import open_browser
-from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.home import VIEWERS_MOST, Home
-from lacoc_client.gateway.site import site
-from lacoc_client.gateway.wire import JOIN_BYTES
-from lacoc_client.link.event import Found, find
-from lacoc_client.link.mirror import SheetMirror
-from lacoc_client.office.site import DESK_BYTES, DeskSite
+from lacoc_client.play.link.event import Found, find
+from lacoc_client.play.link.mirror import SheetMirror
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.browser import open_browser
+from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.web.gateway.home import VIEWERS_MOST, Home
+from lacoc_client.web.gateway.site import site
+from lacoc_client.web.gateway.wire import JOIN_BYTES
+from lacoc_client.web.office.site import DESK_BYTES, DeskSite
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.command.scratch import Scratch

@@ -11,10 +11,10 @@ from urllib.parse import urlencode
 from starlette.applications import Starlette
 
 from lacoc_client.film.look import Look, Quality
-from lacoc_client.gateway import server
-from lacoc_client.gateway.files import NOT_BUILT, PageFiles
-from lacoc_client.gateway.recordings import Recordings
-from lacoc_client.gateway.site import page_routes, recording_routes
+from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.web.gateway.recordings import Recordings
+from lacoc_client.web.gateway.site import page_routes, recording_routes
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say

@@ -14,7 +14,14 @@ from rich.table import Table
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.stand_test import try_standing
-from lacoc_server.contest.headless.pool import Ended, Job, interrupted_by_signals, play_all
+from lacoc_server.contest.headless.pool import (
+    Ended,
+    Job,
+    first_number,
+    interrupted_by_signals,
+    match_id,
+    play_all,
+)
 from lacoc_server.contest.league.formats.round_robin import circle_round
 from lacoc_server.contest.league.standings import Counted, Standing, standings
 from lacoc_server.match.entry import weigh_in
@@ -118,14 +125,14 @@ def simulate_command(
     if out and not json:
         _show_left_out(out)
     matches = dict(
-        enumerate(_matches(fit, len(seats), both_sides, rounds, repeat), _first_number(record))
+        enumerate(_matches(fit, len(seats), both_sides, rounds, repeat), first_number(record))
     )
     sit = cache(lambda seat, name: seated(loaded, seat, name, robot))
     teams = _teams({name: sit(0, name).join.team for name in fit})
-    names = {_match_id(number): who for number, (who, _) in matches.items()}
+    names = {match_id(number): who for number, (who, _) in matches.items()}
     work = [
         Job(
-            match_id=_match_id(number),
+            match_id=match_id(number),
             arena=arena,
             overrides=overrides,
             players=_seated(
@@ -250,12 +257,6 @@ def _show_left_out(out: Mapping[str, FileRefused | UserError]) -> None:
         screen.show(screen.mistakes_table(mistakes), screen.stderr)
 
 
-def _first_number(record: Path | None) -> int:
-    """Return the number after the highest of the folder's records, so that none is overwritten."""
-    known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
-    return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
-
-
 def _text(path: Path | None) -> str | None:
     return None if path is None else str(path)
 
@@ -286,10 +287,6 @@ def _pairs(
     else:
         pairs = [tuple(range(players))]
     return [seated for pair in pairs for seated in (pair, pair[::-1])] if both_sides else pairs
-
-
-def _match_id(number: int) -> str:
-    return f"simulated-{number:03d}"
 
 
 def _match_line(

@@ -7,20 +7,16 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
-from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
-from lacoc_robots.robot import RobotSpec
-from lacoc_robots.robot_file import read_robot
+from lacoc_robots.library import WORKSHOPS_ROBOT
+from lacoc_robots.reading import read_gait, read_robot_file
 from lacoc_server.studio.answers import Trial, try_gait
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.told import told
 from lacoc_server.trial.walk import Walk
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import options, screen
-from lacoc_shared.gait.joining import sample_sequences
-from lacoc_shared.gait.tables import Gait, PostureTable
-from lacoc_shared.gait.workbook.file import read_gait_file
-from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
@@ -74,7 +70,7 @@ def trial_command(
     averages of whole cycles, without the first cycle, in which the robot starts to move.
     """
     spec = read_robot_file(robot)
-    gait = read_trial_gait(file, spec)
+    gait = read_gait(file, spec)
     trial = try_gait(make_course(spec), gait, keys, seconds)
     if json:
         screen.print_json(_as_json(trial))
@@ -90,36 +86,6 @@ def trial_command(
         screen.warn(note)
 
 
-def read_robot_file(name: str) -> RobotSpec:
-    """Read a robot's file and check it against the limits of rules 1.
-
-    Raises:
-        UserError: if there is no such robot.
-        FileRefused: with every mistake of its file.
-    """
-    file, data = find_robot(name)
-    return read_robot(data, file)
-
-
-def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
-    """Read a gait file for a trial; postures are joined into the sequences of the sample's keys.
-
-    Raises:
-        UserError: if the file can't be read.
-        FileRefused: with every mistake of the file.
-    """
-    table = read_gait_file(file, legs=robot.labels, range_deg=robot.ranges_deg)
-    if isinstance(table, PostureTable):
-        gait = Gait(table, sample_sequences(table))
-    else:
-        gait = Gait(None, table)
-    if gait.joints != robot.joints:
-        found = say("trial.joints", joints=gait.joints)
-        expected = say("trial.joints-of", joints=robot.joints, robot=robot.name)
-        raise FileRefused([Mistake(file=file.name, found=found, expected=expected)])
-    return gait
-
-
 def _as_json(trial: Trial) -> dict[str, Any]:
     fault = None if trial.walk.fault is None else render(trial.walk.fault)
     sentences = [render(one.said) for one in trial.explained]
@@ -131,30 +97,9 @@ def _table(figures: Figures, title: Phrase) -> Any:
     """Make a table of the most important figures."""
     table = screen.table(say("trial.figure"), say("trial.value"))
     table.title, table.title_justify = Text(render(title)), "left"
-    for what, value in (
-        (say("trial.figure-speed"), _number(figures.speed_mm_s, "mm/s")),
-        (say("trial.figure-lateral"), _number(figures.lateral_mm_s, "mm/s")),
-        (say("trial.figure-drift"), _number(figures.drift_deg_s, "deg/s", 2)),
-        (say("trial.figure-stable"), f"{100 * figures.stable_share:.0f} %"),
-        (say("trial.figure-margin"), _number(figures.margin_mm, "mm")),
-        (say("trial.figure-slip"), _number(figures.slip_mm_s, "mm/s")),
-        (say("trial.figure-slip-ratio"), _number(figures.slip_ratio, "", 2)),
-        (say("trial.figure-cost"), _number(figures.cost_of_transport, "", 1)),
-        (say("trial.figure-clearance"), _number(figures.clearance_mm, "mm")),
-        (say("trial.figure-belly"), f"{100 * figures.belly_share:.0f} %"),
-        (say("trial.figure-upright"), _number(figures.upright, "", 2)),
-        (say("trial.figure-duty"), "  ".join(f"{share:.2f}" for share in figures.duty)),
-        (
-            say("trial.figure-cycles"),
-            f"{figures.cycles} × {figures.cycle_s:.2f} s" if figures.cycle_s else "–",
-        ),
-    ):
+    for what, value in told(figures):
         table.add_row(render(what), Text(value))
     return table
-
-
-def _number(value: float | None, unit: str, digits: int = 1) -> str:
-    return "–" if value is None else f"{value:.{digits}f} {unit}".rstrip()
 
 
 def _bars(walk: Walk) -> list[str]:

@@ -20,6 +20,7 @@ from lacoc_server.trial.explain import explain
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.keys import forward_key, parse_keys
 from lacoc_server.trial.support import margins_m
+from lacoc_server.trial.told import told
 from lacoc_server.trial.walk import Floats, Press, Walk
 from lacoc_shared import __version__
 from lacoc_shared.codec import BadMessage, decode, encode, message_hash
@@ -38,7 +39,7 @@ from lacoc_shared.studio import (
     TrialReply,
     TrialRequest,
 )
-from lacoc_shared.words import Phrase, say
+from lacoc_shared.words import Phrase, render, say
 
 _MISTAKES_TOLD = 20
 """Most mistakes that one refusal lists, so that the message stays small."""
@@ -82,6 +83,13 @@ class Trial(NamedTuple):
     explained: list[Sentence]
     notes: list[Phrase]
     """Remarks for a reader of the figures, such as that the trial ended early."""
+
+    def __str__(self) -> str:
+        """Say how the robot walks: the figures, then what explains them."""
+        rows = [(render(what), value) for what, value in told(self.figures)]
+        width = max(len(what) for what, _ in rows)
+        lines = [f"{what:{width}}  {value}" for what, value in rows]
+        return "\n".join([*lines, *(render(one.said) for one in self.explained)])
 
 
 def answer(what: str, payload: bytes, course_of: CourseOf) -> Answer:

@@ -11,7 +11,7 @@ sys.path.append(str(Path(__file__).parents[2] / "league"))
 
 from chance_event import Event
 
-from lacoc_server.contest.sheet import encode, sheet
+from lacoc_server.contest.league.sheet import encode, sheet
 
 
 def sheets() -> Iterator[tuple[str, Event]]:

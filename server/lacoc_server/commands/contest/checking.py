@@ -28,7 +28,7 @@ def publish(folder: _Folder, contest: Contest = FILE) -> None:
     It has pages, tables (CSV and JSON), the facts, the files of all teams and the records of all
     games, but no token. It can be written again while the contest goes on.
     """
-    from lacoc_server.contest import organiser
+    from lacoc_server.contest.acts import organiser
 
     organiser.publish_to(contest, folder)
     screen.show(say("contest.published", folder=str(folder)))

@@ -40,7 +40,7 @@ def decide(
     What was played before stays in the facts. If teams of later matches change, those matches are
     played again; results that do not count any more are kept.
     """
-    from lacoc_server.contest.desk import deciding
+    from lacoc_server.contest.acts import deciding
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
@@ -76,8 +76,7 @@ def withdraw(
 
     What the team has played counts, and opponents win the rest.
     """
-    from lacoc_server.contest import organiser
-    from lacoc_server.contest.desk import deciding
+    from lacoc_server.contest.acts import deciding, organiser
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
@@ -97,7 +96,7 @@ def draw(contest: Contest = FILE, yes: Yes = False) -> None:
     A stage with draw = "organiser" in the contest file waits when the stage before it is over.
     Until you draw it, results before it can still be corrected.
     """
-    from lacoc_server.contest import organiser
+    from lacoc_server.contest.acts import organiser
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute

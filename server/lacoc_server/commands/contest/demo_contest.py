@@ -25,7 +25,7 @@ def show(arena: str, seconds: float | None, speed: float, folder: Path, *, headl
         typer.Exit: with 1 if the published standings do not follow.
         UserError: if something can't be written, or a process does not start.
     """
-    from lacoc_server.contest.demo import champion, write_contest
+    from lacoc_server.commands.contest.demo_files import champion, write_contest
 
     with Scratch("demo") as place:
         screen.show(say("demo.contest"))

@@ -31,7 +31,7 @@ def invite(
     plays next, and goes from court to court by itself; commands take it too ('lacoc play LINK').
     Whoever has the link plays for the team.
     """
-    from lacoc_server.contest import organiser
+    from lacoc_server.contest.acts import organiser
 
     tokens = organiser.tokens(contest, team)
     plan = contests.load(contest)

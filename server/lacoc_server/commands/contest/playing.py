@@ -15,9 +15,9 @@ from lacoc_shared.words import render, say
 if TYPE_CHECKING:
     from lacoc_server.contest.kept.entries import HandedIn
     from lacoc_server.contest.kept.sheet_writer import Progress
+    from lacoc_server.contest.league.sheet import ContestSheet
     from lacoc_server.contest.league.standings import Table
     from lacoc_server.contest.live.run import Opened
-    from lacoc_server.contest.sheet import ContestSheet
     from lacoc_shared.words import Phrase
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
@@ -58,7 +58,7 @@ def enter(
     A team can enter again with other files until entries are closed: at the time in the contest
     file, or when the first stage is drawn. After that a change needs a reason.
     """
-    from lacoc_server.contest import organiser
+    from lacoc_server.contest.acts import organiser
 
     screen.show(organiser.enter(contest, team, folder, bot, reason, _tell_found))
 
@@ -143,7 +143,7 @@ def run(
     again. If one entry changes, a new contest with the same folder of records plays only the games
     of that team.
     """
-    from lacoc_server.contest import organiser
+    from lacoc_server.contest.acts import organiser
     from lacoc_server.contest.headless.pool import Pool, interrupted_by_signals
 
     for doubt in organiser.doubts_of(file):
@@ -239,8 +239,8 @@ def _tell_news(what: "Phrase") -> None:
 
 def standings(file: FileToRead = FILE, json: options.Json = False) -> None:
     """Print the standings of each stage as they are now; before the draw, who has entered."""
-    from lacoc_server.contest import organiser
-    from lacoc_server.contest.sheet import encode
+    from lacoc_server.contest.acts import organiser
+    from lacoc_server.contest.league.sheet import encode
 
     sheet = organiser.sheet(file)
     if json:

@@ -214,12 +214,14 @@ def check(file: FileToRead = FILE) -> None:
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
         screen.warn(say("contest.close-is-over", time=close.isoformat()))
     if contest.public.certificate is not None:
-        from lacoc_server.contest.certificate import doubts  # needs packages, as `organiser`
+        from lacoc_server.contest.acts.certificate import doubts  # needs packages, as `organiser`
 
         for doubt in doubts(contest.public, close, datetime.now(UTC)):
             screen.warn(doubt)
     if contests.facts_path(file).exists():  # else no team has entered, and reading makes no file
-        from lacoc_server.contest import organiser  # needs packages that the base install lacks
+        from lacoc_server.contest.acts import (
+            organiser,
+        )  # needs packages that the base install lacks
 
         for doubt in organiser.doubts_of(file):
             screen.warn(doubt)
@@ -245,7 +247,7 @@ def certificate(
 
     With a domain, put the files of a public certificate into the contest file instead.
     """
-    from lacoc_server.contest.certificate import make_certificate  # needs packages
+    from lacoc_server.contest.acts.certificate import make_certificate  # needs packages
 
     hosts, end = make_certificate(file, host or ())
     screen.show(say("contest.certificate", hosts=hosts, day=str(end)))

@@ -10,7 +10,7 @@ from lacoc_server.contest.desk import entering, organising, overview, refereeing
 from lacoc_server.contest.desk.admission import Admission, Slower
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.kept.entries import Entry, weigh
-from lacoc_server.contest.live.whereabouts import Known
+from lacoc_server.contest.league.timetable.whereabouts import Known
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.desk import (
     DESK_MAX_BYTES,

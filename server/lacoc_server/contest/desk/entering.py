@@ -3,9 +3,9 @@
 from typing import Literal
 
 from lacoc_robots.seat_files import SeatFiles
+from lacoc_server.contest.acts.organiser import close_in_time, enter_weighed, team_name
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.kept.entries import Entry, HandedIn, hand_in
-from lacoc_server.contest.organiser import close_in_time, enter_weighed, team_name
 from lacoc_shared.messages.desk import Files, OwnEntry
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from lacoc_server.contest import organiser
-from lacoc_server.contest.desk import deciding
+from lacoc_server.contest.acts import deciding, organiser
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, Moved, new
 from lacoc_shared.messages.desk import (

@@ -10,10 +10,10 @@ from lacoc_server.contest.league import facts
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.fixture import fixture, match_fixture
-from lacoc_server.contest.league.schedule import waits_for_organiser
+from lacoc_server.contest.league.timetable.calling import LOST_MS
+from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
+from lacoc_server.contest.league.timetable.whereabouts import Known, full_minute, starts
 from lacoc_server.contest.league.titles import title
-from lacoc_server.contest.live.calling import LOST_MS
-from lacoc_server.contest.live.whereabouts import Known, full_minute, starts
 from lacoc_shared import codec
 from lacoc_shared.messages.desk import CourtRow, Moved, OfficeView, Slot, TeamRow, ToDraw
 

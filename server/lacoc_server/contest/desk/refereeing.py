@@ -1,9 +1,10 @@
 """What the referee of a court asks the desk: what comes next, and what a result would change."""
 
-from lacoc_server.contest.desk import deciding, overview
+from lacoc_server.contest.acts import deciding
+from lacoc_server.contest.desk import overview
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league.facts import Replaced, new
-from lacoc_server.contest.live.whereabouts import Known
+from lacoc_server.contest.league.timetable.whereabouts import Known
 from lacoc_shared.messages.desk import CourtDay, CourtPlan
 from lacoc_shared.words import Phrase
 

@@ -24,7 +24,7 @@ from lacoc_server.contest.league.contest import Contest, Newest, StageView
 from lacoc_server.contest.league.facts import AnyFact, Outcome, Played, Replaced, new
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.schedule import due, playable
+from lacoc_server.contest.league.timetable.schedule import due, playable
 from lacoc_server.simulate import Seated
 from lacoc_server.simulate.inputs import BotFailed
 from lacoc_server.simulate.software import software

@@ -68,6 +68,17 @@ class Ended(NamedTuple):
     """By seat: how many keys were pressed that the seat's gait does not have."""
 
 
+def match_id(number: int) -> str:
+    """Return the id of a match that belongs to no contest."""
+    return f"simulated-{number:03d}"
+
+
+def first_number(record: Path | None) -> int:
+    """Return the number after the highest of a folder's records, so that none is overwritten."""
+    known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
+    return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
+
+
 class EngineLost(UserError):
     """What plays the games is gone, so no game can be played."""
 
@@ -161,7 +172,7 @@ def play_all(
     """
     if len(work) == 1:
         try:
-            yield work[0], _play_one(work[0])
+            yield work[0], play_alone(work[0])
         except BotFailed as error:
             yield work[0], error
         return
@@ -267,7 +278,8 @@ def _name(seated: Seated) -> str:
     return seated.bot if seated.program is None else f"{seated.bot}.py"
 
 
-def _play_one(job: Job) -> Ended:
+def play_alone(job: Job) -> Ended:
+    """Play a match in this process; errors are as of `ended`."""
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
     with screen.progress() as progress:
         task = progress.add_task(" : ".join(job.teams), total=round(duration_s))

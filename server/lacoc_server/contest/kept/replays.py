@@ -2,7 +2,7 @@
 
 from msgspec.structs import replace
 
-from lacoc_server.contest.sheet import ContestSheet
+from lacoc_server.contest.league.sheet import ContestSheet
 from lacoc_shared.messages.desk import Replays
 
 

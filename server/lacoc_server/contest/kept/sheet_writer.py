@@ -3,11 +3,11 @@
 import time
 from collections.abc import Callable, Mapping
 
-from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.replays import shown
+from lacoc_server.contest.league import sheet as sheets
 from lacoc_server.contest.league.contest import Contest
-from lacoc_server.contest.sheet import ContestSheet
+from lacoc_server.contest.league.sheet import ContestSheet
 from lacoc_shared.command.replacing import write
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say

@@ -15,8 +15,8 @@ from typing import Generic, Self, TypeVar
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.stand_ins import stand_in, stand_ins
 from lacoc_server.contest.league.facts import Played
+from lacoc_server.contest.league.timetable.calling import is_open_call
 from lacoc_server.contest.live import venue
-from lacoc_server.contest.live.calling import is_open_call
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.record_copy import RecordCopy

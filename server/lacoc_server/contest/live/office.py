@@ -15,8 +15,7 @@ from lacoc_server.contest.league.contest import Contest, Newest
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import due, waits_for_organiser
-from lacoc_server.contest.live.calling import (
+from lacoc_server.contest.league.timetable.calling import (
     Ended,
     Seen,
     calls,
@@ -25,10 +24,11 @@ from lacoc_server.contest.live.calling import (
     taken_back,
     wanted,
 )
+from lacoc_server.contest.league.timetable.schedule import due, waits_for_organiser
+from lacoc_server.contest.league.timetable.whereabouts import Known
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.teller import Teller
-from lacoc_server.contest.live.whereabouts import Known
 from lacoc_shared.contest.tokens import lasting_hash
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import AssignedSeat

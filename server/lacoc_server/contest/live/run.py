@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from lacoc_server.contest.acts.organiser import prepare
 from lacoc_server.contest.desk.book import Book, milliseconds
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
@@ -19,14 +20,13 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import generation
+from lacoc_server.contest.league.sheet import ContestSheet
+from lacoc_server.contest.league.timetable.ticker import Ticker
 from lacoc_server.contest.live import venue
 from lacoc_server.contest.live.away import AwayCourt
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.live.open_matches import OpenMatches
-from lacoc_server.contest.live.ticker import Ticker
-from lacoc_server.contest.organiser import prepare
-from lacoc_server.contest.sheet import ContestSheet
 from lacoc_server.contest.standby.door import StandbyDoor
 from lacoc_server.contest.standby.lookout import Lookout
 from lacoc_server.contest.standby.sealing import Sealing

@@ -7,10 +7,8 @@ from secrets import token_bytes
 from lacoc_server.contest.kept.plans import game
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Planned
-from lacoc_server.contest.live.calling import Seen
-from lacoc_server.contest.live.court_link import Asked, CourtLink
-from lacoc_server.contest.live.open_matches import OpenMatches
-from lacoc_server.contest.live.whereabouts import (
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.whereabouts import (
     Courts,
     Pace,
     full_minute,
@@ -18,6 +16,8 @@ from lacoc_server.contest.live.whereabouts import (
     starts,
     whereabouts,
 )
+from lacoc_server.contest.live.court_link import Asked, CourtLink
+from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_shared import seal
 from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts

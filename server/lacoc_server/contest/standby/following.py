@@ -16,14 +16,14 @@ import msgspec
 
 from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.copying import Taken, have, take
 from lacoc_server.contest.kept.entries import Entry
 from lacoc_server.contest.kept.folder import ContestFolder, hash_of
 from lacoc_server.contest.kept.machine import Machine
 from lacoc_server.contest.kept.plans import open_stage, plans
+from lacoc_server.contest.kept.publish import entries_of
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played, generation
-from lacoc_server.contest.live.record_copy import Taken, have, take
-from lacoc_server.contest.publish import entries_of
 from lacoc_server.contest.standby.door import hashes, small_files, unpacked, version_of
 from lacoc_server.contest.standby.messages import Got, Kind, Part, Record, Step, There
 from lacoc_server.contest.standby.other import LacksIt, Other

@@ -12,7 +12,7 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.machine import Machine, Retired
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, generation
-from lacoc_server.contest.live.calling import is_open_call
+from lacoc_server.contest.league.timetable.calling import is_open_call
 from lacoc_server.contest.standby.door import unpacked
 from lacoc_server.contest.standby.messages import Knock, Known
 from lacoc_server.contest.standby.other import NotThere, Other, OtherToken

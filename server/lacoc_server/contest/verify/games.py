@@ -12,11 +12,11 @@ from lacoc_server.contest.headless.play import late_ticks, outcome
 from lacoc_server.contest.headless.pool import setup_of
 from lacoc_server.contest.kept.entries import Entry, EntryFolder
 from lacoc_server.contest.kept.folder import hash_of
+from lacoc_server.contest.kept.publish import ENTRIES, RECORDS
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.publish import ENTRIES, RECORDS
 from lacoc_server.contest.verify.alone import Checked, Side, check_inputs, ends_alike
 from lacoc_server.contest.verify.history import call_of, files_of
 from lacoc_server.journal.replay import verify as prove

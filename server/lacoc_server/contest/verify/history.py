@@ -16,7 +16,7 @@ from lacoc_server.contest.league.facts import (
     RoundDrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.schedule import due
+from lacoc_server.contest.league.timetable.schedule import due
 from lacoc_shared.words import Phrase, say
 
 OfFiles = Entered | FilesChanged

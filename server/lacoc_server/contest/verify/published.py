@@ -7,14 +7,8 @@ from pathlib import Path
 import msgspec
 from msgspec.structs import replace
 
-from lacoc_server.contest import sheet as sheets
 from lacoc_server.contest.kept.entries import EntryFolder
-from lacoc_server.contest.league import facts as league_facts
-from lacoc_server.contest.league.contest import Contest, compute
-from lacoc_server.contest.league.facts import AnyFact, Played
-from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.standings import Table
-from lacoc_server.contest.publish import (
+from lacoc_server.contest.kept.publish import (
     ENTRIES,
     FACTS,
     RECORDS,
@@ -23,6 +17,12 @@ from lacoc_server.contest.publish import (
     records_of,
     tables,
 )
+from lacoc_server.contest.league import facts as league_facts
+from lacoc_server.contest.league import sheet as sheets
+from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.facts import AnyFact, Played
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.standings import Table
 from lacoc_server.contest.verify.history import OfFiles, check_history
 from lacoc_shared.command import regular
 from lacoc_shared.mistakes import UserError, text_of

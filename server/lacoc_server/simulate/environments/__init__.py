@@ -14,12 +14,11 @@ if _missing := [name for name in ("mujoco", "gymnasium", "pettingzoo") if find_s
     _install = installing.command("server", "rl")
     raise UserError(say("environment.not-installed", missing=_missing, install=_install))
 
-import gymnasium
-
 from lacoc_server.simulate.environments.parallel import LacocParallelEnv
 from lacoc_server.simulate.environments.single import LacocEnv
 from lacoc_server.simulate.environments.vector import LacocVectorEnv, WalkVectorEnv
 from lacoc_server.simulate.environments.walk import WalkEnv
+from lacoc_server.simulate.registering import register
 
 __all__ = [
     "LacocEnv",
@@ -33,24 +32,5 @@ __all__ = [
 
 parallel_env = LacocParallelEnv
 """The name under which libraries look for a `ParallelEnv`."""
-
-
-def register() -> None:
-    """Register the environments with Gymnasium; a second call changes nothing."""
-    for name, arena in (("Othello", "othello"), ("FlagStrike", "flag-strike")):
-        if f"lacoc/{name}-v0" not in gymnasium.registry:
-            gymnasium.register(
-                f"lacoc/{name}-v0",
-                entry_point=f"{__name__}.single:LacocEnv",
-                vector_entry_point=f"{__name__}.vector:LacocVectorEnv",
-                kwargs={"arena": arena},
-            )
-    if "lacoc/Walk-v0" not in gymnasium.registry:
-        gymnasium.register(
-            "lacoc/Walk-v0",
-            entry_point=f"{__name__}.walk:WalkEnv",
-            vector_entry_point=f"{__name__}.vector:WalkVectorEnv",
-        )
-
 
 register()

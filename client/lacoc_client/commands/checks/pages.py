@@ -1,0 +1,174 @@
+"""Checks the public address of pages as a browser reaches it: name, certificate, WebSocket."""
+
+import http.client
+import socket
+import ssl
+import time
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+from urllib.parse import urlsplit
+
+import msgspec
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from lacoc_client.commands.checks.machine import Finding, Status
+from lacoc_client.web.gateway.guard import name_of
+from lacoc_client.web.gateway.health import Health
+from lacoc_shared.contest.courts import Court
+from lacoc_shared.network.address import host as address_host
+from lacoc_shared.network.public import PublicAddress, is_loopback
+from lacoc_shared.words import say
+
+_WAIT_S = 10.0
+_SOON_DAYS = 14.0
+_DAY_S = 86_400.0
+
+
+class _Answer(NamedTuple):
+    status: int
+    body: bytes
+
+
+def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
+    """Check the public address of pages.
+
+    Args:
+        public: how others reach the pages; it has an address.
+        title: name of the contest; "" if there is none.
+    """
+    about = say("doctor.pages", pages=public.pages)
+    try:
+        socket.getaddrinfo(public.host, None)
+    except OSError:
+        found = say("doctor.pages-unknown", host=public.host)
+        yield Finding(about, Status.PROBLEM, found, say("doctor.pages-unknown-todo"))
+        return
+    try:
+        if public.pages.startswith("https:"):
+            yield _certificate(public)
+        answer = _get(public, "/healthz")
+    except ssl.SSLCertVerificationError as error:
+        found = say("doctor.pages-not-proven", why=error.verify_message)
+        yield Finding(about, Status.PROBLEM, found, say("doctor.pages-not-proven-todo"))
+        return
+    except (OSError, http.client.HTTPException) as error:
+        found = say("doctor.pages-silent", why=str(error))
+        yield Finding(about, Status.NOTE, found, say("doctor.pages-silent-todo"))
+        return
+    try:
+        health = msgspec.json.decode(answer.body, type=Health)
+    except msgspec.MsgspecError:
+        found = say("doctor.pages-other", status=answer.status)
+        if answer.status >= 500:
+            yield Finding(about, Status.NOTE, found, say("doctor.pages-behind-todo"))
+            return
+        other, name = say("doctor.pages-other-todo"), say("doctor.pages-name-todo")
+        yield Finding(about, Status.PROBLEM, found, name if answer.status == 403 else other)
+        return
+    yield from _reached(public, title, health)
+    yield _websocket(public)
+
+
+def plain_courts(public: PublicAddress, courts: Mapping[str, Court]) -> Iterator[Finding]:
+    """Note the courts that others reach in plain text, in a contest whose pages are encrypted.
+
+    Args:
+        public: how others reach the pages.
+        courts: the courts of the contest file, by name.
+    """
+    if not public.pages.startswith("https:"):
+        return
+    for name, court in courts.items():
+        ways = [one for one in court.listen if one.startswith("tcp/")]
+        if plain := [one for one in ways if not is_loopback(address_host(one))]:
+            found = say("doctor.plain-court", at=plain[0])
+            todo = say("doctor.plain-court-todo", port=plain[0].rpartition(":")[2])
+            yield Finding(say("doctor.court", court=name), Status.NOTE, found, todo)
+
+
+def _reached(public: PublicAddress, title: str, health: Health) -> Iterator[Finding]:
+    about = say("doctor.pages", pages=public.pages)
+    if title and health.contest != title:
+        found = say("doctor.pages-another", contest=health.contest)
+        yield Finding(about, Status.PROBLEM, found, say("doctor.pages-unknown-todo"))
+        return
+    name = health.contest or None
+    found = say("doctor.pages-found", contest=name, version=health.version)
+    yield Finding(about, Status.OK, found)
+    if health.unnamed_proxy:
+        found = say("doctor.pages-proxy")
+        yield Finding(about, Status.PROBLEM, found, say("doctor.pages-proxy-todo"))
+    if name_of(health.host) != public.host:
+        found = say("doctor.pages-host", host=health.host)
+        yield Finding(about, Status.NOTE, found, say("doctor.pages-host-todo"))
+
+
+def _certificate(public: PublicAddress) -> Finding:
+    """Check how long the certificate is valid.
+
+    Raises:
+        OSError: if there is no connection, or the certificate is not proven.
+    """
+    with (
+        socket.create_connection((public.host, _port(public)), _WAIT_S) as raw,
+        _context(public).wrap_socket(raw, server_hostname=public.host) as wrapped,
+    ):
+        shown = wrapped.getpeercert() or {}
+    end_s = ssl.cert_time_to_seconds(str(shown["notAfter"]))
+    days = (end_s - time.time()) / _DAY_S
+    found = say("doctor.certificate-found", days=days)
+    about = say("doctor.certificate")
+    if days > _SOON_DAYS:
+        return Finding(about, Status.OK, found)
+    return Finding(about, Status.NOTE, found, say("doctor.certificate-todo"))
+
+
+def _websocket(public: PublicAddress) -> Finding:
+    about = say("doctor.websocket")
+    url = public.pages.replace("http", "ws", 1) + "/ws"
+    try:
+        with connect(
+            url,
+            origin=Origin(public.origin),
+            open_timeout=_WAIT_S,
+            close_timeout=1,
+            ssl=_context(public) if url.startswith("wss:") else None,
+        ):
+            return Finding(about, Status.OK, say("doctor.websocket-found"))
+    except (OSError, WebSocketException) as error:
+        found = say("doctor.websocket-none", why=str(error))
+        return Finding(about, Status.PROBLEM, found, say("doctor.websocket-todo"))
+
+
+def _get(public: PublicAddress, path: str) -> _Answer:
+    """Ask for a path below the pages.
+
+    Raises:
+        OSError: if nobody answers.
+        HTTPException: if the answer is no HTTP.
+    """
+    host, port = public.host, _port(public)
+    connection = http.client.HTTPConnection(host, port, timeout=_WAIT_S)
+    if public.pages.startswith("https:"):
+        connection = http.client.HTTPSConnection(
+            host, port, timeout=_WAIT_S, context=_context(public)
+        )
+    try:
+        connection.request("GET", f"{public.path}{path}")
+        answer = connection.getresponse()
+        return _Answer(answer.status, answer.read(1 << 16))
+    finally:
+        connection.close()
+
+
+def _context(public: PublicAddress) -> ssl.SSLContext:
+    context = ssl.create_default_context()
+    if authority := public.read_authority():
+        context.load_verify_locations(cadata=authority)
+    return context
+
+
+def _port(public: PublicAddress) -> int:
+    return urlsplit(public.pages).port or (443 if public.pages.startswith("https:") else 80)

@@ -1,0 +1,1 @@
+"""Takes part in a match: as contestant, bot, referee or spectator."""

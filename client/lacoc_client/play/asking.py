@@ -1,0 +1,185 @@
+"""Requests to a court, and the errors from its refusals."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+import msgspec
+
+from lacoc_shared import codec
+from lacoc_shared.command import screen
+from lacoc_shared.court_view import MAX_BYTES
+from lacoc_shared.keyspace import EVERY_COURT, Keys
+from lacoc_shared.messages import PROTOCOL, Refusal
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.session import NoReply, NotConnected, Refused, Session, TooLate
+from lacoc_shared.words import Phrase, render, say
+
+T = TypeVar("T")
+
+ANSWER_S = 5.0
+"""Longest wait for an answer; a healthy court answers within a beat or two."""
+
+_COMING_BACK_S = 0.5
+_AGAIN_S = 0.05
+_WAIT_AGAIN_S = 0.5
+
+
+class NoCourt(UserError):
+    """No court of that name answers."""
+
+
+class NoAnswer(NoCourt):
+    """The court did not answer; it may still have done what was asked."""
+
+
+class NotNow(UserError):
+    """The court refuses for now; it may accept the same request later."""
+
+
+class Patience:
+    """How long a command waits for its court; the time starts again after each success.
+
+    Args:
+        wait_s: how long; None: do not wait, because a person can try again.
+        stopping: returns whether somebody asked the command to end.
+    """
+
+    def __init__(self, wait_s: float | None, stopping: Callable[[], bool] = lambda: False) -> None:
+        self.wait_s = wait_s
+        self._stopping = stopping
+        self._told = ""
+
+    def until(self, do: Callable[[], T]) -> T:
+        """Call `do`; while there is no court, or the court says "not now", call it again.
+
+        Returns:
+            What `do` returns when it succeeds.
+
+        Raises:
+            UserError: the error of `do`, if waiting can't help or the time is over.
+            KeyboardInterrupt: if the command is asked to end.
+        """
+        end_s = time.monotonic() + (self.wait_s or 0.0)
+        while True:
+            try:
+                return do()
+            except (NotConnected, NoCourt, NotNow) as error:
+                if self.wait_s is None or time.monotonic() >= end_s:
+                    raise
+                self._tell(error)
+            if self._stopping():
+                raise KeyboardInterrupt
+            time.sleep(_WAIT_AGAIN_S)
+
+    def _tell(self, error: UserError) -> None:
+        if str(error) != self._told:
+            self._told = str(error)
+            said = say("asking.waits", why=error.phrase, wait_s=self.wait_s)
+            screen.note(render(said))
+
+
+def ask(
+    session: Session,
+    keys: Keys,
+    key: str,
+    message: msgspec.Struct,
+    reply: type[T],
+    timeout_s: float = ANSWER_S,
+) -> T:
+    """Ask a court and decode its answer.
+
+    Args:
+        session: the connection.
+        keys: the court's key expressions.
+        key: key expression of the request.
+        message: the request.
+        reply: type of the answer.
+        timeout_s: how long to wait.
+
+    Raises:
+        NoAnswer: if the court was asked and does not answer.
+        NoCourt: if there is no such court; the message lists the courts that are there.
+        FileRefused: if the court found mistakes in files.
+        NotNow: if the court refuses for now; the message is its reason.
+        UserError: if the court refuses for good.
+    """
+    return understand(fetch(session, keys, key, codec.encode(message), timeout_s), reply)
+
+
+def fetch(
+    session: Session, keys: Keys, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
+) -> bytes:
+    """Ask a court and return its answer as bytes; see `ask`.
+
+    For a moment after its first frame, a restarted court does not receive requests yet. So the
+    request is sent again, as long as no court can have received it.
+    """
+    end_s = time.monotonic() + _COMING_BACK_S
+    reached: tuple[str, ...] = ()
+    while True:
+        reached = reached or session.routers()
+        try:
+            return session.ask(key, payload, timeout_s)
+        except NoReply as silence:
+            # Zenoh drops requests some milliseconds before it reports a broken link.
+            time.sleep(_AGAIN_S)
+            lost = reached and session.routers() != reached
+            if lost or isinstance(silence, TooLate):
+                raise NoAnswer(no_answer(session, keys.court)) from None
+            if time.monotonic() >= end_s:
+                raise NoCourt(no_answer(session, keys.court)) from None
+        except Refused as refused:
+            raise refusal_of(refused.payload) from None
+
+
+def refusal_of(payload: bytes) -> FileRefused | UserError:
+    """Make an error from a refusal.
+
+    Returns:
+        `FileRefused` if it lists mistakes in files, `NotNow` if the same request may be accepted
+        later, else `UserError`.
+
+    Raises:
+        UserError: if the refusal can't be decoded.
+    """
+    refusal = understand(payload, Refusal)
+    if refusal.mistakes:
+        return FileRefused(list(refusal.mistakes))
+    return (NotNow if refusal.again else UserError)(refusal.why)
+
+
+def understand(payload: bytes, kind: type[T]) -> T:
+    """Decode a message of a court.
+
+    Raises:
+        UserError: if it can't be decoded, because the court has another version.
+    """
+    with understood():
+        return codec.decode(payload, kind, MAX_BYTES)
+
+
+@contextmanager
+def understood() -> Iterator[None]:
+    """Turn a `BadMessage` that the block raises into a `UserError` that people understand.
+
+    Raises:
+        UserError: in place of `BadMessage`.
+    """
+    try:
+        yield
+    except codec.BadMessage as error:
+        said = say("court.bad-answer", error=str(error), version=PROTOCOL)
+        raise UserError(said) from None
+
+
+def no_answer(session: Session, court: str) -> Phrase:
+    """Say why a court does not answer; if no court has this name, list the courts that run."""
+    courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
+    address = ", ".join(session.endpoints)
+    if court in courts:
+        return say("court.no-answer", court=court, address=address)
+    if courts:
+        return say("court.no-court", court=court, address=address, courts=courts)
+    return say("court.nobody", address=address)

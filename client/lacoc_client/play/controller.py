@@ -1,0 +1,434 @@
+"""Holds a seat: joins, presses keys, reports refusals, and joins again after a break."""
+
+import time
+from collections.abc import Callable
+from enum import Enum
+from typing import NamedTuple
+
+import msgspec
+
+from lacoc_client.play.asking import NoCourt, NotNow, ask
+from lacoc_client.play.spectator import Spectator
+from lacoc_shared import seal
+from lacoc_shared.codec import encode
+from lacoc_shared.keyspace import JOIN_MAX_BYTES
+from lacoc_shared.messages import (
+    PROTOCOL,
+    Command,
+    Done,
+    Frame,
+    Health,
+    Join,
+    Joined,
+    SeatFrame,
+    SeatRequest,
+    SentFile,
+)
+from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
+from lacoc_shared.network.session import Session
+from lacoc_shared.seat import (
+    BEATS_PER_S,
+    FRESH_BEATS,
+    REPEATS_HZ,
+    RESTART_KEY,
+    SILENT_AFTER_S,
+    WHY_NO,
+)
+from lacoc_shared.words import Phrase, say
+
+REPEAT_S = 1 / REPEATS_HZ
+
+_REJOIN_TIMEOUT_S = 1.0
+_REMEMBERED = 64
+_REPEATED_BEATS = FRESH_BEATS - BEATS_PER_S
+"""Greatest age of a frame that a repeat names for a player elsewhere; the rest is for the way."""
+_WHY = {int(no): why for no, why in WHY_NO.items()}
+
+
+class Hold(Enum):
+    """Whether a controller holds its seat, and if not, why; each value names a text `hold.*`."""
+
+    NOT_JOINED = "not-joined"
+    HELD = "held"
+    LOST = "lost"
+    """The court was restarted and has not answered yet, or can't accept the controller now; it is
+    asked again.
+    """
+    REPLACED = "replaced"
+    """A newer session with the same token took the seat."""
+    REFUSED = "refused"
+    """The court was restarted and does not accept the controller again."""
+    LEFT = "left"
+
+    @property
+    def phrase(self) -> Phrase:
+        """The sentence that describes this state; used where no more exact reason is known."""
+        return _HOLDS[self]
+
+
+_HOLDS = {
+    Hold.NOT_JOINED: say("hold.not-joined"),
+    Hold.HELD: say("hold.held"),
+    Hold.LOST: say("hold.lost"),
+    Hold.REPLACED: say("hold.replaced"),
+    Hold.REFUSED: say("hold.refused"),
+    Hold.LEFT: say("hold.left"),
+}
+
+
+class Seen(NamedTuple):
+    """A frame that a player saw."""
+
+    match: int
+    beat: int
+
+
+class RefusedKey(NamedTuple):
+    """A command that the match refused."""
+
+    level: int
+    key: int
+    why: Phrase
+
+    @property
+    def name(self) -> str:
+        """The key as people press it: a digit, or x."""
+        return "x" if self.key == RESTART_KEY else str(self.key)
+
+
+class _Press(NamedTuple):
+    level: int
+    key: int
+    at_s: float
+
+
+class Controller:
+    """Holds one seat of a court for a person, a bot or a ghost.
+
+    One thread uses it. While the seat is held, that thread calls `poll` or `wait_frame` at least
+    ten times a second: they repeat the last command, which keeps the seat alive. After a restart of
+    the court they join again, with the same token and files.
+
+    Every command names the frame that the player saw: the newest one here, or, if the player is
+    elsewhere, the newest one that was told with `saw` or `press`. Then `poll` only repeats, while
+    that frame is recent: what nobody saw is never named.
+
+    Args:
+        session: an open client session.
+        court: the court's name.
+        seat: the seat's id.
+        token: the seat's token.
+        team: the team's name.
+        robot: a robot file; None: the contest's robot.
+        postures: a Loco-data file.
+        locomotion: a LocoTra-data file; without either gait file: the sample gait of the contest's
+            robot.
+        notify: called on Zenoh's thread when a frame has come; it must return at once.
+        elsewhere: whether the player sees the frames elsewhere, such as on a page.
+
+    Raises:
+        UserError: if no such court answers, or it has no such seat.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        court: str,
+        seat: str,
+        token: str,
+        team: str,
+        *,
+        robot: SentFile | None = None,
+        postures: SentFile | None = None,
+        locomotion: SentFile | None = None,
+        notify: Callable[[], None] | None = None,
+        elsewhere: bool = False,
+    ) -> None:
+        self.view = Spectator(session, court, notify)
+        """Everything public about the court: frames, events, sheet, health."""
+        self.seat = seat
+        self._session = session
+        self._keys = self.view.keys
+        self._join = Join(
+            protocol=PROTOCOL,
+            token=token,
+            name=team,
+            robot=robot,
+            postures=postures,
+            locomotion=locomotion,
+        )
+        self.index  # noqa: B018 - raises early if there is no such seat
+        self._commands = session.publisher(self._keys.command(seat))
+        self._joined: Joined | None = None
+        self._health_seen: Health | None = None
+        self._other_holder = False
+        """Whether the newest health named another session."""
+        self._seq = 0
+        self._requests = 0
+        """Number of ready and leave requests in this session."""
+        self._standing = (0, 0, 0)
+        """Sequence number, level and key of the standing command."""
+        self._elsewhere = elsewhere
+        self._seen: Seen | None = None
+        """The newest frame that a player elsewhere saw in this session."""
+        self._sent_s = 0.0
+        self._pressed: dict[int, _Press] = {}
+        self._refused: list[RefusedKey] = []
+        self.repeating = True
+        """Whether `poll` repeats the command and joins a restarted court again; False when the
+        player has gone.
+        """
+        self.hold = Hold.NOT_JOINED
+        self.reason: Phrase | None = None
+        """Why the seat is not held, if there is more to say than `hold` does."""
+        self.round_trip_ms: float | None = None
+        """Time from the newest key to the frame that shows it."""
+
+    @property
+    def index(self) -> int:
+        """The seat's index in the sheet and in frames.
+
+        Raises:
+            UserError: if the court has no such seat.
+        """
+        names = [seat.id for seat in self.view.sheet.seats]
+        if self.seat not in names:
+            raise UserError(
+                say("court.no-seat", court=self._keys.court, seat=self.seat, seats=names)
+            )
+        return names.index(self.seat)
+
+    def join(self, timeout_s: float = 5.0) -> tuple[Phrase, ...]:
+        """Take the seat, also from an older controller with the same token.
+
+        Returns:
+            Notes for the contestant.
+
+        Raises:
+            FileRefused: if the files have mistakes.
+            UserError: if the court refuses for another reason, or does not answer.
+        """
+        size = len(encode(self._join))
+        if size > JOIN_MAX_BYTES - 1024:
+            most_kib = JOIN_MAX_BYTES // 1024 - 1
+            raise UserError(
+                say("refused.files-too-large", size_kib=size // 1024, most_kib=most_kib)
+            )
+        key = self._keys.request(self.seat, "join")
+        joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s)
+        self.view.poll()
+        self._health_seen = self.view.health  # older than the session, so it says nothing about it
+        self._other_holder = False
+        self._joined = joined
+        self._requests = 0
+        self._seq = joined.last_seq
+        self._pressed.clear()
+        self.hold, self.reason = Hold.HELD, None
+        self._standing = (0, 0, 0)
+        self._seen = None  # a restarted court may have lost that frame
+        self._send()
+        if any(note.code == FILES_REFUSED for note in joined.notes):
+            # After a restart the court would refuse them. Without files the seat keeps its own.
+            self._join = msgspec.structs.replace(
+                self._join, robot=None, postures=None, locomotion=None
+            )
+        return joined.notes
+
+    def ready(self, ready: bool = True) -> Phrase | None:
+        """Tell the court that the team is ready, or no longer ready.
+
+        Returns:
+            A sentence of the court, if it has one.
+
+        Raises:
+            UserError: if the court refuses or does not answer.
+        """
+        return self._request("ready", ready)
+
+    def leave(self) -> Phrase | None:
+        """Give the seat up.
+
+        Returns:
+            A sentence of the court, if it has one.
+
+        Raises:
+            UserError: if the court refuses or does not answer.
+        """
+        said = self._request("leave", True)
+        self.hold, self._joined = Hold.LEFT, None
+        return said
+
+    def saw(self, frame: Seen) -> None:
+        """Send a sign of life of a player elsewhere.
+
+        Args:
+            frame: the frame that the player saw.
+        """
+        if self.hold is Hold.HELD:
+            self._note(frame)
+            self._send(self._seen)
+
+    def press(self, level: int, key: int, upon: Seen | None = None) -> int:
+        """Send a new command, which is repeated until the next one.
+
+        Args:
+            level: a `Level`.
+            key: a digit, or `RESTART_KEY`.
+            upon: the frame that the player saw; None: the newest that is known here.
+
+        Returns:
+            The command's sequence number.
+
+        Raises:
+            UserError: if the seat is not held.
+        """
+        self._session_held()
+        self._seq += 1
+        self._pressed[self._seq] = _Press(level, key, time.monotonic())
+        if len(self._pressed) > _REMEMBERED:
+            del self._pressed[next(iter(self._pressed))]
+        self._standing = (self._seq, level, key)
+        if upon is not None:
+            self._note(upon)
+        self._send(upon)
+        return self._seq
+
+    def poll(self, now_s: float) -> Frame | None:
+        """Repeat the command when it is due, and take in what arrived.
+
+        Args:
+            now_s: `time.monotonic()`.
+
+        Returns:
+            The newest frame; None if no frame came since the last call.
+
+        Raises:
+            UserError: if the court's messages can't be decoded.
+        """
+        frame = self.view.poll()
+        if frame is not None and self.index < len(frame.seats):
+            self._compare(frame.seats[self.index])
+        if self.repeating and self.hold in (Hold.HELD, Hold.LOST):
+            self._check_hold()
+        if self.repeating and self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
+            sent_s = self._sent_s
+            self._send()
+            # Frames wake the caller, so a repeat may be late; the next is then due earlier.
+            self._sent_s = max(sent_s + REPEAT_S, now_s - REPEAT_S / 2)
+        return frame
+
+    def wait_frame(self, timeout_s: float) -> Frame | None:
+        """Wait for a new frame, repeating the command meanwhile; None if none came in time.
+
+        Raises:
+            UserError: if the court's messages can't be decoded.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while (frame := self.poll(now_s := time.monotonic())) is None:
+            if now_s >= deadline_s:
+                return None
+            self.view.wait(min(deadline_s - now_s, REPEAT_S))
+        return frame
+
+    def take_refused(self) -> list[RefusedKey]:
+        """Return the commands that the match refused since the last call."""
+        refused, self._refused = self._refused, []
+        return refused
+
+    @property
+    def why_not_held(self) -> Phrase:
+        """Why the seat is not held."""
+        return self.reason or self.hold.phrase
+
+    def link(self, now_s: float) -> Phrase | None:
+        """Say what is wrong with the link; None if nothing is."""
+        silent_s = self.view.silent_s(now_s)
+        if self.hold is not Hold.HELD:
+            return self.why_not_held
+        return None if silent_s < SILENT_AFTER_S else say("hold.silent", seconds=silent_s)
+
+    def _session_held(self) -> Joined:
+        if self.hold is not Hold.HELD or self._joined is None:
+            raise UserError(say("refused.not-yours", seat=self.seat, why=self.why_not_held))
+        return self._joined
+
+    def _request(self, what: str, ready: bool) -> Phrase | None:
+        joined = self._session_held()
+        key = self._keys.request(self.seat, what)
+        self._requests += 1
+        mac = seal.request_mac(joined.secret, key, joined.session, self._requests, ready)
+        request = SeatRequest(session=joined.session, seq=self._requests, ready=ready, mac=mac)
+        return ask(self._session, self._keys, key, request, Done).said
+
+    def _note(self, frame: Seen) -> None:
+        """Remember the newest frame that a player elsewhere saw."""
+        self._seen = max(self._seen or frame, frame)
+
+    def _newest(self) -> Seen | None:
+        """Return the frame that a repeated command names; None: none can be named now.
+
+        An old frame is no sign of life for the court.
+        """
+        frame, seen = self.view.frame, self._seen
+        if not self._elsewhere:
+            return Seen(frame.match, frame.beat) if frame is not None else Seen(0, 0)
+        if frame is None or seen is None:
+            return None
+        is_fresh = seen.match == frame.match and frame.beat - seen.beat < _REPEATED_BEATS
+        return seen if is_fresh else None
+
+    def _send(self, upon: Seen | None = None) -> None:
+        """Send the newest command, with the frame that the player saw."""
+        assert self._joined is not None
+        seen, key_expression = upon or self._newest(), self._keys.command(self.seat)
+        if seen is None:
+            return
+        numbers = (self._joined.session, *self._standing, *seen)
+        mac = seal.command_mac(self._joined.secret, key_expression, *numbers)
+        self._commands.put(encode(Command(*numbers, mac)))
+        self._sent_s = time.monotonic()
+
+    def _compare(self, seat: SeatFrame) -> None:
+        """Compare the pressed keys with the keys that the frame shows as applied or refused."""
+        newest = max(seat.applied_seq, seat.refused_seq)
+        for seq in [seq for seq in self._pressed if seq <= newest]:
+            press = self._pressed.pop(seq)
+            if seq in (seat.applied_seq, seat.refused_seq):
+                self.round_trip_ms = (self.view.frame_s - press.at_s) * 1000
+            if seq == seat.refused_seq:
+                why = _WHY.get(seat.refused_why, say("key.refused"))
+                self._refused.append(RefusedKey(press.level, press.key, why))
+
+    def _check_hold(self) -> None:
+        """Check in the court's health whether this controller still holds the seat.
+
+        Health names the session that holds each seat. A restarted court knows no session, and a
+        newer session with the same token replaces this one. A health message from before the join
+        may arrive after it, so another session counts only when two messages in a row name it.
+        """
+        health = self.view.health
+        if health is None or health is self._health_seen:
+            return
+        self._health_seen = health
+        holder = next((seat.session for seat in health.seats if seat.id == self.seat), 0)
+        believed, self._other_holder = self._other_holder, False
+        if self._joined is None or holder == 0:
+            self._join_again()
+        elif holder == self._joined.session:
+            self.hold, self.reason = Hold.HELD, None
+        elif believed:
+            self.hold, self.reason = Hold.REPLACED, None
+        else:
+            self._other_holder = True
+
+    def _join_again(self) -> None:
+        try:
+            self.join(_REJOIN_TIMEOUT_S)
+        except NoCourt:  # the court may have made a session: its next health message decides
+            self.hold, self.reason, self._joined = Hold.LOST, None, None
+        except NotNow as error:  # the court has made none: another session may hold the seat now
+            self.hold, self.reason = Hold.LOST, error.phrase
+        except FileRefused:
+            self.hold, self.reason = Hold.REFUSED, say("hold.files-refused")
+        except UserError as error:
+            self.hold, self.reason = Hold.REFUSED, error.phrase

@@ -1,0 +1,73 @@
+"""A referee's connection to a court: it sends decisions and returns the court's replies."""
+
+from lacoc_client.play.asking import ask
+from lacoc_shared.decisions import Decision
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import (
+    DecisionReply,
+    DecisionRequest,
+    Done,
+    Enter,
+    Outlook,
+    OutlookRequest,
+)
+from lacoc_shared.network.session import Session
+from lacoc_shared.words import Phrase
+
+_OUTLOOK_S = 30.0
+"""Longest wait for an outlook, which a court computes beside its beats."""
+
+
+class RefereeClient:
+    """Sends decisions to a court.
+
+    Args:
+        session: an open client session.
+        court: the court's name.
+        token: a referee's token.
+    """
+
+    def __init__(self, session: Session, court: str, token: str) -> None:
+        self._session = session
+        self._keys = Keys(court)
+        self._token = token
+
+    def enter(self) -> None:
+        """Show the court the token, without a decision.
+
+        Raises:
+            UserError: if it is not a referee's token of the court, or no court answers.
+        """
+        ask(self._session, self._keys, self._keys.enter, Enter(token=self._token), Done)
+
+    def decide(self, decision: Decision, reason: Phrase | str, by: str) -> DecisionReply:
+        """Send a decision; the reply comes when the decision is on disk.
+
+        Args:
+            decision: the decision.
+            reason: why, for the record: a text, or a phrase of `reason.*`.
+            by: who decides, for the record.
+
+        Raises:
+            NoAnswer: if it is unknown here whether the decision was made; the log of events shows
+                it.
+            UserError: if the court refuses; the message is its reason.
+        """
+        name = str(type(decision).__struct_config__.tag)
+        request = DecisionRequest(token=self._token, by=by, reason=reason, decision=decision)
+        key = self._keys.decision(name)
+        return ask(self._session, self._keys, key, request, DecisionReply)
+
+    def look_ahead(self, decision: Decision | None, seconds: float) -> Outlook:
+        """Ask what would happen if play went on; the match stays as it is.
+
+        Args:
+            decision: what would be decided before; None: nothing.
+            seconds: how long play would go on at most [s], up to `OUTLOOK_MOST_S`.
+
+        Raises:
+            UserError: if the court refuses, such as when the match is not in a halt.
+        """
+        request = OutlookRequest(token=self._token, decision=decision, seconds=seconds)
+        key = self._keys.outlook
+        return ask(self._session, self._keys, key, request, Outlook, _OUTLOOK_S)

@@ -1,0 +1,180 @@
+"""The way of a token: it asks a court where its seat is, in a contest again and again."""
+
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Self
+
+from msgspec.structs import replace
+
+from lacoc_client.play.asking import NoCourt, NotNow, Patience, ask
+from lacoc_client.play.spectator import Spectator
+from lacoc_shared.contest.access import Access
+from lacoc_shared.keyspace import EVERY_COURT, Keys
+from lacoc_shared.messages.office import Where, Whereabouts
+from lacoc_shared.network.session import NotConnected, Session, open_client
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase
+
+_SOON_S, _LATER_S = 0.5, 2.0
+"""Time between two questions: while the team may be called at once, and otherwise."""
+_LATER_FROM_S = 30
+_GONE_S = 5.0
+
+
+def where(session: Session, court: str, token: str) -> Whereabouts:
+    """Ask a court where a team plays.
+
+    Args:
+        session: a connection to the court.
+        court: the court's name.
+        token: the team's token.
+
+    Raises:
+        NoCourt: if the court does not answer.
+        NotNow: if the court does not know yet where the team plays.
+        UserError: if no team has this token.
+    """
+    keys = Keys(court)
+    return ask(session, keys, keys.where, Where(token=token), Whereabouts)
+
+
+def _court_at(session: Session, court: str, *, any_court: bool) -> str:
+    """Return the name of the court to ask.
+
+    Args:
+        session: a connection to the court.
+        court: the court's name.
+        any_court: whether nobody named the court, so that any court at this address will do.
+    """
+    there = [key.split("/")[1] for key in session.present(EVERY_COURT)] if any_court else []
+    return court if court in there else next(iter(there), court)
+
+
+class TeamWay:
+    """Leads a team to its seat, and from court to court; used as a context manager.
+
+    Args:
+        access: the way to any court of the event, with the token.
+        any_court: whether nobody named the court, so that whichever is at the address is asked.
+        patience: how long to wait for the first answer.
+        tell: told what is next, as often as it changes.
+        stopping: returns whether somebody asked the program to end.
+
+    Raises:
+        UserError: if there is no such court, or the token opens nothing.
+    """
+
+    def __init__(
+        self,
+        access: Access,
+        *,
+        any_court: bool,
+        patience: Patience,
+        tell: Callable[[Phrase], None],
+        stopping: Callable[[], bool],
+    ) -> None:
+        self._access = access
+        self._tell = tell
+        self._stopping = stopping
+        self._said: Phrase | None = None
+        self._past = ""
+        """The call that the team has played."""
+        self._session = patience.until(
+            lambda: open_client(access.addresses, authority=access.authority)
+        )
+        try:
+            self._court = _court_at(self._session, access.court, any_court=any_court)
+            self._newest = patience.until(self._ask)
+        except BaseException:
+            self._session.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._session.close()
+
+    @property
+    def team(self) -> str:
+        """The team's name."""
+        return self._newest.team
+
+    def next(self) -> Whereabouts | None:
+        """Wait until the team is called to a court; None: its contest is over.
+
+        Raises:
+            UserError: if the token is not valid any more.
+            KeyboardInterrupt: if the program is asked to end.
+        """
+        while True:
+            there = self._newest
+            if there.state in ("out", "over"):
+                self._say(there.said)
+                return None
+            if there.open:
+                return there
+            if there.state == "court" and there.call != self._past:
+                self._say(there.said)
+                return there
+            if there.state == "waits":
+                self._say(there.said)
+            self._rest(_LATER_S if (there.about_s or 0) > _LATER_FROM_S else _SOON_S)
+            self._look()
+
+    def played(self, call: str) -> None:
+        """Note that the match of a call is over: `next` waits for another call."""
+        self._past = call
+        self._look()
+
+    def again(self) -> None:
+        """Wait a moment, then ask the court again where the team plays."""
+        self._rest(_SOON_S)
+        self._look()
+
+    def access(self, there: Whereabouts) -> Access:
+        """Return the way to the seat to which the team is called."""
+        own = self._access
+        if there.address:
+            own = Access(court=there.court, connect=there.address, authority=own.authority)
+        return replace(own, court=there.court).of_seat(there.seat, self._access.token)
+
+    def _ask(self) -> Whereabouts:
+        return where(self._session, self._court, self._access.token)
+
+    def _look(self) -> None:
+        try:
+            self._newest = self._ask()
+        except (NotConnected, NoCourt, NotNow) as error:
+            self._say(error.phrase)
+
+    def _say(self, what: Phrase) -> None:
+        if what != self._said:
+            self._said = what
+            self._tell(what)
+
+    def _rest(self, for_s: float) -> None:
+        end_s = time.monotonic() + for_s
+        while (left_s := end_s - time.monotonic()) > 0:
+            if self._stopping():
+                raise KeyboardInterrupt
+            time.sleep(min(left_s, 0.1))
+
+
+def is_over(view: Spectator, call: str) -> bool:
+    """Return whether the match of a call has its official end, or its court has another match."""
+    frame, sheet = view.frame, view.sheet
+    if sheet.call != call:
+        return True
+    return frame is not None and frame.match == sheet.match and frame.phase >= Phase.OFFICIAL
+
+
+def is_gone(view: Spectator) -> bool:
+    """Return whether a court has been silent for so long that it is better to ask again."""
+    return view.silent_s(time.monotonic()) > _GONE_S

@@ -1,0 +1,146 @@
+"""Clocks, scores, keys and links as texts, the same on every screen of the terminal."""
+
+from collections.abc import Mapping
+
+from lacoc_client.play.terminal.plain import poses
+from lacoc_shared.command.log import log_clock
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.messages import Event, Frame, SeatFrame, Sheet
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, SILENT_AFTER_S, Phase, SeatFlag
+from lacoc_shared.words import Phrase, render, say
+
+
+def phase_name(phase: Phase) -> str:
+    """Name a phase: "PLAYING"."""
+    return render(say("terminal.phase", phase=phase.name.lower()))
+
+
+def clock(ticks: int) -> str:
+    """Format a time of the clock, rounded up to a second: "2:05"."""
+    seconds = -(-max(0, ticks) // BEATS_PER_S)
+    return f"{seconds // 60}:{seconds % 60:02d}"
+
+
+def match_clock(frame: Frame, sheet: Sheet) -> str:
+    """Format the time left, or the time played if the match has no time limit."""
+    return clock(_shown_ticks(frame.clock_ticks, sheet))
+
+
+def event_clock(event: Event, sheet: Sheet) -> str:
+    """Format the time that the clock showed at an event, with tenths."""
+    return log_clock(_shown_ticks(event.clock_ticks, sheet))
+
+
+def _shown_ticks(clock_ticks: int, sheet: Sheet) -> int:
+    """Return the ticks left, or the ticks played if the match has no time limit."""
+    lasts = round(sheet.duration_s * BEATS_PER_S)
+    return lasts - clock_ticks if lasts else clock_ticks
+
+
+def phase_hint(frame: Frame, sheet: Sheet) -> str:
+    """Say what a phase other than PLAYING means, and in the lobby who is missing."""
+    if frame.phase == Phase.LOBBY and sheet.fixture is not None and not sheet.call:
+        return render(sheet.fixture)
+    if frame.phase == Phase.LOBBY:
+        missing = map(render, _missing(frame, sheet))
+        return render(say("join.semicolon")).join(missing) or render(say("hint.lobby"))
+    match frame.phase:
+        case Phase.CREATED:
+            hint = say("hint.created")
+        case Phase.READY:
+            hint = say("hint.ready")
+        case Phase.COUNTDOWN:
+            hint = say("hint.countdown", seconds=-(-frame.countdown_beats * BEAT_S // 1))
+        case Phase.HALTED:
+            hint = say("hint.halted")
+        case Phase.FINISHED:
+            hint = say("hint.finished")
+        case Phase.OFFICIAL:
+            hint = say("hint.official")
+        case Phase.VOID:
+            hint = say("hint.void")
+        case _:
+            return ""
+    return render(hint)
+
+
+def score(frame: Frame) -> str:
+    """Format the score: "18 : 20"."""
+    return " : ".join(str(seat.score) for seat in frame.seats)
+
+
+def played(sheet: Sheet) -> str:
+    """Say what is played: the fixture that an office assigned ("Semi-final 1"), and the game."""
+    if not sheet.call or sheet.fixture is None:
+        return sheet.title
+    return f"{render(sheet.fixture)} · {sheet.title}"
+
+
+def teams(sheet: Sheet) -> list[str]:
+    """Return the teams' names; a seat's id where nobody has joined."""
+    return [seat.team or seat.id for seat in sheet.seats]
+
+
+def refusals(refused: Mapping[str, int]) -> str:
+    """List how many messages were refused and why: "2 (wrong token), 1 (too many at once)"."""
+    counts = [say("info.refused", count=count, why=why) for why, count in refused.items()]
+    return render(say("plain.sentences", sentences=counts))
+
+
+def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
+    """Return a robot's key, as "B key 2, posture 1/4"; "" before the robot is on the field."""
+    if not frame.poses:
+        return ""
+    seat = frame.seats[index]
+    counts = sheet.seats[index].postures
+    several = seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1
+    key = say(
+        "terminal.standing-key",
+        level="AB"[seat.level],
+        key=seat.key,
+        posture=seat.posture + 1 if several else None,
+        of=counts[seat.key] if several else None,
+    )
+    return render(key)
+
+
+def place(frame: Frame, sheet: Sheet, seat: str) -> str:
+    """Say where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if there is none."""
+    pose = poses(frame, sheet).get(seat)
+    if pose is None:
+        return ""
+    # Adding zero turns a rounded -0.00 into 0.00.
+    x_m, y_m = (round(pose[name], 2) + 0.0 for name in ("x_m", "y_m"))
+    deg = round(pose["heading_deg"]) + 0.0
+    return render(say("terminal.place", x_m=x_m, y_m=y_m, heading_deg=deg))
+
+
+def seat_state(seat: SeatFrame) -> str:
+    """Say why a seat's keys do nothing now, or that it is silent; "" if all is well."""
+    flags = SeatFlag(seat.flags)
+    if SeatFlag.FROZEN in flags:
+        return render(say("terminal.frozen", seconds=_wait_s(seat)))
+    if seat.locked_ticks:
+        return render(say("terminal.restarted", seconds=_wait_s(seat)))
+    return render(say("terminal.not-heard")) if SeatFlag.SILENT in flags else ""
+
+
+def link(silent_s: float) -> str:
+    """Return a banner if no frames come; "" while they come."""
+    if silent_s < SILENT_AFTER_S:
+        return ""
+    return render(say("terminal.no-word", seconds=silent_s))
+
+
+def _missing(frame: Frame, sheet: Sheet) -> list[Phrase]:
+    missing = []
+    for info, seat in zip(sheet.seats, frame.seats, strict=False):
+        if not seat.flags & SeatFlag.JOINED:
+            missing.append(say("hint.not-joined", seat=info.id))
+        elif not seat.flags & SeatFlag.READY:
+            missing.append(say("hint.not-ready", team=info.team or info.id))
+    return missing
+
+
+def _wait_s(seat: SeatFrame) -> int:
+    return -(-seat.locked_ticks // BEATS_PER_S)

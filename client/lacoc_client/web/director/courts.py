@@ -1,0 +1,60 @@
+"""What the director knows of a court at one time. Pure."""
+
+from typing import NamedTuple
+
+from lacoc_client.web.director.stakes import USUAL
+from lacoc_shared.seat import Phase
+
+LAST_S = 30.0
+"""The last part of a match, from which the director never cuts away while it is close [s]."""
+
+_CLOSE = 0.2
+"""A match is close while the difference is at most this share of all points."""
+
+OVER = (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID)
+"""Phases after the end of a match: it has a result, or is void."""
+
+
+class CourtNow(NamedTuple):
+    """A court at one time."""
+
+    name: str
+    match: str
+    """Names the match. Points and moments of one match do not carry over to the next."""
+    phase: Phase
+    left_s: float | None
+    """Time left of the match [s]; None: it has no time limit."""
+    scores: tuple[int, ...]
+    """Points by seat."""
+    stake: float = USUAL
+    """How much the match counts; `stakes.stake`."""
+    has_begun: bool = False
+    """Whether the clock of the match has run: a countdown then resumes a halted match."""
+
+    @property
+    def ahead(self) -> int:
+        """Points by which the first seat leads; negative: the second one does."""
+        return self.scores[0] - self.scores[1] if len(self.scores) > 1 else 0
+
+    @property
+    def is_close(self) -> bool:
+        """Whether the difference is at most a fifth of all points."""
+        return len(self.scores) > 1 and abs(self.ahead) <= _CLOSE * sum(map(abs, self.scores))
+
+    @property
+    def is_played(self) -> bool:
+        """Whether the match is played, or interrupted: halted, or in the countdown after a halt."""
+        resumes = self.phase is Phase.COUNTDOWN and self.has_begun
+        return resumes or self.phase in (Phase.PLAYING, Phase.HALTED)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the match has a result, or is void."""
+        return self.phase in OVER
+
+    @property
+    def is_closing(self) -> bool:
+        """Whether these are the last 30 s of a close match."""
+        return (
+            self.is_played and self.left_s is not None and self.left_s <= LAST_S and self.is_close
+        )

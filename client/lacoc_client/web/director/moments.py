@@ -1,0 +1,71 @@
+"""What is worth seeing at a court, found by comparing two looks at it. Pure."""
+
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+from lacoc_client.web.director.courts import CourtNow
+
+LEAD_POINTS = 2.0
+"""A change of the lead adds this to the worth of a swing [points]."""
+CLOSING_POINTS = 4.0
+"""The last 30 s of a close match are worth a swing of so many points."""
+_STAKE_POINTS = 4.0
+"""The beginning of a match with a stake of 2 is worth a swing of so many points."""
+
+Why = Literal["lead", "swing", "closing", "stake"]
+"""What makes a moment.
+
+lead: another seat leads. swing: the difference in points changed. closing: the last 30 s of a close
+match begin, or a match becomes close in them. stake: a match with more than the usual stake begins.
+"""
+
+
+class Moment(NamedTuple):
+    """A moment that is worth seeing."""
+
+    at_s: float
+    court: str
+    points: float
+    """What it is worth, as a swing of so many points at a match of the usual stake."""
+    why: Why
+
+
+class Track:
+    """Follows one court, and finds its moments.
+
+    Args:
+        now: the court at the first look.
+    """
+
+    def __init__(self, now: CourtNow) -> None:
+        self._now = now
+        self._leader = _sign(now.ahead)
+        """Sign of the last difference that was not 0."""
+
+    def see(self, now_s: float, now: CourtNow) -> Iterator[Moment]:
+        """Take in how the court stands; yield the moments since the last look.
+
+        Args:
+            now_s: the time of the look [s].
+            now: the court.
+        """
+        before, self._now = self._now, now
+        if now.match != before.match:
+            self._leader = 0
+        if not now.is_played:
+            return
+        if now.stake > 1 and (now.match != before.match or not before.is_played):
+            yield Moment(now_s, now.name, _STAKE_POINTS * (now.stake - 1), "stake")
+        if now.is_closing and not (before.is_closing and now.match == before.match):
+            yield Moment(now_s, now.name, CLOSING_POINTS * now.stake, "closing")
+        points = abs(now.ahead - before.ahead)
+        leader = _sign(now.ahead)
+        is_lead = bool(leader and self._leader and leader != self._leader)
+        self._leader = leader or self._leader
+        if now.match == before.match and before.is_played and points:
+            worth = (points + LEAD_POINTS * is_lead) * now.stake
+            yield Moment(now_s, now.name, worth, "lead" if is_lead else "swing")
+
+
+def _sign(number: float) -> int:
+    return (number > 0) - (number < 0)

@@ -1,0 +1,122 @@
+"""Decides whether a moment is worth one of the few cuts that a minute may have. Pure."""
+
+import math
+from collections.abc import Callable, Sequence
+
+from lacoc_client.web.director.moments import Moment
+
+CUTS_MOST = 4
+"""Most cuts in any minute."""
+MINUTE_S = 60.0
+_SPARE_S = 0.01  # sums of times are not exact
+LEAST_S = 2.0
+"""Least time between two cuts [s]."""
+
+_RANKS = (0.03, 0.05, 0.1, 0.2)
+"""The best moments that are worth a cut while 1, 2, 3 or 4 cuts are left, as a share of all."""
+_NEARLY = 0.9
+"""A cut costs this part of the value of the least of those moments."""
+_LOOKED_AT = 0.15
+"""Only the best moments have a value: this share of all."""
+_KNOWN_LEAST = 20
+"""With fewer moments known, `_AT_FIRST` stands for them."""
+_AT_FIRST = 6.0
+"""What the best tenth of all moments is assumed to be worth at least [points]."""
+_MOST = 8
+"""Most moments to come that are compared."""
+
+
+def cuts_left(cuts: Sequence[float], at_s: float) -> int:
+    """Return how many cuts are left for the minute that ends now.
+
+    Args:
+        cuts: the times of earlier cuts.
+        at_s: the time [s].
+    """
+    return CUTS_MOST - sum(at_s - one <= MINUTE_S + _SPARE_S for one in cuts)
+
+
+def may_cut(cuts: Sequence[float], at_s: float) -> bool:
+    """Return whether another cut may be made now; for the arguments see `cuts_left`."""
+    return cuts_left(cuts, at_s) > 0 and not (cuts and at_s - cuts[-1] < LEAST_S)
+
+
+def worth(points: float) -> float:
+    """Return what a moment of so many points is worth on air: their cube.
+
+    So one swing of ten points is worth as much as eight swings of five.
+    """
+    return points**3
+
+
+class Prices:
+    """What moments and cuts are worth, compared with all moments of the last minutes.
+
+    Args:
+        known: those moments, at all courts.
+    """
+
+    def __init__(self, known: Sequence[Moment]) -> None:
+        self._sorted = sorted((one.points for one in known), reverse=True)
+        self._least = self.least(_LOOKED_AT)
+        self._costs = [_NEARLY * worth(self.least(share)) for share in _RANKS]
+
+    def value(self, moment: Moment) -> float:
+        """Return what a moment is worth on air; all but the best moments are worth 0."""
+        return worth(moment.points) if moment.points >= self._least else 0.0
+
+    def cost(self, left: int) -> float:
+        """Return what a cut costs while `left` cuts are left, 1 to `CUTS_MOST`."""
+        return self._costs[left - 1]
+
+    def least(self, share: float) -> float:
+        """Return the points of the least of the best moments, which are this share of all."""
+        if len(self._sorted) < _KNOWN_LEAST:
+            return _AT_FIRST * math.sqrt(0.1 / share)
+        return self._sorted[max(0, int(len(self._sorted) * share) - 1)]
+
+
+def is_worth_it(
+    on_air: str,
+    moment: Moment,
+    coming: Sequence[Moment],
+    cuts: Sequence[float],
+    prices: Prices,
+    locked: Callable[[str, float], bool],
+) -> bool:
+    """Return whether to cut to a moment, or rather to stay and cut to a later one.
+
+    Args:
+        on_air: the court on air.
+        moment: a moment that begins now, at a court that is not on air.
+        coming: all other moments that are known and not over, at any court.
+        cuts: the times of earlier cuts.
+        prices: what moments and cuts are worth.
+        locked: tells whether a cut away from a court is forbidden at a time.
+    """
+    gain = prices.value(moment)
+    if not gain:
+        return False
+    best = sorted(coming, key=lambda one: (-prices.value(one), one.at_s))[:_MOST]
+    ahead = sorted(one for one in best if prices.value(one))
+
+    def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
+        """Return the largest gain from `ahead[index]` on, with `court` on air after these cuts.
+
+        The gain is the worth of all moments that are on air, less the costs of the cuts to them.
+        """
+        if index == len(ahead):
+            return 0.0
+        one = ahead[index]
+        if one.court == court:
+            return prices.value(one) + way(index + 1, court, cuts)
+        stay = way(index + 1, court, cuts)
+        gain = prices.value(one) - prices.cost(max(1, cuts_left(cuts, one.at_s)))
+        if gain <= 0 or not may_cut(cuts, one.at_s) or locked(court, one.at_s):
+            return stay
+        return max(stay, gain + way(index + 1, one.court, (*cuts, one.at_s)))
+
+    made = tuple(cuts)
+    go = gain - prices.cost(max(1, cuts_left(cuts, moment.at_s)))
+    go += way(0, moment.court, (*made, moment.at_s))
+    return go > way(0, on_air, made)

@@ -1,0 +1,77 @@
+"""The pages that watch one court."""
+
+from typing import Protocol
+
+from lacoc_client.web.gateway.viewer import Frames, Viewer
+
+
+class Listener(Protocol):
+    """Receives all that a court sends, as a page does, but is no page."""
+
+    def send(self, framed: bytes) -> None:
+        """Take a message that must arrive."""
+
+    def send_if_fast(self, framed: bytes) -> None:
+        """Take a message that may be missed."""
+
+    def offer(self, framed: bytes, now_s: float) -> None:
+        """Take a frame that came at a time [s]."""
+
+
+class Audience:
+    """The pages that receive what a court sends; used from the event loop only."""
+
+    def __init__(self) -> None:
+        self._viewers: dict[Viewer, None] = {}
+        self._listeners: list[Listener] = []
+        self._gone = Frames()
+        """Frame counts of pages that have gone."""
+
+    def __len__(self) -> int:
+        return len(self._viewers)
+
+    def add(self, viewer: Viewer) -> None:
+        """Add a page, which gets everything from now on."""
+        self._viewers[viewer] = None
+
+    def tap(self, listener: Listener) -> None:
+        """Let a listener have everything from now on, beside the pages; it counts as no page."""
+        self._listeners.append(listener)
+
+    def remove(self, viewer: Viewer) -> None:
+        """Remove a page, and keep its frame counts."""
+        if viewer in self._viewers:
+            del self._viewers[viewer]
+            self._gone.sent += viewer.frames.sent
+            self._gone.dropped += viewer.frames.dropped
+
+    def others(self, viewer: Viewer) -> int:
+        """Count the other pages with the same right as this one: to act, or only to watch."""
+        return sum(one.can_act == viewer.can_act for one in self._viewers if one is not viewer)
+
+    def frames(self) -> Frames:
+        """Return the frame counts of all pages; may be called from any thread."""
+        counts = [self._gone, *(viewer.frames for viewer in list(self._viewers))]
+        return Frames(sum(one.sent for one in counts), sum(one.dropped for one in counts))
+
+    def send(self, *messages: bytes) -> None:
+        """Send messages that must arrive, in order."""
+        for one in (*self._viewers, *self._listeners):
+            for framed in messages:
+                one.send(framed)
+
+    def send_own(self, framed: bytes) -> None:
+        """Send a message that must arrive, to the pages of whoever started the gateway."""
+        for viewer in self._viewers:
+            if viewer.is_own:
+                viewer.send(framed)
+
+    def send_if_fast(self, framed: bytes) -> None:
+        """Send a message to the pages that keep up; a slow page misses it and gets a later one."""
+        for one in (*self._viewers, *self._listeners):
+            one.send_if_fast(framed)
+
+    def offer(self, framed: bytes, now_s: float) -> None:
+        """Send a frame to the pages for which one is due."""
+        for one in (*self._viewers, *self._listeners):
+            one.offer(framed, now_s)

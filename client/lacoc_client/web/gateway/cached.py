@@ -1,0 +1,58 @@
+"""Answers that a browser, or a proxy on the way, may keep; each says for how long."""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+
+from lacoc_client.web.gateway.files import PageFile, page_file
+
+FOR_EVER = "public, max-age=31536000, immutable"
+"""For what never changes under its name: assets, whose names contain their hash, and records."""
+ASK_AGAIN = "no-cache"
+"""For what changes: the browser asks whether what it has is still the newest."""
+_A_SECOND = "public, max-age=1"
+"""For what a crowd asks again and again: a proxy that keeps it asks once a second for all."""
+
+_packed = lru_cache(maxsize=16)(page_file)
+
+
+def file_response(request: Request, file: PageFile, cache: str) -> Response:
+    """Answer with a file; only that nothing has changed, if the browser has it.
+
+    Args:
+        request: the request.
+        file: the file.
+        cache: how long it may be kept.
+    """
+    tag = f'W/"{file.hash}"'
+    headers = {"Cache-Control": cache, "Vary": "Accept-Encoding", "ETag": tag}
+    if request.headers.get("if-none-match") == tag:
+        return Response(status_code=304, headers=headers)
+    data = file.data
+    if file.packed is not None and "gzip" in request.headers.get("accept-encoding", ""):
+        data = file.packed
+        headers["Content-Encoding"] = "gzip"
+    return Response(data, headers=headers, media_type=file.media_type)
+
+
+def json_response(request: Request, found: Any) -> Response:
+    """Answer with what changes all the time and many pages ask for."""
+    file = _packed(msgspec.json.encode(found), "application/json")
+    return file_response(request, file, _A_SECOND)
+
+
+def large_response(request: Request, path: Path, media_type: str, cache: str) -> Response:
+    """Answer with a file that is too large to be kept here; else as `file_response`.
+
+    Raises:
+        OSError: if the file has gone.
+    """
+    headers = {"Cache-Control": cache}
+    found = FileResponse(path, headers=headers, media_type=media_type, stat_result=path.stat())
+    if request.headers.get("if-none-match") == found.headers["ETag"]:
+        return Response(status_code=304, headers=headers | {"ETag": found.headers["ETag"]})
+    return found

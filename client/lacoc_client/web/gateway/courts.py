@@ -1,0 +1,147 @@
+"""The courts of a gateway, and how many pages it lets in."""
+
+import asyncio
+import hmac
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.audience import Audience
+from lacoc_client.web.gateway.feed import CourtFeed
+from lacoc_client.web.gateway.home import ACTING_MOST, CLAIMING_MOST, Home
+from lacoc_client.web.gateway.programme import Programme
+from lacoc_client.web.gateway.referees import Referees
+from lacoc_client.web.gateway.threads import Threads
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_shared.contest.tokens import digest
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase, say
+
+_THREADS = 16
+_FILES_S = 0.5
+_STRANGERS = 4
+"""Threads for unproven tokens. Decisions and fetches use others, so they never wait for these."""
+
+
+class Courts:
+    """The feed and the referees of each court of a gateway; they are made when first needed.
+
+    Args:
+        home: the gateway's settings.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self.home = home
+        self.threads = Threads(_THREADS)
+        """Threads that ask courts."""
+        self.strangers = Threads(_STRANGERS)
+        """Threads that try tokens that no court has accepted yet."""
+        self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
+        self.programme = Programme(self._all)
+        """What the director puts on air."""
+        self.claiming: set[Viewer] = set()
+        """Pages that were let in only because they have a token, which no court has accepted yet.
+        """
+        self._accepted: set[bytes] = set()
+        """Digests of the tokens that a court has accepted."""
+        self.sent_away = 0
+        """Number of pages that were refused because there were too many."""
+
+    def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
+        """Return the started feed and the referees of a court; without a name, of the first court.
+
+        Raises:
+            UserError: if this gateway has no such court.
+        """
+        courts = self.home.courts
+        name = name or next(iter(courts))
+        if name not in courts:
+            raise UserError(say("gateway.no-court", court=name, courts=list(courts)))
+        if name not in self._feeds:
+            feed = CourtFeed(courts[name], self.threads)
+            self._feeds[name] = (feed, Referees())
+            feed.start()
+        return self._feeds[name]
+
+    def _all(self) -> list[CourtFeed]:
+        """Return the started feeds of all courts of this gateway."""
+        return [self.find(name)[0] for name in list(self.home.courts)]
+
+    @property
+    def feeds(self) -> list[CourtFeed]:
+        """The feeds of all courts that were asked for; may be read from any thread."""
+        return [feed for feed, _ in list(self._feeds.values())]
+
+    def audiences(self, feed: CourtFeed) -> list[Audience]:
+        """Return all pages to which a court is shown; any thread may call it."""
+        followers = self.programme.audience(feed.court)
+        return [feed.audience] if followers is None else [feed.audience, followers]
+
+    def over(self) -> list[str]:
+        """List the matches that are over but still open at their courts; any thread may call it."""
+        pictures = [feed.picture for feed in self.feeds]
+        ended = (Phase.OFFICIAL, Phase.VOID)
+        return [picture.view.match_id for picture in pictures if picture.phase in ended]
+
+    def accept(self, token: str) -> None:
+        """Remember that a court has accepted a token."""
+        self._accepted.add(digest(token))
+
+    def has_accepted(self, token: str | None) -> bool:
+        """Return whether a court has accepted a token."""
+        return token is not None and digest(token) in self._accepted
+
+    def threads_for(self, token: str) -> Threads:
+        """Return the threads that show a token to a court.
+
+        Whoever comes back does not wait behind people who try tokens.
+        """
+        return self.threads if self.has_accepted(token) else self.strangers
+
+    def owns(self, key: str | None) -> bool:
+        """Return whether a page key is the one of this gateway."""
+        return key is not None and hmac.compare_digest(
+            key.encode("utf-8", "surrogatepass"), self.home.key.encode()
+        )
+
+    def lets_act(self, secret: str) -> bool:
+        """Return whether a secret is the page key, or a token that a court has accepted."""
+        return self.owns(secret) or self.has_accepted(secret)
+
+    def why_full(self, viewer: Viewer, claims: bool = False) -> Phrase | None:
+        """Say why there is no room for a page; None if there is room.
+
+        Pages whose token a court has accepted have a limit of their own. So no crowd of spectators
+        can take their places. A page with another token has a place beside the spectators too,
+        until it has shown its token to a court.
+
+        Args:
+            viewer: the page.
+            claims: whether it has a token that no court has accepted yet.
+        """
+        acts = viewer.can_act
+        most = ACTING_MOST if acts else self.home.viewers_most
+        others = sum(feed.audience.others(viewer) for feed in self.feeds)
+        if others + self.programme.others(viewer) < most:
+            return None
+        if acts:
+            return say("gateway.full-acting", most=most)
+        if claims and len(self.claiming - {viewer}) < CLAIMING_MOST:
+            self.claiming.add(viewer)
+            return None
+        return say("gateway.full", most=most)
+
+    async def watch_files(self) -> None:
+        """Watch the files on this machine; when they change, tell the pages of their owner."""
+        own = self.home.prefill.files if self.home.prefill is not None else None
+        while own is not None:
+            await asyncio.sleep(_FILES_S)
+            if await asyncio.to_thread(own.look):
+                for feed in self.feeds:
+                    feed.audience.send_own(wire.files_message(own))
+
+    async def close(self) -> None:
+        """Close all connections."""
+        self.programme.stop()
+        await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
+        self.threads.close()
+        self.strangers.close()

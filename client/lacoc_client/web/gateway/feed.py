@@ -1,0 +1,363 @@
+"""Receives what a court sends, once, and passes it to all pages that watch it."""
+
+import asyncio
+import contextlib
+import time
+from collections.abc import Callable
+
+from lacoc_client.play.asking import fetch, no_answer
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.audience import Audience, Listener
+from lacoc_client.web.gateway.picture import CourtPicture
+from lacoc_client.web.gateway.threads import Threads
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_shared.codec import BadMessage
+from lacoc_shared.command import log
+from lacoc_shared.contest.access import Access
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import PROTOCOL
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import Mailbox, Session, open_client
+from lacoc_shared.seat import SILENT_AFTER_S
+from lacoc_shared.words import Phrase, render, say
+
+_EVENTS_DEPTH = 4096
+_LOOK_S = 0.25
+_SAY_S = 1.0
+_RETRY_S = 1.0
+_WHY_S = 3.0
+_FETCH_AGAIN_S = 0.3
+_TRIP_S = 1.0
+_JOINED_S = 3.0
+"""Longest wait for a court that is not connected yet."""
+"""Time between two measurements of the way to the court, however many pages want to know."""
+
+
+class CourtFeed:
+    """A court as its pages see it; used from the event loop only.
+
+    It may exist before its court does, and survives any number of the court's restarts.
+
+    Args:
+        access: the way to the court, as a spectator.
+        threads: threads that ask the court.
+    """
+
+    def __init__(self, access: Access, threads: Threads) -> None:
+        self.access = access
+        self.court = court = access.court
+        self.session: Session | None = None
+        """The connection; None until the first one."""
+        self._keys = Keys(court)
+        self._threads = threads
+        self.audience = Audience()
+        """The pages that watch."""
+        self.picture = CourtPicture()
+        """The newest state of the court, as its pages see it."""
+        self._say = log.get(court=court)
+        self._frame_s = time.monotonic()
+        self._connected = False
+        """Whether the court sends frames in this gateway's version; only then pages get them."""
+        self._why: Phrase | None = None
+        """Why the court sends no frames."""
+        self._restoring: asyncio.Task[None] | None = None
+        self._explaining: asyncio.Task[None] | None = None
+        self._explained_s = 0.0
+        self._trip_ms: float | None = None
+        self._trip_asked_s = -_TRIP_S
+        self._measuring: asyncio.Task[None] | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        """Start listening to the court; a second call does nothing."""
+        if self._task is None:
+            self._task = asyncio.get_running_loop().create_task(self._run())
+
+    async def stop(self) -> None:
+        """Close the connection."""
+        started = (self._task, self._restoring, self._explaining, self._measuring)
+        tasks = [task for task in started if task]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        if self.session is not None:
+            self.session.close()
+
+    @property
+    def connected(self) -> bool:
+        """True if the court sends frames."""
+        return self._connected
+
+    async def joined(self) -> Session:
+        """Wait a moment until the court is connected; return the connection to it.
+
+        Raises:
+            UserError: if it is not connected by then.
+        """
+        end_s = time.monotonic() + _JOINED_S
+        while not self._connected and time.monotonic() < end_s:
+            await asyncio.sleep(_LOOK_S)
+        if self.session is None or not self._connected:
+            raise UserError(self._why or say("gateway.court-not-there", court=self.court))
+        return self.session
+
+    def trip_ms(self) -> float | None:
+        """Return how long the court's newest answer took [ms], and ask it again for the next time.
+
+        None: nothing was asked yet, or the court does not answer.
+        """
+        now_s = time.monotonic()
+        idle = self._measuring is None or self._measuring.done()
+        if self.session is not None and idle and now_s - self._trip_asked_s >= _TRIP_S:
+            self._trip_asked_s = now_s
+            self._measuring = asyncio.get_running_loop().create_task(self._measure())
+        return self._trip_ms
+
+    async def _measure(self) -> None:
+        began_s = time.monotonic()
+        try:
+            await self._ask(self._keys.sheet)
+        except UserError:
+            self._trip_ms = None
+        else:
+            self._trip_ms = 1000 * (time.monotonic() - began_s)
+
+    def log(self, text: str, kind: str, **particulars: object) -> None:
+        """Log a line about this court."""
+        self._say.info(text, kind=kind, match_id=self.picture.view.match_id, **particulars)
+
+    def add(self, viewer: Viewer) -> None:
+        """Let a page watch; send it everything that is known."""
+        for framed in (self._link(), *self._all()):
+            viewer.send(framed)
+        self.audience.add(viewer)
+
+    def tap(self, listener: Listener) -> None:
+        """Let a listener have everything that pages get; send it everything that is known."""
+        for framed in (self._link(), *self._all()):
+            listener.send(framed)
+        self.audience.tap(listener)
+
+    def _all(self) -> tuple[bytes, ...]:
+        frame = self.picture.frame
+        if frame is None or not self._connected:  # an old frame must not look like a new one
+            return self.picture.all_but_frame()
+        return (*self.picture.all_but_frame(), frame)
+
+    async def _run(self) -> None:
+        while self.session is None:
+            try:
+                self.session = await self._threads.run(
+                    lambda: open_client(self.access.addresses, authority=self.access.authority)
+                )
+                await self._subscribe(self.session)
+            except UserError as error:
+                self._why = error.phrase
+                self.audience.send(self._link())
+                await asyncio.sleep(_RETRY_S)
+        self._why, self._frame_s = None, time.monotonic()
+        said_s = 0.0
+        while True:
+            now_s = time.monotonic()
+            silent = now_s - self._frame_s >= SILENT_AFTER_S
+            was, self._connected = self._connected, self._connected and not silent
+            if was and silent:
+                self.log(f"Court {self.court} is silent.", "link", connected=False)
+            if not self._connected and (was or now_s - said_s >= _SAY_S):
+                said_s = now_s
+                self.audience.send(self._link())
+                if silent:
+                    self._explain(now_s)
+            await asyncio.sleep(_LOOK_S)
+
+    def _come_back(self) -> None:
+        """Show the court again after a silence; it may have a new match, so send everything."""
+        self._connected, self._why = True, None
+        self.log(f"Court {self.court} sends frames.", "link", connected=True)
+        self.audience.send(self._link(), *self._all())
+
+    def _link(self) -> bytes:
+        silent_s = max(0.0, time.monotonic() - self._frame_s)
+        why = None if self._connected else self._wrong_version or self._why
+        return wire.map_message(
+            Kind.LINK,
+            {
+                "court": self.court,
+                "connected": self._connected,
+                "silent_s": round(silent_s, 1),
+                "why": why,
+                "log": self._log_number,
+            },
+        )
+
+    def _explain(self, now_s: float) -> None:
+        """Start a request for the reason of the court's silence; the request takes a while."""
+        idle = self._explaining is None or self._explaining.done()
+        if self._wrong_version or not idle or now_s - self._explained_s < _WHY_S:
+            return
+        self._explained_s = now_s
+        assert self.session is not None
+        self._explaining = asyncio.get_running_loop().create_task(self._find_words(self.session))
+
+    async def _find_words(self, session: Session) -> None:
+        why = await self._threads.run(lambda: no_answer(session, self.court))
+        self._why = None if self._connected else why
+
+    async def _subscribe(self, session: Session) -> None:
+        """Subscribe to the court; the sheet and the log come before the first frame."""
+        loop = asyncio.get_running_loop()
+
+        def hear(key: str, depth: int, take: Callable[[bytes], None]) -> None:
+            boxes: list[Mailbox] = []
+
+            def empty() -> None:
+                while boxes and (mail := boxes[0].take()) is not None:
+                    take(mail.payload)
+
+            def notify() -> None:  # on Zenoh's thread
+                with contextlib.suppress(RuntimeError):  # the loop has ended
+                    loop.call_soon_threadsafe(empty)
+
+            boxes.append(session.mailbox(key, depth, notify))
+            empty()  # messages that came before the mailbox was in the list
+
+        hear(self._keys.sheet, 1, self._hear_sheet)
+        hear(self._keys.event, _EVENTS_DEPTH, self._take_event)
+        with contextlib.suppress(UserError, BadMessage):  # they come later
+            await self._fetch_sheet()
+            self._take_log(await self._ask(self._keys.event))
+        hear(self._keys.health, 1, self._take_health)
+        hear(self._keys.frame, 1, self._take_frame)
+
+    def _take_frame(self, payload: bytes) -> None:
+        try:
+            framed = self.picture.take_frame(payload)
+        except BadMessage:
+            self._stray()
+            return
+        now_s = self._frame_s = time.monotonic()
+        if not self._connected and self._other_version is None:
+            self._come_back()
+        if self._connected:
+            self.audience.offer(framed, now_s)
+        if self.picture.view.lacks_scene or self.picture.view.lacks_sheet:
+            self._catch_up()
+
+    def _take_event(self, payload: bytes) -> None:
+        number = self._log_number
+        try:
+            framed = self.picture.take_event(payload)
+        except BadMessage:
+            self._stray()
+            return
+        if self._log_number != number:
+            self._send_log()
+        elif framed is not None:
+            self.audience.send(framed)
+
+    def _take_log(self, payload: bytes) -> None:
+        number = self._log_number
+        self.picture.view.take_log(payload)
+        if self._log_number != number:
+            self._send_log()
+
+    def _send_log(self) -> None:
+        # The new log number in the link message tells pages to drop the old events.
+        self.audience.send(self._link(), *self.picture.log)
+
+    def _take_scene(self, payload: bytes) -> None:
+        framed = self.picture.take_scene(payload)
+        if framed is not None:
+            self.audience.send(framed)
+
+    def _hear_sheet(self, payload: bytes) -> None:
+        try:
+            self._take_sheet(payload)
+        except BadMessage:
+            self._stray()
+
+    def _take_sheet(self, payload: bytes) -> None:
+        before = self._other_version
+        framed = self.picture.take_sheet(payload)
+        if framed is not None:
+            self.audience.send(framed)
+        self._look_at_version(before)
+
+    def _take_health(self, payload: bytes) -> None:
+        try:
+            framed = self.picture.take_health(payload)
+        except BadMessage:
+            self._stray()
+            return
+        if self.picture.view.lacks_events or self.picture.view.lacks_sheet:
+            self._catch_up()
+        if framed is not None:
+            self.audience.send_if_fast(framed)
+
+    def _stray(self) -> None:
+        """Handle a message that can't be decoded: the sheet tells whether the version differs."""
+        if self._other_version is None:
+            self.picture.view.doubt()
+            self._catch_up()
+
+    def _look_at_version(self, before: int | None) -> None:
+        """Hide the court if its newest sheet has another version of the protocol than ours.
+
+        Args:
+            before: the other version that was known before this sheet; None: none was known. If it
+                has not changed, the court is hidden already.
+        """
+        if self._other_version not in (None, before):
+            self._connected = False
+            self.log(render(self._wrong_version or ""), "link", connected=False)
+            self.audience.send(self._link())
+
+    @property
+    def _other_version(self) -> int | None:
+        return self.picture.view.other_version
+
+    @property
+    def _log_number(self) -> int:
+        """Version of the log; a new one means that events before the newest may have changed."""
+        return self.picture.view.log.number
+
+    @property
+    def _wrong_version(self) -> Phrase | None:
+        """Why the court is not shown: it has another version of the protocol; None: it has ours."""
+        if self._other_version is None:
+            return None
+        version = self._other_version or None
+        return say("gateway.other-version", court=self.court, version=version, gateway=PROTOCOL)
+
+    def _catch_up(self) -> None:
+        """Fetch what is new, was sent while the connection was down, or was lost on a slow link."""
+        if self._restoring is None or self._restoring.done():
+            self._restoring = asyncio.get_running_loop().create_task(self._restore())
+
+    async def _restore(self) -> None:
+        view = self.picture.view
+        while view.lacks_events or view.lacks_scene or view.lacks_sheet:
+            with contextlib.suppress(UserError, BadMessage):  # the court went away
+                if view.lacks_events:
+                    self._take_log(await self._ask(self._keys.event))
+                if view.lacks_scene:
+                    self._take_scene(await self._ask(self._keys.scene))
+                if view.lacks_sheet:
+                    await self._fetch_sheet()
+            await asyncio.sleep(_FETCH_AGAIN_S)
+            if not self._connected:
+                return  # the next frame or health asks again
+
+    async def _fetch_sheet(self) -> None:
+        payload, before = await self._ask(self._keys.sheet), self._other_version
+        try:
+            self._take_sheet(payload)
+        except BadMessage:
+            self.picture.view.refuse_sheet()
+            self._look_at_version(before)
+
+    async def _ask(self, key: str) -> bytes:
+        session = self.session
+        assert session is not None
+        return await self._threads.run(lambda: fetch(session, self._keys, key))

@@ -1,0 +1,104 @@
+"""Shows a court as it was some seconds ago: holds back all messages to its pages."""
+
+import time
+from collections import deque
+from enum import Enum, auto
+
+import msgspec
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.audience import Audience
+from lacoc_client.web.gateway.feed import CourtFeed
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_shared.codec import decode
+
+_NEEDED = (Kind.LINK, Kind.SHEET, Kind.SCENE)
+
+
+class _Link(msgspec.Struct):
+    """The fields of a link message that say which earlier messages still count."""
+
+    connected: bool
+    log: int
+
+
+class _Way(Enum):
+    """The method of `Listener` by which a message came."""
+
+    SENT = auto()
+    IF_FAST = auto()
+    OFFERED = auto()
+
+
+class LateFeed:
+    """Passes on what a court's feed sends, each message later by a fixed time.
+
+    Args:
+        feed: the court.
+        behind_s: how much later messages are passed on [s].
+    """
+
+    def __init__(self, feed: CourtFeed, behind_s: float) -> None:
+        self.court = feed.court
+        self.audience = Audience()
+        """The pages that watch it late."""
+        self._behind_s = behind_s
+        self._waiting: deque[tuple[float, _Way, bytes]] = deque()
+        self._newest: dict[Kind, bytes] = {}
+        """The messages besides the events that a page needs when it comes, by kind."""
+        self._events: dict[bytes, None] = {}
+        self._log = 0
+        feed.tap(self)
+
+    def send(self, framed: bytes) -> None:
+        """Hold a message back."""
+        self._waiting.append((time.monotonic(), _Way.SENT, framed))
+
+    def send_if_fast(self, framed: bytes) -> None:
+        """Hold back a message that a slow page may miss."""
+        self._waiting.append((time.monotonic(), _Way.IF_FAST, framed))
+
+    def offer(self, framed: bytes, now_s: float) -> None:
+        """Hold a frame back."""
+        self._waiting.append((now_s, _Way.OFFERED, framed))
+
+    def add(self, viewer: Viewer) -> None:
+        """Let a page watch; send it everything that was known `behind_s` ago."""
+        kept = self._newest
+        messages = [kept[kind] for kind in _NEEDED if kind in kept] + [*self._events]
+        messages += [kept[kind] for kind in (Kind.HEALTH, Kind.FRAME) if kind in kept]
+        for framed in messages:
+            viewer.send(framed)
+        self.audience.add(viewer)
+
+    def play(self, now_s: float) -> None:
+        """Pass on what has waited long enough.
+
+        Args:
+            now_s: the time of `time.monotonic` [s].
+        """
+        while self._waiting and self._waiting[0][0] <= now_s - self._behind_s:
+            _, way, framed = self._waiting.popleft()
+            self._keep(framed)
+            match way:
+                case _Way.SENT:
+                    self.audience.send(framed)
+                case _Way.IF_FAST:
+                    self.audience.send_if_fast(framed)
+                case _Way.OFFERED:
+                    self.audience.offer(framed, now_s)
+
+    def _keep(self, framed: bytes) -> None:
+        kind, payload = wire.opened(framed)
+        if kind is Kind.EVENT:
+            self._events[framed] = None
+            return
+        self._newest[kind] = framed
+        if kind is Kind.LINK:
+            link = decode(payload, _Link)
+            if link.log != self._log:
+                self._log = link.log
+                self._events.clear()
+            if not link.connected:  # an old frame must not look like a new one
+                self._newest.pop(Kind.FRAME, None)

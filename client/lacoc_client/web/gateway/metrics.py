@@ -1,0 +1,52 @@
+"""A gateway's numbers for Prometheus: who watches, and the frames they get."""
+
+from collections.abc import Iterator
+
+from prometheus_client import Metric
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
+from prometheus_client.registry import Collector
+
+from lacoc_client.web.gateway.courts import Courts
+
+
+class GatewayMetrics(Collector):
+    """The metrics of a gateway; a scrape reads plain numbers that the event loop writes.
+
+    Args:
+        courts: the courts of the gateway.
+    """
+
+    def __init__(self, courts: Courts) -> None:
+        self._courts = courts
+
+    def collect(self) -> Iterator[Metric]:
+        """Return all metric families; called by a scrape, on its own thread."""
+        labels = ["court"]
+        connected = GaugeMetricFamily(
+            "lacoc_gateway_connected", "1 while the court sends frames.", labels=labels
+        )
+        viewers = GaugeMetricFamily(
+            "lacoc_gateway_viewers", "Pages that watch the court.", labels=labels
+        )
+        sent = CounterMetricFamily(
+            "lacoc_gateway_frames_sent", "Frames given to pages.", labels=labels
+        )
+        dropped = CounterMetricFamily(
+            "lacoc_gateway_frames_dropped",
+            "Frames that a page was too slow for; it got a newer one.",
+            labels=labels,
+        )
+        for feed in self._courts.feeds:
+            court = [feed.court]
+            connected.add_metric(court, feed.connected)
+            audiences = self._courts.audiences(feed)
+            viewers.add_metric(court, sum(len(one) for one in audiences))
+            frames = [one.frames() for one in audiences]
+            sent.add_metric(court, sum(one.sent for one in frames))
+            dropped.add_metric(court, sum(one.dropped for one in frames))
+        yield from (connected, viewers, sent, dropped)
+        full = CounterMetricFamily(
+            "lacoc_gateway_sent_away", "Pages that were refused because there were too many."
+        )
+        full.add_metric([], self._courts.sent_away)
+        yield full

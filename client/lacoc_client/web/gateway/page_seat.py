@@ -1,0 +1,147 @@
+"""The seat that one page holds."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from lacoc_client.play.controller import Controller, Seen
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.answers import Answers, in_loop
+from lacoc_client.web.gateway.home import Prefill
+from lacoc_client.web.gateway.seat_thread import Answer, SeatThread
+from lacoc_client.web.gateway.viewer import MOST_HZ, Viewer
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_robots.seat_files import SeatFiles, to_send
+from lacoc_shared.contest.access import Access
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render, say
+
+
+class PageSeat:
+    """Joins a seat, steers it and reports its state to the page; used from the event loop only.
+
+    Args:
+        viewer: the page.
+        answers: answers the page's requests.
+        prefill: what the page need not send.
+        log: logs a line about the page: a sentence, its kind and particulars.
+    """
+
+    def __init__(
+        self,
+        viewer: Viewer,
+        answers: Answers,
+        prefill: Prefill | None,
+        log: Callable[..., None],
+    ) -> None:
+        self._viewer = viewer
+        self._answers = answers
+        self._prefill = prefill
+        self._log = log
+        self._thread: SeatThread | None = None
+        self._joins = 0
+        self.brings = True
+        """Whether a join brings files: an office has frozen those of its teams."""
+        self._hold = ("", "")
+        """The seat and its hold, as last logged."""
+
+    def join(self, asked: wire.JoinAsk, watching: Access, joined: Answer) -> None:
+        """Take a seat, in place of the page's earlier seat if it had one.
+
+        Args:
+            asked: the page's request.
+            watching: the way to the court, as a spectator.
+            joined: receives the result, on another thread.
+
+        Raises:
+            UserError: if there is no token.
+        """
+        access, name, files = self._entry(asked, watching)
+        prefill = self._prefill if self._viewer.is_own else None
+        own = prefill.files if prefill is not None else None
+        self._end()
+        loop, viewer, joins = asyncio.get_running_loop(), self._viewer, self._joins
+        viewer.watch_closely()
+        viewer.at_least(MOST_HZ)
+
+        def tell(seat: dict[str, Any]) -> None:
+            in_loop(loop, lambda: self._tell(seat, joins))
+
+        if own is not None:
+            viewer.send(wire.files_message(own, used=own.version))
+        self._thread = SeatThread(
+            access,
+            name,
+            lambda notes: to_send(files, asked.sequences, notes),
+            viewer.unheard_s,
+            tell,
+            joined,
+        )
+
+    def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk | wire.SawAsk) -> None:
+        """Pass a request to the seat's controller.
+
+        Raises:
+            UserError: if the page has no seat.
+        """
+        if self._thread is None:
+            raise UserError(say("gateway.no-seat"))
+        do, answer = self._thread.do, self._answers.from_thread(asked.id)
+        match asked:
+            case wire.ReadyAsk(ready=ready):
+                do(lambda controller: {"said": controller.ready(ready)}, answer)
+            case wire.LeaveAsk():
+                do(lambda controller: {"said": controller.leave()}, answer)
+            case wire.KeyAsk(level=level, key=key, match=number, beat=beat):
+                seen = Seen(number, beat)
+                do(lambda controller: {"seq": controller.press(level, key, seen)}, answer)
+            case wire.SawAsk(match=number, beat=beat):
+                do(lambda controller: _saw(controller, Seen(number, beat)), answer)
+
+    def leave(self) -> None:
+        """Stop repeating the command when the page goes; the contestant keeps the seat."""
+        self._end()
+        if self._hold[0]:
+            self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
+        self._hold = ("", "")
+
+    def _end(self) -> None:
+        if self._thread is not None:
+            self._thread.end()
+            self._thread = None
+        self._joins += 1
+
+    def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
+        """Return seat access, team name and files; the prefill has what the page left out."""
+        token, name = asked.token, asked.name
+        files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
+        prefill = self._prefill if self._viewer.is_own else None
+        if prefill is not None and (not token or not prefill.token):
+            own, theirs = files, SeatFiles()
+            if prefill.files is not None and self.brings:
+                theirs = prefill.files.files
+            if own.postures is None and own.locomotion is None:
+                files = SeatFiles(own.robot or theirs.robot, theirs.postures, theirs.locomotion)
+            token, name = token or prefill.token, name or prefill.name
+        if not token:
+            raise UserError(say("gateway.no-token"))
+        return (
+            watching.of_seat(asked.seat, token),
+            name or render(say("page.team", seat=asked.seat)),
+            files,
+        )
+
+    def _tell(self, seat: dict[str, Any], joins: int) -> None:
+        if joins != self._joins:
+            return  # an older seat of this page
+        self._viewer.send(wire.map_message(Kind.SEAT, seat))
+        hold = (seat["seat"], seat["hold"])
+        if hold != self._hold:
+            self._hold = hold
+            because = f" ({render(seat['reason'])})" if seat["reason"] else ""
+            self._log(f"Seat {hold[0]}: {hold[1]}{because}.", "seat", seat=hold[0], hold=hold[1])
+
+
+def _saw(controller: Controller, frame: Seen) -> dict[str, Any]:
+    controller.saw(frame)
+    return {}

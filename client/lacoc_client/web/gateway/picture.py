@@ -1,0 +1,163 @@
+"""The newest state of a court, as the bytes that its pages get."""
+
+import msgspec
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_shared.codec import BadMessage, decode, message_hash
+from lacoc_shared.court_view import MAX_BYTES, CourtView, Told
+from lacoc_shared.messages import Event
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase
+
+
+class _Score(msgspec.Struct, array_like=True):
+    """The fields of a `SeatFrame` up to its score."""
+
+    flags: int
+    score: int
+
+
+class SeatPart(msgspec.Struct):
+    """The fields of a `SheetSeat` that say who plays."""
+
+    team: str = ""
+
+
+class SheetPart(msgspec.Struct):
+    """The fields of a `Sheet` that say what is played."""
+
+    match: int
+    title: str
+    duration_s: float
+    seats: tuple[SeatPart, ...]
+    call: str = ""
+    fixture: Phrase | None = None
+
+
+class FramePart(msgspec.Struct):
+    """How a match stands: what the newest frame says of it."""
+
+    match: int
+    phase: Phase
+    clock_ticks: int
+    scores: tuple[int, ...]
+
+
+class _Frame(msgspec.Struct, array_like=True):
+    """The fields of a `Frame` up to its scene; only pages read the others."""
+
+    match: int
+    beat: int
+    phase: int
+    countdown_beats: int
+    clock_ticks: int
+    seats: msgspec.Raw
+    markers: msgspec.Raw
+    poses: msgspec.Raw
+    scene: bytes
+
+
+class CourtPicture:
+    """A court as it is shown to a page that connects now.
+
+    Each `take_...` returns the bytes for pages, or None if there is nothing new for them. It
+    raises `BadMessage` if the court's bytes can't be decoded; then the picture does not change.
+    """
+
+    def __init__(self) -> None:
+        self.view: CourtView[bytes] = CourtView(lambda _, data: wire.message(Kind.EVENT, data))
+        """What the court has sent, and what part of it is missing here."""
+        self.phase = 0
+        """Phase in the newest frame."""
+        self.frame: bytes | None = None
+        """The newest frame."""
+        self._newest: _Frame | None = None
+        self._sheet: tuple[bytes, SheetPart] | None = None
+        """The newest sheet that `played` has read."""
+        self._health: bytes | None = None
+
+    @property
+    def log(self) -> tuple[bytes, ...]:
+        """All events."""
+        return tuple(self.view.log)
+
+    def all_but_frame(self) -> tuple[bytes, ...]:
+        """Return what a page needs before it can show a frame."""
+        view = self.view
+        sheet = [] if view.sheet is None else [wire.message(Kind.SHEET, view.sheet)]
+        scene = [] if view.scene is None else [_scene(view.scene)]
+        health = [] if self._health is None else [self._health]
+        return (*sheet, *scene, *view.log, *health)
+
+    def stands(self) -> FramePart | None:
+        """Read how the match stands; None if there is no frame, or it can't be read."""
+        frame = self._newest
+        if frame is None:
+            return None
+        try:
+            seats = decode(bytes(frame.seats), tuple[_Score, ...], MAX_BYTES)
+            phase = Phase(frame.phase)
+        except (BadMessage, ValueError):
+            return None
+        scores = tuple(seat.score for seat in seats)
+        return FramePart(frame.match, phase, frame.clock_ticks, scores)
+
+    def played(self) -> SheetPart | None:
+        """Read what is played; None if the newest frame's match has no sheet yet, or a bad one."""
+        sheet, frame = self.view.sheet, self._newest
+        if sheet is None or frame is None:
+            return None
+        if self._sheet is None or self._sheet[0] is not sheet:
+            try:
+                self._sheet = sheet, decode(sheet, SheetPart, MAX_BYTES)
+            except BadMessage:
+                return None
+        played = self._sheet[1]
+        return played if played.match == frame.match else None  # else a newer one is on its way
+
+    def take_frame(self, payload: bytes) -> bytes:
+        """Take a frame in; return the bytes for pages."""
+        frame = decode(payload, _Frame, MAX_BYTES)
+        self.view.see_frame(frame.scene)
+        self.phase = frame.phase
+        self._newest = frame
+        self.frame = framed = wire.message(Kind.FRAME, payload)
+        return framed
+
+    def take_event(self, payload: bytes) -> bytes | None:
+        """Take an event in; return the bytes for pages, or None if it is not new."""
+        is_new = self.view.add_event(decode(payload, Event, MAX_BYTES), payload)
+        return wire.message(Kind.EVENT, payload) if is_new else None
+
+    def take_scene(self, payload: bytes) -> bytes | None:
+        """Take a scene in.
+
+        Returns:
+            The bytes for pages; None if the scene is not new, or not the newest frame's scene.
+        """
+        return _scene(payload) if self.view.take_scene(payload) else None
+
+    def take_sheet(self, payload: bytes) -> bytes | None:
+        """Take a sheet in.
+
+        Returns:
+            The bytes for pages; None if the sheet is not new, or has another protocol version.
+        """
+        return wire.message(Kind.SHEET, payload) if self.view.take_sheet(payload) else None
+
+    def take_health(self, payload: bytes) -> bytes | None:
+        """Take health in.
+
+        Returns:
+            The bytes for pages; None if the court has another version of the protocol.
+        """
+        self.view.see_health(decode(payload, Told, MAX_BYTES))
+        if self.view.other_version is not None:
+            return None
+        self._health = framed = wire.message(Kind.HEALTH, payload)
+        return framed
+
+
+def _scene(payload: bytes) -> bytes:
+    return wire.message(Kind.SCENE, message_hash(payload) + payload)

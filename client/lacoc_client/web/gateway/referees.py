@@ -1,0 +1,61 @@
+"""The referees of a court at this gateway: one page acts, the others watch."""
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+class Referees:
+    """The pages that have entered with a referee's token; used from the event loop only."""
+
+    def __init__(self) -> None:
+        self._entered: dict[Viewer, tuple[str, str]] = {}
+        self._acting: Viewer | None = None
+
+    def enter(self, viewer: Viewer, token: str, by: str) -> None:
+        """Add a page that has entered with a token; it acts if no other page does."""
+        self._entered[viewer] = (token, by)
+        self._act(self._acting or viewer)
+
+    def take_over(self, viewer: Viewer) -> None:
+        """Let a page act in place of another.
+
+        Raises:
+            UserError: if the page has not entered.
+        """
+        if viewer not in self._entered:
+            raise UserError(say("gateway.enter-first"))
+        self._act(viewer)
+
+    def acting(self, viewer: Viewer) -> tuple[str, str]:
+        """Return the token and the name with which a page decides.
+
+        Raises:
+            UserError: if the page does not act.
+        """
+        if viewer not in self._entered:
+            raise UserError(say("gateway.enter-first"))
+        if viewer is not self._acting:
+            if self._acting is None:
+                raise UserError(say("gateway.nobody-referees"))
+            raise UserError(say("gateway.other-referee", name=self._entered[self._acting][1]))
+        return self._entered[viewer]
+
+    def leave(self, viewer: Viewer) -> None:
+        """Remove a page; if it acted, nobody acts."""
+        if self._entered.pop(viewer, None) is None:
+            return
+        self._act(None if viewer is self._acting else self._acting)
+
+    def state(self, viewer: Viewer) -> bytes:
+        """Return the message that tells a page who acts."""
+        acting = None if self._acting is None else self._entered[self._acting][1]
+        body = {"acting": acting, "mine": viewer is self._acting}
+        return wire.map_message(Kind.REFEREE, body)
+
+    def _act(self, viewer: Viewer | None) -> None:
+        self._acting = viewer
+        for one in self._entered:
+            one.send(self.state(one))

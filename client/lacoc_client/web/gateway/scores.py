@@ -1,0 +1,57 @@
+"""How the courts of a gateway stand: the small part of their newest frames that /contest shows."""
+
+import msgspec
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import BaseRoute, Route
+
+from lacoc_client.web.gateway.cached import json_response
+from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.feed import CourtFeed
+from lacoc_shared.seat import BEAT_S
+
+
+class CourtScore(msgspec.Struct, frozen=True, kw_only=True):
+    """How a court stands."""
+
+    court: str
+    call: str
+    """Id of the call whose match the court has; "": none."""
+    phase: int
+    clock_s: float
+    """How long the match has been played [s]."""
+    duration_s: float
+    """Length of the match [s]; 0: it has no time limit."""
+    scores: tuple[int, ...]
+    """Points by seat."""
+
+
+def scores_route(courts: Courts) -> BaseRoute:
+    """Return the route that says how all courts stand.
+
+    A page that asks takes no place of a spectator: it gets a few hundred bytes, not frames.
+
+    Args:
+        courts: the courts of the gateway.
+    """
+
+    async def scores(request: Request) -> Response:
+        found = [_score(courts.find(name)[0]) for name in courts.home.courts]
+        return json_response(request, [one for one in found if one is not None])
+
+    return Route("/courts.json", scores)
+
+
+def _score(feed: CourtFeed) -> CourtScore | None:
+    """Return how a court stands; None while the court is silent, or before it was first heard."""
+    stands, played = feed.picture.stands(), feed.picture.played()
+    if not feed.connected or stands is None or played is None:
+        return None
+    return CourtScore(
+        court=feed.court,
+        call=played.call,
+        phase=stands.phase,
+        clock_s=stands.clock_ticks * BEAT_S,
+        duration_s=played.duration_s,
+        scores=stands.scores,
+    )

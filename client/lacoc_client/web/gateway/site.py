@@ -1,0 +1,278 @@
+"""The gateway's paths: of pages (all are one HTML file), files, recordings and the WebSocket."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Iterable, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import BaseRoute, Route, WebSocketRoute
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket
+
+from lacoc_client.play.link.event import PATH as EVENT_PATH
+from lacoc_client.play.link.event import Event
+from lacoc_client.web.gateway.cached import (
+    ASK_AGAIN,
+    FOR_EVER,
+    file_response,
+    json_response,
+    large_response,
+)
+from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.web.gateway.forks import ForkAsk, Forks, bots
+from lacoc_client.web.gateway.guard import answer, language_of, machine_of
+from lacoc_client.web.gateway.health import Health
+from lacoc_client.web.gateway.home import Home
+from lacoc_client.web.gateway.metrics import GatewayMetrics
+from lacoc_client.web.gateway.page import Page
+from lacoc_client.web.gateway.recordings import Recordings
+from lacoc_client.web.gateway.scores import scores_route
+from lacoc_client.web.gateway.shown import Shown
+from lacoc_client.web.gateway.wire import REQUEST_BYTES, too_long
+from lacoc_shared import __version__
+from lacoc_shared.messages import PROTOCOL
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest")
+"""Paths that all serve index.html; the page itself looks at its path."""
+
+_OLD_NAMES = {"favicon.ico": "icon.svg"}
+KEY_HEADER = "X-Lacoc-Key"
+"""HTTP header with the page key, or with a token that a court has accepted."""
+
+_MCAP = "application/octet-stream"
+
+
+class More(Protocol):
+    """Pages that a gateway has besides its own."""
+
+    paths: Sequence[str]
+    """Paths of the pages."""
+
+    @property
+    def routes(self) -> Sequence[BaseRoute]:
+        """Routes besides the routes of the pages."""
+
+    async def close(self) -> None:
+        """Close what the pages need."""
+
+
+def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
+    """Make the application of a gateway.
+
+    Args:
+        home: the gateway's settings.
+        files: the built pages.
+        more: further pages.
+    """
+    courts = Courts(home)
+    shown = Shown(home.sheet) if home.keeps_back and home.sheet is not None else None
+    shelf = Recordings(home.recordings, courts.over, shown)
+    forks = Forks(shelf.own)
+    if home.exporter is not None:
+        home.exporter.registry.register(GatewayMetrics(courts))
+
+    @asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        courts.find(None)
+        watching = asyncio.get_running_loop().create_task(courts.watch_files())
+        yield
+        watching.cancel()
+        await courts.close()
+        if more is not None:
+            await more.close()
+        forks.close()
+        await asyncio.to_thread(shelf.close)
+
+    async def page(websocket: WebSocket) -> None:
+        await Page(websocket, courts).serve()
+
+    others = [
+        *recording_routes(shelf),
+        *fork_routes(shelf, forks, courts.lets_act),
+        event_route(home),
+        sheet_route(home.sheet),
+        scores_route(courts),
+        WebSocketRoute("/ws", page),
+    ]
+    paths = PATHS if more is None else (*PATHS, *more.paths)
+    others += more.routes if more is not None else ()
+    routes = page_routes(files, paths, others, home.contest)
+    return Starlette(routes=routes, lifespan=lifespan)
+
+
+def recording_routes(shelf: Recordings) -> list[BaseRoute]:
+    """Return three routes: of the list of recordings, of a recording, and of its odds."""
+
+    async def recordings(request: Request) -> Response:
+        found = await asyncio.to_thread(shelf.listed)
+        return json_response(request, found)
+
+    async def one_recording(request: Request) -> Response:
+        name = request.path_params["name"]
+        path = await asyncio.to_thread(shelf.find, name)
+        if path is None:
+            return _not_found(request)
+        # The gateway's own copy of a match that is just over gives way to the court's record.
+        cache = ASK_AGAIN if path.parent == shelf.own else FOR_EVER
+        try:
+            return large_response(request, path, _MCAP, cache)
+        except OSError:  # it was moved at this moment
+            return _not_found(request)
+
+    async def odds(request: Request) -> Response:
+        found = await asyncio.to_thread(shelf.odds, request.path_params["name"])
+        # Most recordings have none, so that is no error.
+        return Response(found or b"null", media_type="application/json")
+
+    return [
+        Route("/recordings", recordings),
+        Route("/recordings/{name}", one_recording),
+        Route("/recordings/{name}/odds", odds),
+    ]
+
+
+def fork_routes(
+    shelf: Recordings, forks: Forks, lets_act: Callable[[str], bool]
+) -> list[BaseRoute]:
+    """Return the route on which a page asks for forks of a recording.
+
+    A request needs a secret in a header, which no page of another site can send.
+
+    Args:
+        shelf: the recordings.
+        forks: plays the forks.
+        lets_act: returns whether a secret is the page key, or a token that a court has accepted.
+    """
+
+    async def fork(request: Request) -> Response:
+        if not lets_act(request.headers.get(KEY_HEADER, "")):
+            return answer(request.scope, say("gateway.fork-key"), 403)
+        record = await asyncio.to_thread(shelf.find, request.path_params["name"])
+        if record is None:
+            return _not_found(request)
+        try:
+            found: object
+            if request.method == "POST":
+                asked = msgspec.json.decode(await _body(request), type=ForkAsk)
+                found = await forks.play(record, asked, language_of(request.scope))
+            else:
+                found = {"bots": await asyncio.to_thread(bots, record)}
+        except msgspec.MsgspecError as error:
+            return answer(request.scope, say("gateway.bad-message", error=str(error)), 400)
+        except UserError as error:
+            return answer(request.scope, error.phrase, 409)
+        return Response(msgspec.json.encode(found), media_type="application/json")
+
+    return [Route("/recordings/{name}/forks", fork, methods=["GET", "POST"])]
+
+
+async def _body(request: Request) -> bytes:
+    """Read the body of a request.
+
+    Raises:
+        UserError: if it is too long.
+    """
+    data = b""
+    async for part in request.stream():
+        data += part
+        if len(data) > REQUEST_BYTES:
+            raise too_long(len(data), REQUEST_BYTES)
+    return data
+
+
+def event_route(home: Home) -> BaseRoute:
+    """Return the route on which commands ask for the courts that a link leads to."""
+    event = Event(protocol=PROTOCOL, name=home.contest, courts=home.told, authority=home.authority)
+
+    async def answer_event(request: Request) -> Response:
+        return json_response(request, event)
+
+    return Route(f"/{EVENT_PATH}", answer_event)
+
+
+def sheet_route(path: Path | None) -> BaseRoute:
+    """Return the route of a contest's newest sheet.
+
+    Args:
+        path: the sheet's file, which need not exist yet; None: there is no contest.
+    """
+    files = None if path is None else PageFiles(path.parent)
+
+    async def sheet(request: Request) -> Response:
+        found = None
+        if files is not None and path is not None:
+            found = await asyncio.to_thread(files.find, path.name)
+        if found is None:
+            return answer(request.scope, say("gateway.no-contest"), 404)
+        return file_response(request, found, ASK_AGAIN)
+
+    return Route("/contest.json", sheet)
+
+
+def page_routes(
+    files: PageFiles, paths: Iterable[str], others: Iterable[BaseRoute], title: str = ""
+) -> list[BaseRoute]:
+    """Return the routes of a site with pages.
+
+    Args:
+        files: the built pages.
+        paths: paths of the pages.
+        others: routes of the site besides its pages and their parts.
+        title: name of the contest; "" if there is none.
+    """
+
+    async def index(request: Request) -> Response:
+        file = await asyncio.to_thread(files.find, "index.html")
+        if file is None:
+            return answer(request.scope, NOT_BUILT, 503)
+        return file_response(request, file, ASK_AGAIN)
+
+    async def without_slash(request: Request) -> Response:
+        """Lead to the page itself: the addresses on it are relative to what stands beside it."""
+        url = request.url
+        name = url.path.rstrip("/").rpartition("/")[2]
+        return RedirectResponse(f"../{name}" + (f"?{url.query}" if url.query else ""))
+
+    async def asset(request: Request) -> Response:
+        name = request.path_params["name"]
+        file = await asyncio.to_thread(files.find, f"assets/{name}")
+        return _not_found(request) if file is None else file_response(request, file, FOR_EVER)
+
+    async def top_file(request: Request) -> Response:
+        """Serve a file beside index.html: the icon, also by its old name."""
+        name = request.path_params["name"]
+        file = await asyncio.to_thread(files.find, _OLD_NAMES.get(name, name))
+        return _not_found(request) if file is None else file_response(request, file, "max-age=3600")
+
+    async def healthz(request: Request) -> Response:
+        """Say that the gateway answers, and how the request came here through proxies."""
+        forwarded = request.headers.get("x-forwarded-for", "")
+        asks = [one.strip() for one in forwarded.split(",") if one]
+        health = Health(
+            version=__version__,
+            contest=title,
+            host=request.headers.get("host", ""),
+            unnamed_proxy=bool(asks) and machine_of(request.scope) not in asks,
+        )
+        return Response(msgspec.json.encode(health), media_type="application/json")
+
+    return [
+        Route("/healthz", healthz),
+        *(Route(path, index) for path in paths),
+        *(Route(f"{path}/", without_slash) for path in paths if path != "/"),
+        Route("/assets/{name:path}", asset),
+        *others,
+        Route("/{name}", top_file),
+    ]
+
+
+def _not_found(request: Request) -> Response:
+    return answer(request.scope, say("gateway.no-page"), 404)

@@ -1,0 +1,307 @@
+"""Messages between the gateway and a page (docs/gateway.md lists them).
+
+To a page: one byte of kind, then the payload; messages of a court are passed on unchanged. From a
+page: a msgpack map with its `id` and what to `do`; each is answered by a reply.
+"""
+
+from enum import IntEnum
+from typing import Annotated, Any
+
+import msgspec
+
+from lacoc_client.play.asking import NoAnswer, NotNow
+from lacoc_client.play.own_files import OwnFiles
+from lacoc_shared.codec import encode
+from lacoc_shared.decisions import Decision
+from lacoc_shared.keyspace import JOIN_MAX_BYTES
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import Phrase, say
+
+JOIN_BYTES = JOIN_MAX_BYTES
+"""Longest message of a page; a longer one closes its connection."""
+REQUEST_BYTES = 4096
+"""Longest message that is not a join; a longer one is refused."""
+
+
+FAULT = say("gateway.fault")
+
+
+class Unreadable(UserError):
+    """A page sent something that is no known request."""
+
+
+class TokenRefused(UserError):
+    """A court refuses a referee's token: showing the same one again is useless."""
+
+
+class Kind(IntEnum):
+    """Kinds of messages to a page."""
+
+    WELCOME = 1
+    FRAME = 2
+    EVENT = 3
+    SHEET = 4
+    SCENE = 5
+    HEALTH = 6
+    LINK = 7
+    SEAT = 8
+    REPLY = 9
+    REFEREE = 10
+    FILES = 11
+    FOLDER = 12
+    PROGRESS = 13
+    STUDIO = 14
+    PHASES = 15
+    HANDED = 16
+    ELSEWHERE = 17
+    CLASS = 18
+    CARD = 19
+    GONE = 20
+    TOURNAMENT = 21
+    PROGRAMME = 22
+
+
+_Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
+_Short = Annotated[str, msgspec.Meta(max_length=200)]
+_Digit = Annotated[int, msgspec.Meta(ge=0, le=9)]
+_Token = Annotated[str, msgspec.Meta(max_length=200)]
+_Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
+
+
+class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
+    """A request of a page."""
+
+    id: _Id
+    """Names the request; its reply has the same id."""
+
+
+class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
+    """The first message: which court, how many frames a second, and who the page is."""
+
+    court: _Short | None = None
+    director: bool = False
+    """Whether the page follows the director, and not one court; it can't act then."""
+    aside: bool = False
+    """Whether it follows the director's second picture, not the first one."""
+    hz: float | None = None
+    key: _Token | None = None
+    """The gateway's page key, if it is a page of the person who started the gateway."""
+    token: _Token | None = None
+    """The token of its team or referee, with which it will act; None: it only watches."""
+
+
+class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
+    """Set the frames a second."""
+
+    hz: float
+
+
+class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
+    """Ask for a reply, which says how far the court is from the gateway."""
+
+    t: float | int | str | None = None
+
+
+class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
+    """Take a seat."""
+
+    seat: _Short
+    token: _Token | None = None
+    name: _Short = ""
+    robot: SentFile | None = None
+    postures: SentFile | None = None
+    locomotion: SentFile | None = None
+    sequences: tuple[tuple[_Digit, ...], ...] | None = None
+    """Postures of each key of level B, if there is no locomotion file; None: as in the sample's
+    keys.
+    """
+
+
+class WhereAsk(Ask, frozen=True, kw_only=True, tag="where"):
+    """Ask where a team plays."""
+
+    token: _Token | None = None
+    """The team's token; None: the one that was given on the command line."""
+
+
+class ReadyAsk(Ask, frozen=True, kw_only=True, tag="ready"):
+    """Tell the court that the team is ready, or no longer ready."""
+
+    ready: bool = True
+
+
+class LeaveAsk(Ask, frozen=True, kw_only=True, tag="leave"):
+    """Give the seat up."""
+
+
+class KeyAsk(Ask, frozen=True, kw_only=True, tag="key"):
+    """Press a key, having seen a frame."""
+
+    level: Annotated[int, msgspec.Meta(ge=0, le=1)]
+    key: Annotated[int, msgspec.Meta(ge=0, le=10)]
+    match: _Count
+    """The match of the frame that the page showed when the key was pressed."""
+    beat: _Count
+    """Its beat."""
+
+
+class SawAsk(Ask, frozen=True, kw_only=True, tag="saw"):
+    """Show a sign of life of a page that holds a seat: it shows a new frame."""
+
+    match: _Count
+    beat: _Count
+
+
+class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
+    """Enter as a referee."""
+
+    token: _Token
+    by: _Short
+
+
+class TakeOver(Ask, frozen=True, kw_only=True, tag="take_over"):
+    """Act as referee from now on, in place of another page."""
+
+
+class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
+    """Decide as a referee."""
+
+    decision: Decision
+    reason: Phrase | str = ""
+
+
+class OutlookAsk(Ask, frozen=True, kw_only=True, tag="outlook"):
+    """Ask as a referee what would happen if play went on."""
+
+    decision: Decision | None = None
+    """What would be decided before; None: nothing."""
+
+
+Asked = (
+    Watch
+    | Rate
+    | Ping
+    | JoinAsk
+    | WhereAsk
+    | ReadyAsk
+    | LeaveAsk
+    | KeyAsk
+    | SawAsk
+    | EnterAsk
+    | TakeOver
+    | DecideAsk
+    | OutlookAsk
+)
+"""Every request of a page."""
+
+
+class _AnyId(msgspec.Struct):
+    id: _Id
+
+
+class _AnyDo(msgspec.Struct):
+    do: str
+
+
+_asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
+_any_id = msgspec.msgpack.Decoder(_AnyId)
+_any_do = msgspec.msgpack.Decoder(_AnyDo)
+
+
+def read(data: bytes) -> Asked:
+    """Decode a request of a page.
+
+    Raises:
+        Unreadable: if it is no known request, or too long for its kind.
+    """
+    try:
+        if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
+            raise too_long(len(data), REQUEST_BYTES)
+        return _asked.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise Unreadable(say("gateway.bad-message", error=str(error))) from None
+
+
+def too_long(size: int, most: int) -> Unreadable:
+    """Make the error for a request of `size` bytes where at most `most` are allowed."""
+    return Unreadable(
+        say("gateway.bad-message", error=say("gateway.too-long", bytes=size, most=most))
+    )
+
+
+def read_id(data: bytes) -> int | None:
+    """Return the id of a message of which nothing else can be read; None: it has no id either."""
+    try:
+        return _any_id.decode(data).id
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return None
+
+
+def message(kind: Kind, payload: bytes) -> bytes:
+    """Make a finished WebSocket frame of a message; the same bytes can go to all pages."""
+    size = len(payload) + 1
+    if size < 126:
+        head = bytes((0x82, size, kind))
+    elif size < 65_536:
+        head = b"\x82\x7e" + size.to_bytes(2) + bytes((kind,))
+    else:
+        head = b"\x82\x7f" + size.to_bytes(8) + bytes((kind,))
+    return head + payload
+
+
+def opened(framed: bytes) -> tuple[Kind, bytes]:
+    """Return the kind and the payload of a message that `message` made."""
+    head = {126: 4, 127: 10}.get(framed[1], 2)
+    return Kind(framed[head]), framed[head + 1 :]
+
+
+def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
+    """Make a message of the gateway's own, as a WebSocket frame."""
+    return message(kind, encode(value))
+
+
+def files_message(own: OwnFiles, used: int | None = None) -> bytes:
+    """Make the message that tells a page which files are on this machine.
+
+    Args:
+        own: the files.
+        used: version of the files with which the page now asks for a seat; None: it does not ask.
+    """
+    names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
+    refused = own.refused
+    body = {
+        **names,
+        "version": own.version,
+        "used": used,
+        "changed": own.changed,
+        "error": None if refused is None else _said(refused),
+        "mistakes": refused.mistakes if isinstance(refused, FileRefused) else [],
+    }
+    return map_message(Kind.FILES, body)
+
+
+def reply(to: int, value: Any) -> bytes:
+    """Make the answer to a request."""
+    return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
+
+
+def refusal(to: int, error: UserError | FileRefused) -> bytes:
+    """Make the answer to a request that was not done."""
+    mistakes = error.mistakes if isinstance(error, FileRefused) else []
+    body = {
+        "id": to,
+        "ok": False,
+        "error": _said(error),
+        "mistakes": mistakes,
+        "token_refused": isinstance(error, TokenRefused),
+        "again": isinstance(error, NotNow),
+        "unanswered": isinstance(error, NoAnswer),
+    }
+    return map_message(Kind.REPLY, body)
+
+
+def _said(error: UserError | FileRefused) -> Phrase:
+    if isinstance(error, FileRefused):
+        return say("refused.mistakes", count=len(error.mistakes), first=None)
+    return error.phrase

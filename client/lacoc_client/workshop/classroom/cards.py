@@ -1,0 +1,171 @@
+"""The card of a student, as the teacher sees it: how far, how fast, who needs help."""
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any, Literal
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_client.workshop.phases.evidence import Evidence, Hand, Tried
+from lacoc_client.workshop.phases.facts import STRAIGHT_DEG_S, TrialFacts
+from lacoc_client.workshop.phases.progress import Progress, State
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.studio import TrialReply
+from lacoc_shared.words import Phrase, say
+
+Need = Literal["hand", "stuck", "quiet", ""]
+"""Why a student needs help: a raised hand, equal failures, or nothing done for long."""
+
+QUIET_S = 300.0
+"""A student who is there and does nothing for so long is quiet [s]."""
+_EQUAL_FAILURES = 3
+_LEANS, _BELLY, _SLOW_MM_S, _STANDS_S = 0.8, 0.05, 15.0, 2.0
+_FORWARD = "B2"
+
+
+class Card(msgspec.Struct, frozen=True, kw_only=True):
+    """One student at a glance."""
+
+    name: str
+    online: bool
+    seen_s: float
+    """Time when the student last did something, in seconds since 1970 (UTC)."""
+    phase: int
+    states: tuple[State, ...]
+    share: float
+    """How much of the phase that the student is at is done, from 0 to 1."""
+    missing: Phrase | None
+    """What is missing in that phase; None: nothing."""
+    tries: int
+    best_mm_s: float | None
+    """Highest forward speed of a trial with key B2 that stayed upright and off the floor; None:
+    there was no such trial."""
+    last_mm_s: float | None
+    """Forward speed of the last trial; None: there was no trial."""
+    legs: tuple[str, ...]
+    """Labels of the legs of `feet`."""
+    feet: tuple[tuple[tuple[float, float], ...], ...] | None
+    """For each leg when its foot was down, as shares of the time that the last trial measured;
+    None: no trial since the class was opened."""
+    said: Phrase | None
+    """First sentence that explains the last trial."""
+    hand_up_s: float | None
+    """Time since when the hand is up; None: it is not."""
+    stuck: Phrase | None
+    """What went wrong in the same way several times in a row; None: nothing did."""
+    coached: bool
+    """Whether the student took over what the coach found."""
+    need: Need
+
+
+class Seen(msgspec.Struct, frozen=True, kw_only=True):
+    """What a card needs to know of a student besides the evidence."""
+
+    name: str
+    online: bool = False
+    seen_s: float = 0.0
+    hand_up_s: float | None = None
+    trial: TrialReply | None = None
+    """The last trial since the class was opened."""
+
+
+def card(seen: Seen, evidence: Sequence[Evidence], progress: Progress, now_s: float) -> Card:
+    """Make a student's card.
+
+    Args:
+        seen: what is known besides evidence.
+        evidence: all that the student did, in order.
+        progress: how far the student is.
+        now_s: time in seconds since 1970 (UTC).
+    """
+    tries = [one.facts for one in evidence if isinstance(one, Tried)]
+    speeds = [facts.speed_mm_s for facts in tries if _FORWARD in facts.keys and _walks(facts)]
+    outcome = progress.outcomes[progress.phase - 1]
+    failed = stuck(tries)
+    hand_up_s = (seen.hand_up_s or seen.seen_s) if progress.hand_up else None
+    need: Need = ""
+    if progress.hand_up:
+        need = "hand"
+    elif failed is not None:
+        need = "stuck"
+    elif seen.online and now_s - seen.seen_s > QUIET_S:
+        need = "quiet"
+    trial = seen.trial
+    feet = None if trial is None else foot_runs(trial)
+    return Card(
+        name=seen.name,
+        online=seen.online,
+        seen_s=seen.seen_s,
+        phase=progress.phase,
+        states=progress.states,
+        share=outcome.share,
+        missing=next(iter(outcome.missing), None),
+        tries=len(tries),
+        best_mm_s=max(speeds, default=None),
+        last_mm_s=tries[-1].speed_mm_s if tries else None,
+        legs=leg_labels(len(feet or ())),
+        feet=feet,
+        said=trial.explained[0].said if trial is not None and trial.explained else None,
+        hand_up_s=hand_up_s,
+        stuck=failed,
+        coached=progress.coached,
+        need=need,
+    )
+
+
+def hand_times(kept: Iterable[tuple[float, Evidence]]) -> float | None:
+    """Return when the hand that is up now was raised; None: no hand is up.
+
+    Args:
+        kept: evidence of one student, each with its time [s], in order.
+    """
+    hands = [(at_s, one.up) for at_s, one in kept if isinstance(one, Hand)]
+    return hands[-1][0] if hands and hands[-1][1] else None
+
+
+def stuck(tries: Sequence[TrialFacts]) -> Phrase | None:
+    """Return what went wrong if the last three trials failed in the same way; else None."""
+    last = [failure(facts) for facts in tries[-_EQUAL_FAILURES:]]
+    if len(last) < _EQUAL_FAILURES or any(one != last[0] for one in last):
+        return None
+    return last[0]
+
+
+def failure(facts: TrialFacts) -> Phrase | None:
+    """Return the worst thing that went wrong in a trial; None: nothing did."""
+    if facts.stopped:
+        return say("class.failed-stopped")
+    if facts.upright < _LEANS:
+        return say("class.failed-fell")
+    if facts.belly_share > _BELLY:
+        return say("class.failed-belly")
+    if facts.keys[-1].startswith("A"):
+        stands = facts.tripod_s >= _STANDS_S or len(facts.keys) > 1
+        return None if stands else say("class.failed-stand")
+    if facts.keys[-1] != _FORWARD:
+        return None
+    if abs(facts.drift_deg_s) > STRAIGHT_DEG_S:
+        return say("class.failed-turns")
+    return say("class.failed-slow") if facts.speed_mm_s < _SLOW_MM_S else None
+
+
+def foot_runs(trial: TrialReply) -> tuple[tuple[tuple[float, float], ...], ...]:
+    """Return for each leg the times in which its foot was down, each with its begin and end.
+
+    Begin and end are parts of the measured time, from 0 to 1.
+    """
+    legs = len(trial.figures["duty"])
+    down = np.frombuffer(trial.down, np.uint8)[trial.first : trial.end]
+    return tuple(_runs((down >> leg) & 1) for leg in range(legs))
+
+
+def _runs(down: npt.NDArray[Any]) -> tuple[tuple[float, float], ...]:
+    ends = np.flatnonzero(np.diff(down, prepend=2, append=2))
+    runs = ((int(begin), int(end)) for begin, end in pairwise(ends) if down[begin])
+    return tuple((round(begin / len(down), 3), round(end / len(down), 3)) for begin, end in runs)
+
+
+def _walks(facts: TrialFacts) -> bool:
+    return not facts.stopped and facts.upright >= _LEANS and facts.belly_share <= _BELLY

@@ -1,0 +1,88 @@
+"""A student of a class, who has a token and a card on the teacher's page."""
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+
+from lacoc_client.workshop.classroom.cards import Card, Seen, card, hand_times
+from lacoc_client.workshop.design.learning.diary import Diary
+from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.student import Student
+from lacoc_client.workshop.phases.class_file import Document, Kept
+from lacoc_client.workshop.phases.evidence import Joined
+from lacoc_shared.studio import TrialReply
+
+TOKEN = "token"
+"""Name under which the hash of a student's token is kept."""
+
+
+class ClassStudent(Student):
+    """A student of a class; used from the event loop only.
+
+    Args:
+        name: the nickname.
+        diary: keeps what the student does.
+        rules: returns what the teacher allows.
+    """
+
+    def __init__(self, name: str, diary: Diary, rules: Callable[[], Rules]) -> None:
+        super().__init__(name, diary, rules)
+        self.token_hash = ""
+        """Hash of the token of the browser that may come in; "": the next one gets a token."""
+        self.seen_s = 0.0
+        """Time when the student last did something, in seconds since 1970 (UTC)."""
+        self.hand_up_s: float | None = None
+        """Time since when the hand is up."""
+        self._trial: TrialReply | None = None
+        self._last: Card | None = None
+
+    def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
+        """Begin with what the class file has of this student, in the file's order."""
+        documents = list(documents)
+        self.diary.begin((one.evidence for one in evidence), documents)
+        tokens = (one.content.decode() for one in documents if one.name == TOKEN)
+        self.token_hash = next(tokens, "")
+        self.seen_s = evidence[-1].at_s if evidence else 0.0
+        self.hand_up_s = hand_times((one.at_s, one.evidence) for one in evidence)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether the student has no page open, and has never done more than come in."""
+        did = any(not isinstance(one, Joined) for one in self.diary.evidence)
+        return not (self.viewers or did or self.diary.draft)
+
+    def learned(self, trial: TrialReply | None) -> None:
+        """Note that the student did something; if it was a trial, `trial` is its reply."""
+        self.seen_s = time.time()
+        if trial is not None:
+            self._trial = trial
+        self.hand_moved()
+
+    def hand_moved(self) -> None:
+        """Note when the student's hand went up, or that it is down."""
+        if not self.diary.progress.hand_up:
+            self.hand_up_s = None
+        elif self.hand_up_s is None:
+            self.hand_up_s = time.time()
+
+    def card(self) -> Card:
+        """Return the student's card."""
+        seen = Seen(
+            name=self.name,
+            online=bool(self.viewers),
+            seen_s=self.seen_s,
+            hand_up_s=self.hand_up_s,
+            trial=self._trial,
+        )
+        return card(seen, self.diary.evidence, self.diary.progress, time.time())
+
+    def changed_card(self) -> Card | None:
+        """Return the card if it has changed since the last call; else None."""
+        now = self.card()
+        if now == self._last:
+            return None
+        self._last = now
+        return now
+
+    def kept_token(self) -> Document:
+        """Return the token's hash as a class file keeps it."""
+        return Document(self.name, TOKEN, "", time.time(), self.token_hash.encode())

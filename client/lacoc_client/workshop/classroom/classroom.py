@@ -1,0 +1,395 @@
+"""A class while it runs: its students, its teacher's pages, and its file."""
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Iterable, Sequence
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.guesses import Guesses
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.workshop.classroom.class_student import ClassStudent
+from lacoc_client.workshop.classroom.state import (
+    NOBODY,
+    ClassState,
+    Handed,
+    fresh_state,
+    read_state,
+)
+from lacoc_client.workshop.classroom.tournament import Tournament
+from lacoc_client.workshop.design import requests
+from lacoc_client.workshop.design.designer import folder_message, sample_postures, studio_message
+from lacoc_client.workshop.design.files import FileContent
+from lacoc_client.workshop.design.folder import Folder
+from lacoc_client.workshop.design.host import Entered
+from lacoc_client.workshop.design.learning.diary import Diary
+from lacoc_client.workshop.design.learning.keeper import Keeper
+from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.student import Student
+from lacoc_client.workshop.design.playing import Playing
+from lacoc_client.workshop.design.studios.studios import Studios
+from lacoc_client.workshop.design.table import FileTable
+from lacoc_client.workshop.phases.class_file import Document, Kept
+from lacoc_client.workshop.phases.evidence import Hand, Joined
+from lacoc_client.workshop.phases.store import ClassStore
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
+from lacoc_shared import seal
+from lacoc_shared.contest.codes import new_code, read_code
+from lacoc_shared.contest.names import look_alike, read_name, same_name
+from lacoc_shared.contest.tokens import hash_token, new_token
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.studio import TrialReply
+from lacoc_shared.words import say
+
+CLASS_FILE = "lacoc-class.sqlite"
+"""Name of the file in the folder of a class."""
+
+_T = TypeVar("_T", Kept, Document)
+
+_MOST_STUDENTS = 100
+_LONGEST_NAME = 20
+_SOON_S = 0.1
+"""How soon pages are told that a studio has come or gone [s]."""
+_ALIVE_S = 1.0
+"""How often students' pages get a sign of life [s]."""
+_QUIET_LOOK_S = 10.0
+"""How often to look for students who have done nothing for long [s]."""
+
+
+class Classroom:
+    """A class; a `Host`. Used from the event loop only.
+
+    Args:
+        folder: folder of the class.
+        studios: the connections to the studios; they are started and closed here.
+        addresses: addresses that students can open.
+        robot: the robot of the class; None: the workshop's.
+
+    Raises:
+        UserError: if there is no such robot.
+    """
+
+    folder: Folder | None = None
+    playing: Playing | None = None
+
+    def __init__(
+        self,
+        folder: Path,
+        studios: Studios,
+        addresses: Sequence[str] = (),
+        robot: str | None = None,
+    ) -> None:
+        self.studios = studios
+        self.robot = SentFile(*find_robot(robot)) if robot else None
+        self.addresses = tuple(addresses)
+        self.state: ClassState = fresh_state()
+        self.students: dict[str, ClassStudent] = {}
+        """Everybody who ever came in, by `same_name` of the nickname."""
+        self.teachers: dict[Viewer, None] = {}
+        """The teacher's pages."""
+        self.tournament = Tournament(folder, self._tell_tournament)
+        self._keeper = Keeper(folder / CLASS_FILE)
+        self._robot_name = robot or WORKSHOPS_ROBOT
+        self._guesses = Guesses()
+        self._coming = asyncio.Lock()
+        """Held while a student gets a nickname."""
+
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
+        """Look for studios until the block ends; tell the pages when a studio comes or goes."""
+        self.studios.start()
+        looking = asyncio.get_running_loop().create_task(self._look())
+        try:
+            yield
+        finally:
+            looking.cancel()
+            await self.tournament.stop()
+            await self._keeper.close()
+            await asyncio.to_thread(self.studios.close)
+
+    async def open(self) -> None:
+        """Read the settings, the students and their evidence from the class file.
+
+        Raises:
+            UserError: if the class file can't be opened.
+        """
+        store = await self._store()
+        kept = await asyncio.wrap_future(store.evidence())
+        evidence = _by_student(kept)
+        documents = _by_student(store.documents())
+        for document in documents.pop(NOBODY, []):
+            self.state = read_state(document) or self.state
+        await asyncio.wrap_future(store.write(self.state.kept()))
+        for name in dict.fromkeys((*evidence, *documents)):
+            self._new(name).begin(evidence.get(name, []), documents.get(name, []))
+
+    # What students do
+
+    async def enter(self, hello: requests.Hello, where: str) -> Entered:
+        """Let a student in who shows a token, or the class code and a nickname (`Host.enter`)."""
+        if hello.token:
+            student, token = self._known(hello), hello.token
+        else:
+            student, token = await self._newcomer(hello, where), new_token()
+            student.token_hash = hash_token(token)
+            await student.diary.write(student.kept_token())
+        if self.students.get(same_name(student.name)) is not student:
+            raise UserError(say("class.enter"))  # forgotten while it came in
+        return Entered(student, token)
+
+    def greet(self, student: Student, viewer: Viewer) -> None:
+        """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
+        assert isinstance(student, ClassStudent)
+        self._send_away(student, forgotten=False)
+        student.viewers[viewer] = None
+        student.seen_s = time.time()
+        viewer.send(folder_message("", None))
+        viewer.send(studio_message(self.studios))
+        viewer.send(student.phases_message())
+        if self.state.handed is not None:
+            viewer.send(_handed_message(self.state.handed))
+        self._tell_card(student)
+
+    def leave(self, student: Student, viewer: Viewer) -> None:
+        """Remove a page that has gone, and tell the teacher (`Host.leave`)."""
+        assert isinstance(student, ClassStudent)
+        student.viewers.pop(viewer, None)
+        self._tell_card(student)
+
+    def learned(self, student: Student, trial: TrialReply | None = None) -> None:
+        """Tell the student and the teacher what has changed (`Host.learned`)."""
+        assert isinstance(student, ClassStudent)
+        student.learned(trial)
+        student.tell()
+        self._tell_card(student)
+
+    def sample(self) -> FileContent:
+        """Read the robot's sample postures; empty if the robot has no sample. May block."""
+        return sample_postures(self._robot_name)
+
+    # What the teacher does
+
+    def find(self, name: str) -> ClassStudent:
+        """Return a student.
+
+        Raises:
+            UserError: if there is none of this name.
+        """
+        student = self.students.get(same_name(name))
+        if student is None:
+            raise UserError(say("class.no-student", name=name))
+        return student
+
+    async def set_rules(self, rules: Rules) -> None:
+        """Set what students may do, and tell everybody."""
+        await self._set(rules=rules)
+        for student in self.students.values():
+            student.tell()
+
+    async def set_code(self) -> None:
+        """Make another class code. Students who are in the class stay in it."""
+        await self._set(code=new_code())
+
+    async def hand_out(
+        self, title: str, table: FileTable, sequences: tuple[tuple[int, ...], ...] | None
+    ) -> None:
+        """Offer a table to all students, also to those who come later."""
+        number = 1 + (self.state.handed.number if self.state.handed else 0)
+        handed = Handed(number=number, title=title, table=table, sequences=sequences)
+        await self._set(handed=handed)
+        for student in self.students.values():
+            student.send(_handed_message(handed))
+
+    async def lower(self, student: ClassStudent) -> None:
+        """Take a student's hand down."""
+        await student.diary.add(Hand(up=False))
+        student.hand_moved()
+        student.tell()
+        self._tell_card(student)
+
+    async def admit(self, student: ClassStudent) -> None:
+        """Let in, as this student, the next browser with the class code and the student's name."""
+        student.token_hash = ""
+        await student.diary.write(student.kept_token())
+
+    async def forget(self, student: ClassStudent) -> None:
+        """Delete all that is kept of a student.
+
+        Raises:
+            UserError: if the class file can't be written; then the student stays.
+        """
+        await student.diary.forget()
+        if self.students.get(same_name(student.name)) is student:  # else another page was quicker
+            del self.students[same_name(student.name)]
+        self._send_away(student, forgotten=True)
+        self._tell(wire.map_message(Kind.GONE, {"name": student.name}))
+
+    async def evidence(self) -> list[Kept]:
+        """Read the evidence of everybody.
+
+        Raises:
+            UserError: if the class file can't be read.
+        """
+        return await asyncio.wrap_future((await self._store()).evidence())
+
+    async def documents(self) -> list[Document]:
+        """Return the drafts and tokens of all students, and the settings of the class."""
+        return (await self._store()).documents()
+
+    def add_teacher(self, viewer: Viewer) -> None:
+        """Add a page of the teacher, and tell it everything."""
+        self.teachers[viewer] = None
+        cards = [student.card() for student in self.students.values()]
+        viewer.send(self._class_message(cards))
+        viewer.send(self._tournament_message())
+
+    # Messages
+
+    def _known(self, hello: requests.Hello) -> ClassStudent:
+        student = self.students.get(same_name(hello.name))
+        if student is None or not seal.verify_token(hello.token, student.token_hash):
+            raise UserError(say("class.unknown-token"))
+        return student
+
+    async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
+        """Check the class code and the nickname, and return the student, who may be new."""
+        if not hello.code:
+            raise UserError(say("class.enter"))
+        if read_code(hello.code) != self.state.code:
+            await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
+            raise UserError(say("class.wrong-code"))
+        name = read_name(hello.name, _LONGEST_NAME)
+        if name is None:
+            raise UserError(say("class.bad-name", most=_LONGEST_NAME))
+        async with self._coming:
+            if same_name(name) not in self.students and len(self.students) >= _MOST_STUDENTS:
+                await self._make_room()
+            student = self.students.get(same_name(name))
+            if student is None:
+                names = (one.name for one in self.students.values())
+                if (there := next((n for n in names if look_alike(n, name)), None)) is not None:
+                    raise UserError(say("class.name-taken", name=there))
+                student = self._new(name)
+            elif student.token_hash:
+                raise UserError(say("class.name-taken", name=name))
+            student.token_hash = "-"  # nobody else takes the name while this is written
+        await student.diary.add(Joined())
+        return student
+
+    async def _make_room(self) -> None:
+        """Forget the first student who has done nothing and has no page open.
+
+        So nobody can keep others out by entering under a hundred nicknames.
+
+        Raises:
+            UserError: if there is no such student.
+        """
+        idle = (student for student in self.students.values() if student.is_idle)
+        student = next(idle, None)
+        if student is None:
+            raise UserError(say("class.full", most=_MOST_STUDENTS))
+        await self.forget(student)
+
+    def _new(self, name: str) -> ClassStudent:
+        diary = Diary(self._keeper, name)
+        student = ClassStudent(name, diary, lambda: self.state.rules)
+        self.students[same_name(name)] = student
+        return student
+
+    def _send_away(self, student: ClassStudent, forgotten: bool) -> None:
+        """Refuse further requests from all pages of a student, and tell the pages why."""
+        student.send(wire.map_message(Kind.ELSEWHERE, {"forgotten": forgotten}))
+        for viewer in student.viewers:
+            viewer.can_act = False
+        student.viewers.clear()
+
+    async def _set(self, **changes: Any) -> None:
+        """Change and keep settings of the class, and tell the teacher."""
+        self.state = msgspec.structs.replace(self.state, **changes)
+        with suppress(UserError):  # the message has the reason as `trouble`
+            await asyncio.wrap_future((await self._store()).write(self.state.kept()))
+        self._tell(self._class_message())
+
+    async def _store(self) -> ClassStore:
+        store = await self._keeper.opened()
+        if store is None:
+            assert self._keeper.trouble is not None
+            raise UserError(self._keeper.trouble)
+        return store
+
+    async def _look(self) -> None:
+        loop = asyncio.get_running_loop()
+        told, alive_s, quiet_s = self._public(), loop.time(), loop.time()
+        while True:
+            await asyncio.sleep(_SOON_S)
+            now_s = loop.time()
+            if now_s >= alive_s or self._public() != told:
+                alive_s = now_s + _ALIVE_S
+                message = studio_message(self.studios)
+                for student in self.students.values():
+                    student.send(message)
+            if self._public() != told:
+                told = self._public()
+                self._tell(self._class_message())
+            if now_s >= quiet_s:
+                quiet_s = now_s + _QUIET_LOOK_S
+                for student in self.students.values():
+                    self._tell_card(student)
+
+    def _tell_card(self, student: ClassStudent) -> None:
+        # Whoever has just been forgotten has no card.
+        if self.students.get(same_name(student.name)) is student:
+            card = student.changed_card()
+            if card is not None:
+                self._tell(wire.map_message(Kind.CARD, msgspec.structs.asdict(card)))
+
+    def _tell_tournament(self) -> None:
+        self._tell(self._tournament_message())
+
+    def _tell(self, message: bytes) -> None:
+        for viewer in self.teachers:
+            viewer.send(message)
+
+    def _public(self) -> tuple[Any, ...]:
+        """Return three things that the teacher's page shows.
+
+        They are what is wrong with the class file, how many studios there are, and why there is
+        none.
+        """
+        return (self._keeper.trouble, self.studios.present, self.studios.why)
+
+    def _class_message(self, cards: Iterable[Any] | None = None) -> bytes:
+        handed = self.state.handed
+        trouble, studios, why = self._public()
+        body = {
+            "code": self.state.code,
+            "addresses": self.addresses,
+            "rules": self.state.rules,
+            "trouble": trouble,
+            "studios": studios,
+            "why": why,
+            "handed": handed and {"number": handed.number, "title": handed.title},
+            "cards": None if cards is None else list(cards),
+        }
+        return wire.map_message(Kind.CLASS, body)
+
+    def _tournament_message(self) -> bytes:
+        return wire.map_message(Kind.TOURNAMENT, msgspec.structs.asdict(self.tournament.state))
+
+
+def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
+    """Group evidence or documents by the name of the student; the order within a group stays."""
+    groups: dict[str, list[_T]] = {}
+    for one in kept:
+        groups.setdefault(one.student, []).append(one)
+    return groups
+
+
+def _handed_message(handed: Handed) -> bytes:
+    return wire.map_message(Kind.HANDED, msgspec.structs.asdict(handed))

@@ -1,0 +1,55 @@
+"""Exports of a class: evidence and tables as files for a teacher."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from lacoc_client.workshop.design.learning.draft import NAME as DRAFT
+from lacoc_client.workshop.design.learning.draft import read_draft
+from lacoc_client.workshop.phases.class_file import ClassFile, Document
+from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
+from lacoc_robots.seat_files import USUAL_NAMES
+from lacoc_shared.command.database import Damaged
+from lacoc_shared.mistakes import FileRefused, UserError, text_of
+from lacoc_shared.words import say
+
+EVIDENCE, TABLES = "evidence.csv", "tables.zip"
+
+
+def student_files(kept: Iterable[Document]) -> list[Document]:
+    """Return the gait and robot files of all drafts; tokens and settings are left out."""
+    found = []
+    for one in kept:
+        draft = read_draft(one) if one.name == DRAFT else None
+        if draft is None:
+            continue
+        try:
+            files = draft.files()
+        except (FileRefused, UserError):
+            continue  # a cell without an angle, or a missing key: this project's page sends neither
+        found += [
+            Document(one.student, name, one.version, one.at_s, file.data)
+            for name, file in zip(USUAL_NAMES, files, strict=True)
+            if file is not None
+        ]
+    return found
+
+
+def export(path: Path) -> dict[str, bytes]:
+    """Export a class that no program has open; return the files by name.
+
+    Raises:
+        UserError: if there is no such class, it is open, or its file is damaged.
+    """
+    if not path.exists():
+        raise UserError(say("class.none", file=text_of(path)))
+    try:
+        file = ClassFile(path)
+    except Damaged as error:
+        raise UserError(say("database.cannot-open", file=text_of(path), why=str(error))) from None
+    try:
+        return {
+            EVIDENCE: evidence_csv(file.evidence()),
+            TABLES: tables_zip(student_files(file.documents())),
+        }
+    finally:
+        file.close()

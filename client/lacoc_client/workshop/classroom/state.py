@@ -1,0 +1,53 @@
+"""The settings of a class: code, key, rules, and the table that was handed out."""
+
+import time
+
+import msgspec
+
+from lacoc_client.web.gateway.home import new_key
+from lacoc_client.workshop.design.learning.rules import FREE, Rules
+from lacoc_client.workshop.design.table import FileTable
+from lacoc_client.workshop.phases.class_file import Document
+from lacoc_shared.contest.codes import new_code
+
+NAME, NOBODY = "class", ""
+"""Name under which it is kept, and the student whose it is: nobody's."""
+
+
+class Handed(msgspec.Struct, frozen=True, kw_only=True):
+    """A table that the teacher handed out."""
+
+    number: int
+    """Counts the tables of the class, from 1."""
+    title: str
+    table: FileTable
+    sequences: tuple[tuple[int, ...], ...] | None = None
+
+
+class ClassState(msgspec.Struct, frozen=True, kw_only=True):
+    """The settings of a class."""
+
+    code: str
+    """The class code."""
+    key: str
+    """The page key of the teacher: it is the same after each start, so pages stay open."""
+    rules: Rules = FREE
+    handed: Handed | None = None
+    """The last table that was handed out."""
+
+    def kept(self) -> Document:
+        """Return the settings as a class file keeps them."""
+        return Document(NOBODY, NAME, "", time.time(), msgspec.json.encode(self))
+
+
+def fresh_state() -> ClassState:
+    """Make the settings of a new class."""
+    return ClassState(code=new_code(), key=new_key())
+
+
+def read_state(kept: Document) -> ClassState | None:
+    """Decode kept settings; None if they are of another version of this program."""
+    try:
+        return msgspec.json.decode(kept.content, type=ClassState)
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return None

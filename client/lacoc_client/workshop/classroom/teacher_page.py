@@ -1,0 +1,155 @@
+"""One /class page's connection: the requests that it may make, and who answers them."""
+
+import asyncio
+import hmac
+from typing import Any
+
+import msgspec
+from starlette.websockets import WebSocket
+
+from lacoc_client.web.gateway.answers import Answers
+from lacoc_client.web.gateway.page_requests import GARBAGE, serve_requests
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.workshop.classroom import teacher_requests as requests
+from lacoc_client.workshop.classroom.class_student import ClassStudent
+from lacoc_client.workshop.classroom.classroom import Classroom
+from lacoc_client.workshop.classroom.kept import EVIDENCE, TABLES, student_files
+from lacoc_client.workshop.design.design_page import parsed
+from lacoc_client.workshop.design.learning.draft import Draft
+from lacoc_client.workshop.design.requests import ParseAsk, Ping, RobotAsk, TrialAsk
+from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
+from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
+from lacoc_robots.seat_files import SeatFiles
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_ASKS_HZ, _ASKS_BURST = 20.0, 100
+
+
+class TeacherPage:
+    """One page's connection.
+
+    Args:
+        websocket: the page's WebSocket, not accepted yet.
+        classroom: the class.
+    """
+
+    def __init__(self, websocket: WebSocket, classroom: Classroom) -> None:
+        self._websocket = websocket
+        self._class = classroom
+        self._viewer = Viewer(websocket.state.socket)
+        self._answers = Answers(self._viewer, lambda *_: None)
+        self._studio = StudioDesk(classroom.studios, self._viewer.send_if_fast)
+
+    async def serve(self) -> None:
+        """Answer the page's requests until the page goes."""
+        try:
+            await serve_requests(
+                self._websocket, self._answers, requests.read, self._take, _ASKS_HZ, _ASKS_BURST
+            )
+        finally:
+            self._class.teachers.pop(self._viewer, None)
+            self._answers.stop()
+
+    async def _take(self, asked: requests.Asked) -> bool:
+        """Answer a request of a page that has shown the page key; close any other page.
+
+        Returns:
+            False if the page was closed, else True.
+        """
+        if isinstance(asked, requests.Hello):
+            key = asked.key.encode("utf-8", "surrogatepass")
+            self._viewer.can_act = hmac.compare_digest(key, self._class.state.key.encode())
+        if not self._viewer.can_act:
+            self._answers.refuse(asked.id, UserError(say("class.wrong-key")))
+            await self._websocket.close(GARBAGE, "no page key")
+            return False
+        match asked:
+            case requests.Hello():
+                self._answers.reply(asked.id, {})
+                self._class.add_teacher(self._viewer)
+            case Ping():
+                self._answers.reply(asked.id, {"t": asked.t})
+            case _:
+                self._answers.later(asked.id, self._answer(asked))
+        return True
+
+    async def _answer(self, asked: requests.Asked) -> Any:
+        group = self._class
+        value: Any = {}
+        match asked:
+            case requests.RulesAsk():
+                await group.set_rules(asked.rules)
+            case requests.HandOutAsk():
+                await self._hand_out(asked)
+            case ParseAsk():
+                value = await asyncio.to_thread(parsed, asked)
+            case requests.LowerAsk():
+                await group.lower(group.find(asked.student))
+            case requests.AdmitAsk():
+                await group.admit(group.find(asked.student))
+            case requests.ForgetAsk():
+                # A teacher who closes the page at once wants the student forgotten, too.
+                forgetting = group.forget(group.find(asked.student))
+                await asyncio.shield(asyncio.ensure_future(forgetting))
+            case requests.NewCodeAsk():
+                await group.set_code()
+            case requests.ShowAsk():
+                value = await self._show(group.find(asked.student))
+            case requests.ExportAsk():
+                value = await self._export(asked.what)
+            case requests.PlayAsk():
+                await group.tournament.play(
+                    self._players(), asked.arena, asked.rounds, asked.seconds
+                )
+            case requests.StopPlayAsk():
+                await group.tournament.stop()
+        return value
+
+    async def _hand_out(self, asked: requests.HandOutAsk) -> None:
+        if asked.student is not None:
+            draft = _draft(self._class.find(asked.student))
+            await self._class.hand_out(asked.title, draft.table, draft.sequences)
+            return
+        table = asked.table or (await asyncio.to_thread(self._class.sample)).table
+        if table is None:
+            raise UserError(say("class.no-sample"))
+        await self._class.hand_out(asked.title, table, asked.sequences)
+
+    async def _show(self, student: ClassStudent) -> dict[str, Any]:
+        """Let a student's robot walk; return robot, trial and table for the big screen."""
+        draft = _draft(student)
+        file = draft.robot or self._class.robot
+        trial = TrialAsk(id=0, table=draft.table, robot=file, sequences=draft.sequences)
+        robot = await self._studio.robot(RobotAsk(id=0, robot=file))
+        _, payload = await self._studio.trial(trial)
+        return {
+            "name": student.name,
+            "robot": robot,
+            "trial": msgspec.Raw(payload),
+            "table": draft.table,
+            "sequences": draft.sequences,
+        }
+
+    async def _export(self, what: str) -> dict[str, Any]:
+        if what == "evidence":
+            kept = await self._class.evidence()
+            return {"name": EVIDENCE, "data": await asyncio.to_thread(evidence_csv, kept)}
+        files = await asyncio.to_thread(student_files, await self._class.documents())
+        return {"name": TABLES, "data": await asyncio.to_thread(tables_zip, files)}
+
+    def _players(self) -> dict[str, SeatFiles]:
+        """Return the files of everybody who has a table, by nickname."""
+        players = {}
+        for student in self._class.students.values():
+            draft = student.diary.draft
+            if draft is not None:
+                files = draft.files()
+                players[student.name] = files._replace(robot=files.robot or self._class.robot)
+        return players
+
+
+def _draft(student: ClassStudent) -> Draft:
+    if student.diary.draft is None:
+        raise UserError(say("class.no-table", name=student.name))
+    return student.diary.draft

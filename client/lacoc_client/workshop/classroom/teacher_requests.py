@@ -1,0 +1,106 @@
+"""What the teacher's page asks (docs/gateway.md has it as a table)."""
+
+from typing import Annotated, Literal
+
+import msgspec
+
+from lacoc_client.web.gateway.wire import Ask
+from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.requests import Name, ParseAsk, Ping, Sequences, read_with
+from lacoc_client.workshop.design.table import FileTable
+
+
+class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
+    """The first message: it has the page key."""
+
+    key: Name = ""
+
+
+class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
+    """Set what students may do."""
+
+    rules: Rules
+
+
+class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
+    """Offer a table to everybody: this one, that of a student, or else the sample."""
+
+    title: Name = ""
+    table: FileTable | None = None
+    sequences: Sequences | None = None
+    student: Name | None = None
+
+
+class LowerAsk(Ask, frozen=True, kw_only=True, tag="lower"):
+    """Take a student's hand down."""
+
+    student: Name
+
+
+class AdmitAsk(Ask, frozen=True, kw_only=True, tag="admit"):
+    """Let another browser in under a student's name."""
+
+    student: Name
+
+
+class ForgetAsk(Ask, frozen=True, kw_only=True, tag="forget"):
+    """Delete all that is kept of a student."""
+
+    student: Name
+
+
+class NewCodeAsk(Ask, frozen=True, kw_only=True, tag="new_code"):
+    """Set another class code."""
+
+
+class ShowAsk(Ask, frozen=True, kw_only=True, tag="show"):
+    """Let a student's robot walk with the newest table, for the big screen."""
+
+    student: Name
+
+
+class ExportAsk(Ask, frozen=True, kw_only=True, tag="export"):
+    """Make a file of all evidence, or of all tables."""
+
+    what: Literal["evidence", "tables"]
+
+
+class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
+    """Start a tournament of the newest tables."""
+
+    arena: Name
+    rounds: Annotated[int, msgspec.Meta(ge=1, le=20)]
+    seconds: Annotated[float, msgspec.Meta(ge=1, le=180)]
+
+
+class StopPlayAsk(Ask, frozen=True, kw_only=True, tag="stop_play"):
+    """End the tournament early."""
+
+
+Asked = (
+    Hello
+    | Ping
+    | RulesAsk
+    | HandOutAsk
+    | ParseAsk
+    | LowerAsk
+    | AdmitAsk
+    | ForgetAsk
+    | NewCodeAsk
+    | ShowAsk
+    | ExportAsk
+    | PlayAsk
+    | StopPlayAsk
+)
+"""Every request of the teacher's page."""
+
+_asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
+
+
+def read(data: bytes) -> Asked:
+    """Decode a request of the teacher's page.
+
+    Raises:
+        Unreadable: if it is no known request, or too long for its kind.
+    """
+    return read_with(_asked, data)

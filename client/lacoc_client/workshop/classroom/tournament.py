@@ -1,0 +1,254 @@
+"""A friendly tournament of a class's gaits: the bot `planner` steers them, and all may watch."""
+
+import asyncio
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+from lacoc_client.play.simulation import (
+    BeginLine,
+    LeftOutLine,
+    Line,
+    MatchLine,
+    Simulation,
+    Standing,
+    StandingsLine,
+)
+from lacoc_client.workshop.phases.export import free_name
+from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
+from lacoc_shared.command.scratch import Scratch
+from lacoc_shared.mistakes import Mistake, UserError, text_of
+from lacoc_shared.words import Phrase, say
+
+RECORDINGS = "recordings"
+"""Folder of the records, in the folder of the class."""
+
+_BOT = "planner"
+_CLOSE_S = 15.0
+
+
+class Played(msgspec.Struct, frozen=True, kw_only=True):
+    """A match that has ended."""
+
+    left: str
+    right: str
+    scores: tuple[int, int]
+    winner: int | None
+    """0: left, 1: right; None: a draw, or void."""
+    void: bool
+    """Whether the match does not count, because physics stopped in it."""
+    record: str | None
+    """Name of the record's file in the folder of the records."""
+
+
+class LeftOut(msgspec.Struct, frozen=True, kw_only=True):
+    """A player who can't play."""
+
+    name: str
+    mistakes: tuple[Mistake, ...] = ()
+    """What is wrong in the files."""
+    why: Phrase | None = None
+    """Another reason; None: the mistakes say it."""
+
+
+class TournamentState(msgspec.Struct, frozen=True, kw_only=True):
+    """How a tournament goes."""
+
+    state: Literal["none", "running", "done", "stopped"] = "none"
+    arena: str = ""
+    done: int = 0
+    """Number of matches that have ended."""
+    of: int = 0
+    """Number of all matches."""
+    matches: tuple[Played, ...] = ()
+    """The matches that have ended, in this order."""
+    standings: tuple[Standing, ...] = ()
+    """The best first; empty until a match has ended."""
+    left_out: tuple[LeftOut, ...] = ()
+    trouble: Phrase | None = None
+    """Why the tournament ended early; None: it did not, or it was told to."""
+
+
+class Tournament:
+    """A friendly tournament of a class's gaits, played by `lacoc simulate` in its own process.
+
+    It is used from the event loop only.
+
+    Args:
+        folder: folder of the class; the records are in its folder "recordings".
+        tell: called whenever `state` has changed.
+    """
+
+    def __init__(self, folder: Path, tell: Callable[[], None]) -> None:
+        self.state = TournamentState()
+        self.recordings = folder / RECORDINGS
+        self._tell = tell
+        self._playing: asyncio.Task[None] | None = None
+        self._simulation: Simulation | None = None
+        self._stopping = False
+
+    async def play(
+        self, players: Mapping[str, SeatFiles], arena: str, rounds: int, seconds: float
+    ) -> None:
+        """Start a tournament; `state` has its matches and standings.
+
+        Args:
+            players: robot and gait of each player, by nickname; whoever has no level B is left out.
+            arena: the game.
+            rounds: how many other players each player meets.
+            seconds: length of a match [s].
+
+        Raises:
+            UserError: if a tournament runs, or fewer than two have a gait that walks.
+        """
+        if self.state.state == "running":
+            raise UserError(say("tournament.runs"))
+        fit = {name: files for name, files in players.items() if files.locomotion is not None}
+        without = [name for name in players if name not in fit]
+        if len(fit) < 2:
+            raise UserError(_too_few(without))
+        self._stopping = False
+        self.state = TournamentState(
+            state="running",
+            arena=arena,
+            of=rounds * (len(fit) // 2),
+            left_out=tuple(LeftOut(name=name, why=say("tournament.no-key")) for name in without),
+        )
+        words = ["--arena", arena, "--rounds", str(rounds), "--seconds", str(seconds)]
+        self._playing = asyncio.get_running_loop().create_task(self._play(fit, words))
+        self._tell()
+
+    async def stop(self) -> None:
+        """End the tournament, if one is played; the matches that have ended stay."""
+        if self._playing is None:
+            return
+        self._stopping = True
+        if self._simulation is not None:
+            self._simulation.end()
+        ended, _ = await asyncio.wait({self._playing}, timeout=_CLOSE_S)
+        if not ended:
+            self._playing.cancel()
+            await asyncio.wait({self._playing})
+
+    async def _play(self, players: Mapping[str, SeatFiles], words: list[str]) -> None:
+        is_done = False
+        trouble: Phrase | None = None
+        scratch: Scratch | None = None
+        try:
+            scratch = await asyncio.to_thread(Scratch, "tournament")
+            teams = await asyncio.to_thread(_written, players, scratch.path)
+            if not self._stopping:
+                trouble = await self._simulate(teams, words)
+                is_done = trouble is None
+        except OSError as error:
+            trouble = say("tournament.cannot-start", why=error.strerror or str(error))
+        finally:
+            if scratch is not None:
+                scratch.close()
+            if self._stopping:
+                trouble = None  # its complaint that it was ended
+            self._change(state="done" if is_done else "stopped", trouble=trouble)
+
+    async def _simulate(self, teams: "Mapping[str, _Team]", words: list[str]) -> Phrase | None:
+        """Run `lacoc simulate` with these teams and further words of the command line.
+
+        Returns:
+            Why the command ended early; None if it did not.
+        """
+        jobs = max(1, (os.cpu_count() or 1) - 1)  # one core is left for the class
+        words += ["--jobs", str(jobs), "--record", str(self.recordings), "--leave-out"]
+        self._simulation = await Simulation.start([*teams, *words])
+        if self._stopping:  # `stop` came while it started
+            self._simulation.end()
+        has_begun = False
+        try:
+            async for line in self._simulation.lines():
+                self._take(line, teams)
+                has_begun = has_begun or isinstance(line, BeginLine)
+            why = await self._simulation.complaint()
+        finally:
+            self._simulation.close()
+            self._simulation = None
+        if why is not None and not has_begun and self.state.left_out:
+            return _too_few([one.name for one in self.state.left_out])
+        return None if why is None else say("tournament.ended", why=why)
+
+    def _take(self, line: Line, teams: "Mapping[str, _Team]") -> None:
+        """Take in a line that `lacoc simulate` printed."""
+        match line:
+            case LeftOutLine():
+                out = teams[line.player].left_out(line)
+                self._change(left_out=(*self.state.left_out, out))
+            case BeginLine():
+                self._change(of=line.matches)
+            case MatchLine():
+                left, right = (teams[word].name for word in line.players)
+                played = Played(
+                    left=left,
+                    right=right,
+                    scores=line.result.scores,
+                    winner=line.winner,
+                    void=line.result.official == "void",
+                    record=line.record,
+                )
+                self.state = msgspec.structs.replace(
+                    self.state, matches=(*self.state.matches, played)
+                )  # its standings follow at once
+            case StandingsLine():
+                named = (
+                    msgspec.structs.replace(one, name=teams[one.name].name)
+                    for one in line.standings
+                )
+                self._change(done=line.done, standings=tuple(named))
+
+    def _change(self, **changes: object) -> None:
+        self.state = msgspec.structs.replace(self.state, **changes)
+        self._tell()
+
+
+class _Team(msgspec.Struct, frozen=True):
+    """A player of the tournament: the nickname, and what the player calls each file.
+
+    `files` maps the name under which a file was written to the name that the player gave it.
+    """
+
+    name: str
+    files: dict[str, str]
+
+    def left_out(self, line: LeftOutLine) -> LeftOut:
+        mistakes = tuple(
+            msgspec.structs.replace(mistake, file=self.files.get(mistake.file, mistake.file))
+            for mistake in line.mistakes
+        )
+        return LeftOut(name=self.name, mistakes=mistakes, why=line.why)
+
+
+def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]:
+    """Write the files of each player into a folder.
+
+    Returns:
+        The players, by the word that stands for each on the command line.
+
+    Raises:
+        OSError: if a file can't be written.
+    """
+    teams: dict[str, _Team] = {}
+    taken: list[str] = []
+    for name, files in players.items():
+        taken.append(free_name(name, taken))
+        own = folder / taken[-1]
+        own.mkdir()
+        known: dict[str, str] = {}
+        for file, on_disk in zip(files, USUAL_NAMES, strict=True):
+            if file is not None:
+                (own / on_disk).write_bytes(file.data)
+                known[f"{own.name}/{on_disk}"] = file.name
+        teams[text_of(f"{_BOT}@{own}")] = _Team(name, known)
+    return teams
+
+
+def _too_few(left_out: list[str]) -> Phrase:
+    return say("tournament.too-few", left_out=left_out)

@@ -1,0 +1,219 @@
+"""Keeps the evidence of what one student does, and the student's newest table."""
+
+import asyncio
+import time
+from collections.abc import Iterable
+from typing import TypeVar
+
+import msgspec
+
+from lacoc_client.workshop.design.learning.draft import NAME, Draft, read_draft
+from lacoc_client.workshop.design.learning.keeper import Keeper
+from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.phases.class_file import Document
+from lacoc_client.workshop.phases.evidence import Evidence, Named, Voted
+from lacoc_client.workshop.phases.phases import PHASES
+from lacoc_client.workshop.phases.progress import Progress, State, progress
+from lacoc_client.workshop.phases.store import ClassStore
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+_T = TypeVar("_T")
+
+
+class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
+    """A phase as a page shows it."""
+
+    number: int
+    """From 1 to 6."""
+    state: State
+    share: float
+    """Part of the task that is done, from 0 to 1."""
+    title: Phrase
+    task: Phrase
+    question: Phrase
+    hint: Phrase
+    explanation: Phrase
+    missing: tuple[Phrase, ...]
+    """Sentences that say what is still missing, the most useful first."""
+
+
+class Phases(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a student is in the six phases."""
+
+    phase: int
+    """Number of the phase that the student is at, from 1 to 6."""
+    word: str
+    """The word that the student chose for how the robot should walk; "": none yet."""
+    hand_up: bool
+    """Whether the student asks for help now."""
+    trouble: Phrase | None
+    """Why progress is not kept, or that its file was damaged; None: all is well."""
+    phases: tuple[PhaseState, ...]
+    rules: Rules
+
+
+class Diary:
+    """The evidence and the draft of one student; used from the event loop only.
+
+    If the file can't be opened, both are kept in memory until the program ends, and
+    `Keeper.trouble` says why.
+
+    Args:
+        keeper: keeps the file open.
+        student: name of the student; "": a student who designs alone.
+    """
+
+    def __init__(self, keeper: Keeper, student: str = "") -> None:
+        self._keeper = keeper
+        self._student = student
+        self._is_read = False
+        self._evidence: list[Evidence] = []
+        self._progress: Progress | None = None
+        self._reading = asyncio.Lock()
+        self._is_forgotten = False
+        self.draft: Draft | None = None
+        """The newest table; None: there is none."""
+
+    async def read(self) -> None:
+        """Read the evidence and the draft that earlier runs kept, if there is a file."""
+        if await asyncio.to_thread(self._keeper.path.exists):
+            await self._opened()
+
+    def begin(self, evidence: Iterable[Evidence], documents: Iterable[Document]) -> None:
+        """Begin with what the file has of this student.
+
+        Args:
+            evidence: the student's evidence, in order.
+            documents: the student's documents.
+        """
+        self._is_read = True
+        self._evidence[:0] = evidence
+        self._progress = None
+        drafts = (read_draft(document) for document in documents if document.name == NAME)
+        self.draft = self.draft or next(drafts, None)
+
+    async def add(self, *evidence: Evidence) -> None:
+        """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
+        if not evidence or self._is_forgotten:
+            return
+        self._evidence += evidence
+        store = await self._opened()
+        if store is not None and not self._is_forgotten:
+            now_s = time.time()
+            done = [asyncio.wrap_future(store.add(self._student, one, now_s)) for one in evidence]
+            await _kept(asyncio.gather(*done))
+
+    async def vote(self, poll: str, choice: str) -> None:
+        """Keep a vote, unless the student has voted in this poll before."""
+        if self._is_forgotten or Voted(poll=poll) in self._evidence:
+            return
+        self._evidence.append(Voted(poll=poll))
+        store = await self._opened()
+        if store is not None and not self._is_forgotten:
+            vote = store.vote(self._student, poll, choice, time.time())
+            await _kept(asyncio.wrap_future(vote))
+
+    async def keep(self, draft: Draft, version: str) -> None:
+        """Keep the newest table; it is on the disk with the next evidence, or after about a second.
+
+        Args:
+            draft: the table.
+            version: name of the table's content.
+        """
+        self.draft = draft
+        store = await self._opened()
+        if store is not None and not self._is_forgotten:
+            store.keep(draft.kept(self._student, version, time.time()))
+
+    async def write(self, document: Document) -> None:
+        """Write data such as the student's token; if that fails, `Phases.trouble` says why."""
+        store = await self._opened()
+        if store is not None and not self._is_forgotten:
+            await _kept(asyncio.wrap_future(store.write(document)))
+
+    async def forget(self) -> None:
+        """Delete all that is kept of the student; nothing more is kept from now on.
+
+        A trial may still run, and a page may still be coming in: what they bring is dropped.
+
+        Raises:
+            UserError: if the file can't be opened or written; then all is as before.
+        """
+        store = await self._keeper.opened()
+        if store is None:
+            raise UserError(self._keeper.trouble or say("class.closed"))
+        self._is_forgotten = True
+        try:
+            await asyncio.shield(asyncio.wrap_future(store.forget(self._student)))
+        except UserError:
+            self._is_forgotten = False
+            raise
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        """All evidence of the student, in order."""
+        return tuple(self._evidence)
+
+    @property
+    def progress(self) -> Progress:
+        """How far the student is in the six phases."""
+        if self._progress is None or self._progress.seen != len(self._evidence):
+            self._progress = progress(self._evidence, self._progress)
+        return self._progress
+
+    @property
+    def word(self) -> str:
+        """The word that the student chose for how the robot should walk; "": none yet."""
+        words = (one.word for one in reversed(self._evidence) if isinstance(one, Named))
+        return next(words, "")
+
+    def phases(self, rules: Rules) -> Phases:
+        """Describe for a page how far the student is.
+
+        Args:
+            rules: the teacher's choices for the class.
+        """
+        now = self.progress
+        return Phases(
+            phase=now.phase,
+            word=self.word,
+            hand_up=now.hand_up,
+            trouble=self._keeper.trouble,
+            phases=tuple(
+                PhaseState(
+                    number=phase.number,
+                    state=state,
+                    share=outcome.share,
+                    title=phase.title,
+                    task=phase.task,
+                    question=phase.question,
+                    hint=phase.hint,
+                    explanation=phase.explanation,
+                    missing=outcome.missing,
+                )
+                for phase, state, outcome in zip(PHASES, now.states, now.outcomes, strict=True)
+            ),
+            rules=rules,
+        )
+
+    async def _opened(self) -> ClassStore | None:
+        """Open the file and read this student's evidence and draft; None if it can't be opened."""
+        store = await self._keeper.opened()
+        async with self._reading:
+            if store is not None and not self._is_read:
+                self._is_read = True
+                try:
+                    kept = await asyncio.wrap_future(store.evidence(self._student))
+                except UserError:
+                    return store  # `Keeper.trouble` says why
+                self.begin((one.evidence for one in kept), store.documents(self._student))
+        return store
+
+
+async def _kept(work: asyncio.Future[_T]) -> None:
+    try:
+        # Whoever asked may go before it is written. It counts already, so it must be kept.
+        await asyncio.shield(work)
+    except UserError:
+        return  # `Keeper.trouble` says why

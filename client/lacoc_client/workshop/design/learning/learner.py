@@ -1,0 +1,233 @@
+"""Turns what one page does into evidence for the six phases."""
+
+import asyncio
+import hashlib
+from collections.abc import Awaitable, Callable
+
+import msgspec
+
+from lacoc_client.workshop.design import requests
+from lacoc_client.workshop.design.files import sent_gait
+from lacoc_client.workshop.design.learning.draft import Draft
+from lacoc_client.workshop.design.learning.student import Student
+from lacoc_client.workshop.design.table import FileTable
+from lacoc_client.workshop.phases.evidence import (
+    SAMPLE,
+    Checked,
+    Coached,
+    Compared,
+    Edited,
+    Evidence,
+    Guessed,
+    Rows,
+    Tried,
+    edited,
+)
+from lacoc_client.workshop.phases.facts import (
+    TrialFacts,
+    differences,
+    foot_ways,
+    pace,
+    trial_facts,
+    way,
+)
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
+from lacoc_robots.robot_file import RobotSpec, read_robot
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+from lacoc_shared.studio import TrialReply
+
+
+class Judged(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether a guess of where a foot goes was right."""
+
+    said: str
+    was: tuple[str, ...]
+    """All right answers, that of the foot's largest motion first."""
+    right: bool
+
+
+class EditReply(msgspec.Struct, frozen=True, kw_only=True):
+    """The answer to an edit."""
+
+    guess: Judged | None = None
+    """None: the student guessed nothing, or the guess can't be judged."""
+
+
+class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
+    """The answer to a check."""
+
+    keys: int
+    """Number of keys of level B; keys that share one sequence of postures count once."""
+    mistakes: tuple[Mistake, ...] = ()
+
+
+class Learner:
+    """Makes evidence of what one page does; used from the event loop only.
+
+    Args:
+        student: the student whose page it is.
+        sample: repeats a trial with the sample gait; returns None if no sample fits the robot.
+    """
+
+    def __init__(
+        self,
+        student: Student,
+        sample: Callable[[requests.TrialAsk], Awaitable[TrialReply | None]],
+    ) -> None:
+        self.student = student
+        self._diary = student.diary
+        self._sample = sample
+        self._before: FileTable | None = None
+        self._last: dict[str, TrialFacts] = {}
+        self._samples: dict[tuple[str, SentFile | None], TrialFacts | None] = {}
+
+    async def edited(self, asked: requests.EditAsk) -> EditReply:
+        """Take in the table after an edit, and judge the guess that the student made before it.
+
+        Raises:
+            FileRefused: with every mistake of the table or of the robot.
+        """
+        version = _version(asked.table, asked.sequences)
+        if asked.by is not None or self._diary.draft is not None:  # else nothing was changed yet
+            draft = Draft(
+                table=asked.table,
+                sequences=asked.sequences,
+                robot=asked.robot,
+                file=asked.file,
+                file_version=asked.file_version,
+                saved=asked.saved,
+                robot_version=asked.robot_version,
+            )
+            await self._diary.keep(draft, version)
+        before, self._before = self._before, asked.table
+        if before is None or asked.by is None or before.kind != asked.table.kind:
+            return EditReply()
+        edit = edited(_rows(before), _rows(asked.table), version, asked.by)
+        if edit is None:
+            return EditReply()
+        evidence: list[Evidence] = [edit]
+        judged = None
+        if asked.guess is not None:
+            spec = await asyncio.to_thread(_robot, asked.robot)
+            if was := _foot_ways(edit, _rows(before), spec):
+                guess = Guessed(about="foot", said=asked.guess, was=was)
+                evidence.append(guess)
+                judged = Judged(said=guess.said, was=was, right=guess.right)
+        if asked.by == "coach" and asked.size is not None:
+            evidence.append(Coached(version=version, size=asked.size))
+        await self._diary.add(*evidence)
+        return EditReply(guess=judged)
+
+    async def tried(self, asked: requests.TrialAsk, reply: TrialReply) -> TrialFacts | None:
+        """Take in a trial, and judge the guesses that were made before it.
+
+        Returns:
+            What the trial showed; None: it is no evidence.
+        """
+        facts = _facts(reply, asked.keys)
+        if asked.table is None or facts is None:
+            return None
+        before = self._last.get(asked.keys)
+        self._last[asked.keys] = facts
+        evidence: list[Evidence] = [
+            Tried(version=_version(asked.table, asked.sequences), facts=facts)
+        ]
+        for guess in asked.guesses:
+            if guess.about == "way":
+                evidence.append(Guessed(about="way", said=guess.said, was=(way(facts),)))
+            elif before is not None:
+                evidence.append(Guessed(about="pace", said=guess.said, was=(pace(before, facts),)))
+        await self._diary.add(*evidence)
+        return facts
+
+    async def compared(self, asked: requests.TrialAsk, own: TrialFacts | None) -> bool:
+        """Compare a trial of a key of level B with the same trial of the sample gait.
+
+        Args:
+            asked: the trial.
+            own: what the trial showed, as `tried` returns it.
+
+        Returns:
+            Whether the comparison was kept as evidence.
+        """
+        if asked.table is None or own is None or not own.keys[-1].startswith("B"):
+            return False
+        place = (asked.keys, asked.robot)
+        if place not in self._samples:
+            try:
+                reply = await self._sample(asked)
+            except (UserError, FileRefused):
+                return False  # the sample can't be tried now; the next trial asks again
+            self._samples[place] = None if reply is None else _facts(reply, asked.keys)
+        sample = self._samples[place]
+        differs = differences(own, sample) if sample is not None else ()
+        if differs:
+            version = _version(asked.table, asked.sequences)
+            await self._diary.add(Compared(version=version, against=SAMPLE, differs=differs))
+        return bool(differs)
+
+    async def checked(self, asked: requests.CheckAsk) -> CheckReply:
+        """Check a table against its robot's joints, as `lacoc gait check` does.
+
+        Raises:
+            FileRefused: with every mistake of the robot file; mistakes of the table are returned.
+            UserError: if a key of a locomotion table is missing.
+        """
+        spec = await asyncio.to_thread(_robot, asked.robot)
+        table = asked.table
+        sequences = set(asked.sequences or ())
+        keys = (
+            len({row.key for row in table.rows}) if table.kind == "locomotion" else len(sequences)
+        )
+        mistakes: tuple[Mistake, ...] = ()
+        try:
+            sent = sent_gait(table)
+            read_gait(sent.data, sent.name, legs=spec.labels, range_deg=spec.ranges_deg)
+        except FileRefused as error:
+            mistakes = tuple(error.mistakes)
+        else:
+            version = _version(table, asked.sequences)
+            await self._diary.add(Checked(version=version, keys=keys, mistakes=0))
+        return CheckReply(keys=keys, mistakes=mistakes)
+
+
+def _version(table: FileTable, sequences: object) -> str:
+    """Return a name for the content of a table and its sequences: equal contents, equal names.
+
+    Raises:
+        FileRefused: with every mistake of the table.
+        UserError: if a key of a locomotion table is missing.
+    """
+    data = sent_gait(table).data + repr(sequences).encode()
+    return hashlib.blake2b(data, digest_size=8).hexdigest()
+
+
+def _rows(table: FileTable) -> Rows:
+    return {(row.key, row.posture): row.angles_deg for row in table.rows}
+
+
+def _robot(robot: SentFile | None) -> RobotSpec:
+    if robot is None:
+        robot = SentFile(*find_robot(WORKSHOPS_ROBOT))
+    return read_robot(robot.data, robot.name)
+
+
+def _foot_ways(edit: Edited, before: Rows, spec: RobotSpec) -> tuple[str, ...]:
+    """Return the directions in which an edit moved a foot, as `foot_ways` does; () if unknown.
+
+    It is the foot of the first leg that the edit changed.
+    """
+    leg = edit.legs[0]
+    old = before.get((leg.key, leg.posture))
+    if old is None or len(old) != 3 * len(spec.legs):
+        return ()
+    return foot_ways(spec.legs[leg.leg], old[leg.leg :: len(spec.legs)], leg.angles_deg)
+
+
+def _facts(reply: TrialReply, keys: str) -> TrialFacts | None:
+    try:
+        return trial_facts(reply, keys)
+    except ValueError:
+        return None  # the studio is of another version

@@ -1,0 +1,293 @@
+"""The requests of a /design page (docs/gateway.md lists them in a table)."""
+
+from typing import Annotated, Any, Literal, TypeVar
+
+import msgspec
+
+from lacoc_client.web.gateway.wire import Ask, Unreadable, too_long
+from lacoc_client.workshop.design.saving.robot_edit import RobotEntry
+from lacoc_client.workshop.design.table import FileTable
+from lacoc_client.workshop.phases.evidence import By
+from lacoc_client.workshop.phases.facts import FootWay, Pace, Way
+from lacoc_shared.gait.workbook.content import MAX_BYTES
+from lacoc_shared.messages import SentFile
+from lacoc_shared.studio import STUDIO_MAX_BYTES
+from lacoc_shared.words import say
+
+REQUEST_BYTES = STUDIO_MAX_BYTES
+"""Longest request [bytes] except for `parse`; a longer one is refused."""
+PARSE_BYTES = MAX_BYTES + 4096
+"""Longest `parse` [bytes], which may have the largest workbook that is read."""
+MESSAGE_BYTES = 16 << 20
+"""Longest message [bytes]; a longer one closes the connection."""
+
+_T = TypeVar("_T")
+Name = Annotated[str, msgspec.Meta(max_length=200)]
+_Job = Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,15}$")]
+Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
+
+
+class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
+    """Ask to be let in, with the page key or with a class code and a name; the first message."""
+
+    key: Name = ""
+    code: Name = ""
+    """The class code."""
+    name: Name = ""
+    """Nickname in the class."""
+    token: Name = ""
+    """What the class gave this browser before."""
+
+
+class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
+    """Ask for a reply, as a sign of life."""
+
+    t: float | int | str | None = None
+
+
+class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
+    """Read a file of the folder."""
+
+    name: Name
+
+
+class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
+    """Read the sample gait of the robot that `lacoc design` began with."""
+
+
+class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
+    """Read a file that was dropped on the page, or the text of a whole pasted spreadsheet."""
+
+    name: Name
+    data: Any
+    """Bytes, or text."""
+
+
+class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
+    """Save a table, or the text of a robot file."""
+
+    name: Name
+    table: FileTable | None = None
+    robot: str | None = None
+    version: Name = ""
+    """Version of the file that the content was made from; "": there was no file of this name."""
+    force: bool = False
+    """Whether to save even if the file has changed since that version."""
+
+
+class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
+    """Make a file to download."""
+
+    name: Name
+    table: FileTable
+
+
+class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
+    """Ask the studio what a robot file describes."""
+
+    robot: SentFile | None = None
+
+
+class SetRobotAsk(Ask, frozen=True, kw_only=True, tag="set_robot"):
+    """Change one number in the text of a robot file."""
+
+    robot: SentFile | None = None
+    """None: the workshop's robot is the start."""
+    entry: RobotEntry
+    value: float
+
+
+class Foretold(msgspec.Struct, frozen=True, kw_only=True):
+    """A student's guess of what the next trial will show."""
+
+    about: Literal["pace", "way"]
+    said: Pace | Way
+
+
+class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
+    """Let the robot walk."""
+
+    table: FileTable | None = None
+    """None: the sample gait of the robot."""
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+    keys: Name = ""
+    seconds: float | None = None
+    guesses: tuple[Foretold, ...] = ()
+    watched: bool = False
+    """Whether the table is the coach's and is only watched; then the trial is no evidence."""
+
+
+class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
+    """Tell the gateway the table after an edit, as evidence for the phases."""
+
+    table: FileTable
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+    by: By | None = None
+    """None: this is no edit of the student's; a file was opened, or an edit was undone."""
+    size: Literal["cell", "three", "table"] | None = None
+    """If the student took over the coach's changes, the size of the coach's search."""
+    guess: FootWay | None = None
+    """The direction in which the student guessed, before the edit, that the foot will go."""
+    file: Name = ""
+    """Name of the file that is open; "": none."""
+    file_version: Name = ""
+    """Version of that file that the table was made from."""
+    saved: bool = False
+    """Whether the files have this table and this robot."""
+    robot_version: Name | None = None
+    """Version of the file that the robot was made from, if that file lacks changes of the robot;
+    "": the robot has no file; None: nothing is lacking."""
+
+
+class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
+    """Check the table against the robot's joints, as `lacoc gait check` does."""
+
+    table: FileTable
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+
+
+class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
+    """Check the table, and take it to a court, to practise."""
+
+    table: FileTable
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+
+
+class HandOnAsk(PlayAsk, frozen=True, kw_only=True, tag="hand_on"):
+    """Check the table, and make the files with which a team enters a contest."""
+
+
+class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
+    """Go to a phase, forward or back."""
+
+    number: Annotated[int, msgspec.Meta(ge=1, le=6)]
+
+
+class NameAsk(Ask, frozen=True, kw_only=True, tag="name"):
+    """Choose a word for how the robot should walk."""
+
+    word: Annotated[str, msgspec.Meta(min_length=1, max_length=40)]
+
+
+class VoteAsk(Ask, frozen=True, kw_only=True, tag="vote"):
+    """Vote whether A (the sample) or B (the student's own gait) fits the word better."""
+
+    choice: Literal["A", "B"]
+
+
+class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):
+    """Raise the hand for help, or take it down."""
+
+    up: bool
+
+
+class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
+    """Ask the coach which numbers matter, and for better numbers."""
+
+    job: _Job
+    """Name that the page chooses for the search; progress and `cancel` have it too."""
+    table: FileTable | None = None
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+    key: int | None = None
+    goal: Name = "forward"
+    size: Name | None = None
+    seconds: float = 30.0
+    seed: int = 0
+
+
+class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
+    """Ask the coach for a map of gaits: one for each speed and arousal."""
+
+    job: _Job
+    """As in `CoachAsk`."""
+    table: FileTable | None = None
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+    key: int | None = None
+    seconds: float = 30.0
+    seed: int = 0
+
+
+class VariantsAsk(Ask, frozen=True, kw_only=True, tag="variants"):
+    """Ask the coach for six gaits that look different."""
+
+    job: _Job
+    """As in `CoachAsk`."""
+    table: FileTable | None = None
+    robot: SentFile | None = None
+    sequences: Sequences | None = None
+    key: int | None = None
+    keep: tuple[tuple[int, ...], ...] = ()
+    """Tables of one or two gaits to breed from; empty: from `table`."""
+    before: tuple[tuple[int, ...], ...] = ()
+    """Tables of gaits that were shown before: new ones differ from them."""
+    round: int = 0
+    """How many rounds were before."""
+    seed: int = 0
+
+
+class CancelAsk(Ask, frozen=True, kw_only=True, tag="cancel"):
+    """End a search of this page early."""
+
+    job: _Job
+
+
+Asked = (
+    Hello
+    | Ping
+    | ReadAsk
+    | SampleAsk
+    | ParseAsk
+    | SaveAsk
+    | WriteAsk
+    | RobotAsk
+    | SetRobotAsk
+    | TrialAsk
+    | CoachAsk
+    | MapAsk
+    | VariantsAsk
+    | CancelAsk
+    | EditAsk
+    | CheckAsk
+    | PlayAsk
+    | HandOnAsk
+    | PhaseAsk
+    | NameAsk
+    | VoteAsk
+    | HandAsk
+)
+"""Every request of a page."""
+
+
+class _AnyDo(msgspec.Struct):
+    do: str
+
+
+_asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
+_any_do = msgspec.msgpack.Decoder(_AnyDo)
+
+
+def read(data: bytes) -> Asked:
+    """Decode a request of a page.
+
+    Raises:
+        Unreadable: if the bytes are no known request, or too many for their kind of request.
+    """
+    return read_with(_asked, data)
+
+
+def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
+    """Decode a request with this decoder; raise the same error as `read`."""
+    try:
+        if len(data) > REQUEST_BYTES:
+            most = PARSE_BYTES if _any_do.decode(data).do == "parse" else REQUEST_BYTES
+            if len(data) > most:
+                raise too_long(len(data), most)
+        return decoder.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise Unreadable(say("gateway.bad-message", error=str(error))) from None

@@ -1,0 +1,98 @@
+"""The conditions that the six phases ask for, made of the general rules in `predicates`."""
+
+import math
+from collections.abc import Callable, Iterator
+
+from lacoc_client.workshop.phases.evidence import SAMPLE, Compared, Edited, Evidence, Guessed
+from lacoc_client.workshop.phases.facts import TrialFacts
+from lacoc_client.workshop.phases.predicates import Bound, Different, Predicate, TriedWhere
+from lacoc_shared.words import Phrase, say
+
+_OWN = ("hand", "tool")
+_UPRIGHT = 0.8
+"""A robot has tipped over if its `upright` is below this (docs/studio.md 3)."""
+_BELLY = 0.05
+"""A robot does not act on its feet if its body rests on the floor for a larger share of time."""
+
+
+def own_cells(cells: int) -> Different:
+    """Make the rule that the student changed `cells` different cells without coach or paste."""
+    return Different(_cells, cells, lambda left: say("phases.more-cells", left=left))
+
+
+def _cells(one: Evidence) -> Iterator[tuple[None, tuple[int, ...]]]:
+    if isinstance(one, Edited) and one.by in _OWN:
+        for leg in one.legs:
+            for level in leg.changed:
+                yield None, (leg.key, leg.posture, leg.leg, level)
+
+
+def leg_postures(one: Evidence) -> Iterator[tuple[int, tuple[float, ...]]]:
+    """Yield each leg that the student changed, with its angles after the edit."""
+    if isinstance(one, Edited) and one.by in _OWN:
+        for leg in one.legs:
+            yield leg.leg, leg.angles_deg
+
+
+def leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
+    """Yield each joint that the student changed: its leg, and its place in the leg (0, 1 or 2)."""
+    if isinstance(one, Edited) and one.by in _OWN:
+        for leg in one.legs:
+            for level in leg.changed:
+                yield leg.leg, level
+
+
+def foot_guess(one: Evidence) -> bool | None:
+    """Return whether a guess of where a foot goes was right; None for all other evidence."""
+    return one.right if isinstance(one, Guessed) and one.about == "foot" else None
+
+
+def differs_from_sample(one: Evidence) -> Iterator[tuple[None, str]]:
+    """Yield each way in which a walk differs from the sample's walk."""
+    if isinstance(one, Compared) and one.against == SAMPLE:
+        for difference in one.differs:
+            yield None, difference
+
+
+def are_two_postures(facts: TrialFacts) -> float:
+    """Return 1 if the last two keys were two different postures of level A, else 0."""
+    last = facts.keys[-2:]
+    return float(len(set(last)) == 2 and all(key.startswith("A") for key in last))
+
+
+NOT_STOPPED = Bound(
+    lambda facts: float(facts.stopped), lambda stopped: say("phases.stopped"), most=0.0
+)
+IS_UPRIGHT = Bound(
+    lambda facts: facts.upright, lambda upright: say("phases.tipped"), least=_UPRIGHT
+)
+
+
+def acts(*bounds: Bound, lacks: Phrase) -> Predicate:
+    """Make the rule that the robot stays on its feet in a trial of a key of level B.
+
+    Args:
+        *bounds: further limits that the same trial must keep.
+        lacks: sentence for whatever is missing; a robot that tips over, and physics that stops,
+            have sentences of their own.
+    """
+    level_b = Bound(lambda facts: float(facts.keys[-1].startswith("B")), lambda _: lacks, least=1)
+    belly = Bound(lambda facts: facts.belly_share, lambda _: lacks, most=_BELLY)
+    return TriedWhere((level_b, IS_UPRIGHT, belly, NOT_STOPPED, *bounds), lacks)
+
+
+def within(
+    number: Callable[[TrialFacts], float],
+    lacks: Phrase,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> Bound:
+    """Make the limit that a number of a trial is from `least` to `most`.
+
+    Args:
+        number: takes a trial's facts; returns the number.
+        lacks: sentence that says what is missing if the number lies outside.
+        least: smallest number allowed.
+        most: largest number allowed.
+    """
+    return Bound(number, lambda _: lacks, least, most)

@@ -1,0 +1,183 @@
+"""The kinds of evidence of what students do, from which the phases decide what is done.
+
+Evidence is only added, never changed.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Literal
+
+import msgspec
+
+from lacoc_client.workshop.phases.facts import Difference, TrialFacts
+from lacoc_shared.gait.tables import JOINTS_PER_LEG
+
+SAMPLE = "sample"
+"""Name of the version that is the sample gait of the robot."""
+
+By = Literal["hand", "tool", "paste", "coach"]
+"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others."""
+Rows = Mapping[tuple[int, int], Sequence[float]]
+"""A table: (key, index in the key's sequence) -> (joints,) angles [deg], by joint id."""
+
+_Word = Annotated[str, msgspec.Meta(max_length=40)]
+_Name = Annotated[str, msgspec.Meta(max_length=100)]
+
+
+class _Kind(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag=str.lower):
+    """A kind of evidence; the name of its class in lower case is the field "kind" of its JSON."""
+
+
+class Joined(_Kind, frozen=True, kw_only=True):
+    """The student came into the class."""
+
+
+class Moved(_Kind, frozen=True, kw_only=True):
+    """The student went to a phase, forward or back."""
+
+    phase: int
+    """From 1 to 6."""
+
+
+class LegEdit(msgspec.Struct, frozen=True, array_like=True):
+    """An edit of one leg in one posture."""
+
+    key: int
+    posture: int
+    """Index in the key's sequence; 0 in a table of postures."""
+    leg: int
+    """Index of the leg."""
+    changed: tuple[int, ...]
+    """Levels of the joints that were changed: 0 is root, 1 is 1st, 2 is 2nd."""
+    angles_deg: tuple[float, ...]
+    """(3,) angles of the leg after the edit."""
+
+
+class Edited(_Kind, frozen=True, kw_only=True):
+    """The student changed cells of the table."""
+
+    version: _Word
+    """The version that the edit made."""
+    by: By
+    legs: tuple[LegEdit, ...]
+
+
+class Guessed(_Kind, frozen=True, kw_only=True):
+    """The student guessed what would happen, and then saw what happened."""
+
+    about: Literal["foot", "pace", "way"]
+    """What was guessed: where a foot goes (`facts.FootWay`), whether the robot becomes faster
+    (`facts.Pace`), or to which side it turns (`facts.Way`)."""
+    said: _Word
+    """The student's answer."""
+    was: tuple[_Word, ...]
+    """All right answers."""
+
+    @property
+    def right(self) -> bool:
+        """Whether the student was right."""
+        return self.said in self.was
+
+
+class Tried(_Kind, frozen=True, kw_only=True):
+    """The student let the robot walk."""
+
+    version: _Word
+    facts: TrialFacts
+
+
+class Checked(_Kind, frozen=True, kw_only=True):
+    """A gait was checked, as `lacoc gait check` does; checks that find mistakes are not kept."""
+
+    version: _Word
+    keys: int
+    """Number of keys of level B that the gait has."""
+    mistakes: int
+    """Number of mistakes that were found: 0 in what the page keeps."""
+
+
+class Compared(_Kind, frozen=True, kw_only=True):
+    """Trials of two versions of the table were compared."""
+
+    version: _Word
+    against: _Word
+    """The other version; `SAMPLE`: the sample gait."""
+    differs: tuple[Difference, ...]
+    """The differences between the walks that people can see (`facts.differences`)."""
+
+
+class Named(_Kind, frozen=True, kw_only=True):
+    """The student chose a word for how the robot should walk, such as "elegant"."""
+
+    word: _Word
+
+
+class Voted(_Kind, frozen=True, kw_only=True):
+    """The student voted whether A or B fits a word better; the choice is not kept here."""
+
+    poll: _Name
+    """The word."""
+
+
+class Coached(_Kind, frozen=True, kw_only=True):
+    """The student took over the coach's changes."""
+
+    version: _Word
+    size: Literal["cell", "three", "table"]
+    """How much the coach was allowed to change: one number, three, or all."""
+
+
+class Hand(_Kind, frozen=True, kw_only=True):
+    """The student raised a hand to ask for help, or took it down."""
+
+    up: bool
+
+
+Evidence = (
+    Joined | Moved | Edited | Guessed | Tried | Checked | Compared | Named | Voted | Coached | Hand
+)
+
+_DECODER = msgspec.json.Decoder(Evidence)
+
+
+def to_json(evidence: Evidence) -> bytes:
+    """Encode evidence as JSON."""
+    return msgspec.json.encode(evidence)
+
+
+def from_json(data: bytes | str) -> Evidence:
+    """Decode evidence from JSON.
+
+    Raises:
+        ValueError: if the data are not evidence.
+    """
+    evidence: Evidence = _DECODER.decode(data)
+    return evidence
+
+
+def edited(before: Rows, after: Rows, version: str, by: By) -> Edited | None:
+    """Find what an edit changed; None if it changed no angle.
+
+    Args:
+        before: the table before the edit.
+        after: the table after the edit. New rows count as changed; removed rows do not count.
+        version: name of the version that the edit made.
+        by: how the cells were changed.
+    """
+    legs = tuple(
+        leg for place, angles in sorted(after.items()) for leg in _legs(place, before, angles)
+    )
+    return Edited(version=version, by=by, legs=legs) if legs else None
+
+
+def _legs(place: tuple[int, int], before: Rows, angles: Sequence[float]) -> Iterator[LegEdit]:
+    old, legs = before.get(place), len(angles) // JOINTS_PER_LEG
+    known = old is not None and len(old) == len(angles)
+    for leg in range(legs):
+        joints = range(leg, legs * JOINTS_PER_LEG, legs)
+        changed = tuple(
+            level
+            for level, joint in enumerate(joints)
+            if old is None or not known or old[joint] != angles[joint]
+        )
+        if changed:
+            yield LegEdit(*place, leg, changed, tuple(angles[joint] for joint in joints))

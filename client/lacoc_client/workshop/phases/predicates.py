@@ -1,0 +1,220 @@
+"""Rules that look at a student's evidence and say how much of something is done.
+
+Small rules can be put together to larger ones. More evidence never makes less done: a rule that was
+met once stays met. A test checks this for all phases.
+"""
+
+import math
+from bisect import bisect_left
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from lacoc_client.workshop.phases.evidence import (
+    Checked,
+    Coached,
+    Compared,
+    Edited,
+    Evidence,
+    Tried,
+)
+from lacoc_client.workshop.phases.facts import TrialFacts
+from lacoc_shared.words import Phrase
+
+_NEARLY = 0.99
+"""Largest share of a rule that is not met."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How far a student is with one rule."""
+
+    share: float
+    """Part that is done, from 0 to 1; 1: the rule is met."""
+    missing: tuple[Phrase, ...]
+    """Sentences that say what is still missing, the most useful first; empty: the rule is met."""
+
+    @property
+    def met(self) -> bool:
+        """Whether the rule is met."""
+        return not self.missing
+
+
+MET = Outcome(1.0, ())
+
+
+class Predicate(Protocol):
+    """A rule that evidence meets, or does not meet yet."""
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Return how far the rule is met; `evidence` is in the order in which it came."""
+
+
+Lacks = Callable[[int], Phrase]
+"""Takes a number of missing things; returns a sentence that says so."""
+
+
+@dataclass(frozen=True)
+class Times:
+    """A rule that something must happen a number of times."""
+
+    test: Callable[[Evidence], bool]
+    """Says whether a piece of evidence counts."""
+    times: int
+    lacks: Lacks
+    """Takes how many times are missing."""
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Count the evidence that passes the test."""
+        return _counted(sum(map(self.test, evidence)), self.times, self.lacks)
+
+
+def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
+    """Make the rule that something must happen at least once."""
+    return Times(test, 1, lambda left: lacks)
+
+
+@dataclass(frozen=True)
+class Different:
+    """A rule that a group must have `count` different things, such as six postures of a leg."""
+
+    things: Callable[[Evidence], Iterable[tuple[Hashable, Hashable]]]
+    """Takes a piece of evidence; returns its pairs of a group and a thing."""
+    count: int
+    lacks: Lacks
+    """Takes how many things are missing in the group that has most."""
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Count the different things of each group; return the outcome of the largest group."""
+        groups: defaultdict[Hashable, set[Hashable]] = defaultdict(set)
+        for one in evidence:
+            for group, thing in self.things(one):
+                groups[group].add(thing)
+        return _counted(max(map(len, groups.values()), default=0), self.count, self.lacks)
+
+
+@dataclass(frozen=True)
+class LastOf:
+    """A rule that some `last` answers in a row must have at least `right` right ones."""
+
+    answer: Callable[[Evidence], bool | None]
+    """Says whether an answer was right; None: this evidence is no answer."""
+    right: int
+    last: int
+    lacks: Lacks
+    """Takes how many right answers the best row still lacks."""
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Find the `last` answers in a row of which the most are right; return their outcome."""
+        answers = [right for one in evidence if (right := self.answer(one)) is not None]
+        runs = (answers[start : start + self.last] for start in range(len(answers)))
+        return _counted(max(map(sum, runs), default=0), self.right, self.lacks)
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A limit for one number of a trial: it must be from `least` to `most`."""
+
+    number: Callable[[TrialFacts], float | None]
+    """Returns the number; None, NaN or infinity: the trial has none, so the limit is not kept."""
+    lacks: Callable[[float], Phrase]
+    """Takes the trial's number (0 if it has none); returns a sentence that says what is missing."""
+    least: float = -math.inf
+    most: float = math.inf
+
+    def look(self, facts: TrialFacts) -> Outcome:
+        """Compare the trial's number with the limits."""
+        number = self.number(facts)
+        if number is None or not math.isfinite(number):
+            return Outcome(0.0, (self.lacks(0.0),))
+        if self.least <= number <= self.most:
+            return MET
+        if number < self.least and self.least > 0:
+            share = max(0.0, number) / self.least
+        else:
+            limit = abs(self.least if number < self.least else self.most)
+            beyond = max(self.least - number, number - self.most)
+            share = limit / (limit + beyond)
+        return Outcome(min(_NEARLY, share), (self.lacks(number),))
+
+
+@dataclass(frozen=True)
+class TriedWhere:
+    """A rule that one trial must keep all limits."""
+
+    bounds: tuple[Bound, ...]
+    none: Phrase
+    """What is missing while there is no trial."""
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Return the outcome of the trial with the largest share; of equal ones, of the last."""
+        tries = [one.facts for one in evidence if isinstance(one, Tried)]
+        best = [_all([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
+        return max(best, key=_share, default=Outcome(0.0, (self.none,)))
+
+
+class All:
+    """A rule that several rules must be met.
+
+    Args:
+        *parts: the rules.
+    """
+
+    def __init__(self, *parts: Predicate) -> None:
+        self.parts = parts
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Look at each rule; the share is the mean of their shares."""
+        return _all([part.look(evidence) for part in self.parts])
+
+
+@dataclass(frozen=True)
+class After:
+    """A rule that a first rule must be met, and then a second one by later evidence alone."""
+
+    first: Predicate
+    then: Predicate
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Find when the rule `first` was met, and look at the later evidence with `then`."""
+        start = self.first.look(evidence)
+        if not start.met:
+            return Outcome(start.share / 2, start.missing)
+        # A rule that is met stays met, so bisection finds when it was met first.
+        counts = range(len(evidence) + 1)
+        shown = bisect_left(counts, True, key=lambda count: self.first.look(evidence[:count]).met)
+        rest = self.then.look(evidence[shown:])
+        return MET if rest.met else Outcome(0.5 + rest.share / 2, rest.missing)
+
+
+@dataclass(frozen=True)
+class OneVersion:
+    """A rule that another rule must be met by evidence of a single version of the table."""
+
+    shown: Predicate
+
+    def look(self, evidence: Sequence[Evidence]) -> Outcome:
+        """Return the outcome of the version with the largest share; of equal ones, of the last."""
+        versions: dict[str, list[Evidence]] = {}
+        for one in evidence:
+            if isinstance(one, Edited | Tried | Checked | Compared | Coached):
+                versions.setdefault(one.version, []).append(one)
+        found = [self.shown.look(seen) for seen in reversed(versions.values())]
+        return max(found, key=_share, default=self.shown.look(()))
+
+
+def _share(outcome: Outcome) -> float:
+    return outcome.share
+
+
+def _counted(found: int, wanted: int, lacks: Lacks) -> Outcome:
+    return MET if found >= wanted else Outcome(found / wanted, (lacks(wanted - found),))
+
+
+def _all(outcomes: Sequence[Outcome]) -> Outcome:
+    missing = tuple(dict.fromkeys(phrase for outcome in outcomes for phrase in outcome.missing))
+    if not missing:
+        return MET
+    share = sum(outcome.share for outcome in outcomes) / len(outcomes)
+    return Outcome(min(_NEARLY, share), missing)

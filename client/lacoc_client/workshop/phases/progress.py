@@ -1,0 +1,71 @@
+"""How far a student is in the six phases."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from lacoc_client.workshop.phases.evidence import Coached, Evidence, Hand, Joined, Moved
+from lacoc_client.workshop.phases.phases import PHASES
+from lacoc_client.workshop.phases.predicates import Outcome
+
+_UNCOUNTED = (Joined, Moved, Hand)
+"""Evidence that no task asks for: a page may send much of it, so it must cost little."""
+
+State = Literal["open", "met", "skipped"]
+"""A phase is "skipped" if the student went on without doing its task. The student can come back at
+any time, and the phase is "met" as soon as the evidence shows it."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a student is in the six phases."""
+
+    phase: int
+    """Number of the phase that the student is at, from 1."""
+    states: tuple[State, ...]
+    """State of each phase."""
+    outcomes: tuple[Outcome, ...]
+    """For each phase, the share that is done and what is missing."""
+    hand_up: bool
+    """Whether the student asks for help now."""
+    coached: bool
+    """Whether the student has ever taken over changes of the coach."""
+    seen: int
+    """Number of pieces of evidence from which this was computed."""
+
+
+def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Progress:
+    """Compute how far a student is.
+
+    Args:
+        evidence: all evidence of the student, in order.
+        before: the result for an earlier part of the same evidence. Tasks that were met then are
+            not looked at again, because a task that was met stays met.
+    """
+    visited = [one.phase for one in evidence if isinstance(one, Moved)]
+    visited = [number for number in visited if 1 <= number <= len(PHASES)]
+    hands = [one.up for one in evidence if isinstance(one, Hand)]
+    known = before.outcomes if before is not None else (None,) * len(PHASES)
+    new = evidence[before.seen :] if before is not None else evidence
+    counts = any(not isinstance(one, _UNCOUNTED) for one in new)
+    outcomes = tuple(
+        old if old is not None and (old.met or not counts) else phase.look(evidence)
+        for phase, old in zip(PHASES, known, strict=True)
+    )
+    farthest = max(visited, default=1)
+    return Progress(
+        phase=visited[-1] if visited else 1,
+        states=tuple(
+            _state(outcome, number < farthest) for number, outcome in enumerate(outcomes, start=1)
+        ),
+        outcomes=outcomes,
+        hand_up=bool(hands) and hands[-1],
+        coached=any(isinstance(one, Coached) for one in evidence),
+        seen=len(evidence),
+    )
+
+
+def _state(outcome: Outcome, is_behind: bool) -> State:
+    if outcome.met:
+        return "met"
+    return "skipped" if is_behind else "open"

@@ -1,0 +1,42 @@
+"""Reads a robot and its gait from files, as somebody names them."""
+
+from pathlib import Path
+
+from lacoc_robots.library import find_robot
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import read_robot
+from lacoc_shared.gait.joining import sample_sequences
+from lacoc_shared.gait.tables import Gait, PostureTable
+from lacoc_shared.gait.workbook.file import read_gait_file
+from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import say
+
+
+def read_robot_file(name: str) -> RobotSpec:
+    """Read a robot's file and check it against the limits of rules 1.
+
+    Raises:
+        UserError: if there is no such robot.
+        FileRefused: with every mistake of its file.
+    """
+    file, data = find_robot(name)
+    return read_robot(data, file)
+
+
+def read_gait(file: Path, robot: RobotSpec) -> Gait:
+    """Read a gait file of a robot; postures are joined into the sequences of the sample's keys.
+
+    Raises:
+        UserError: if the file can't be read.
+        FileRefused: with every mistake of the file.
+    """
+    table = read_gait_file(file, legs=robot.labels, range_deg=robot.ranges_deg)
+    if isinstance(table, PostureTable):
+        gait = Gait(table, sample_sequences(table))
+    else:
+        gait = Gait(None, table)
+    if gait.joints != robot.joints:
+        found = say("trial.joints", joints=gait.joints)
+        expected = say("trial.joints-of", joints=robot.joints, robot=robot.name)
+        raise FileRefused([Mistake(file=file.name, found=found, expected=expected)])
+    return gait

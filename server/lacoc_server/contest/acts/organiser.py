@@ -1,0 +1,354 @@
+"""What an organiser does with a contest: enter teams, take them out, let their games be played."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from datetime import UTC, datetime
+from pathlib import Path
+
+from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.kept import publish
+from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.entries import Entry, HandedIn, gather, weigh
+from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import game, note_plans
+from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
+from lacoc_server.contest.kept.store import FactStore
+from lacoc_server.contest.league import sheet as sheets
+from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    Closed,
+    Disqualified,
+    Drawn,
+    Entered,
+    FilesChanged,
+    Withdrawn,
+    new,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.sheet import ContestSheet
+from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
+from lacoc_server.contest.league.titles import title
+from lacoc_shared.contest.names import look_alike, read_name
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+NAME_MAX = 24
+"""Most characters of a team's name."""
+
+
+def enter(
+    file: Path,
+    team: str,
+    folder: Path | None,
+    bot: str,
+    reason: str,
+    found: Callable[[HandedIn], None] = lambda _: None,
+) -> Phrase:
+    """Enter a team, or change its files; return what was done.
+
+    Args:
+        file: the contest file.
+        team: name of the team.
+        folder: folder with its files; None: the contest's robot and gait.
+        bot: the bot that plays for it; "": people play.
+        reason: why its files change after entries were closed.
+        found: called with the files that were found, before they are weighed in.
+
+    Raises:
+        FileRefused: with every mistake of every file.
+        UserError: if the team can't enter, or a file can't be read.
+    """
+    team = team_name(team)
+    where = ContestFolder(file)
+    handed = gather(folder, bot, where.contest.robot)
+    found(handed)
+    entry = weigh(handed, where.games, where.contest.limits)
+    with FactStore(where.facts) as store:
+        return enter_weighed(where, store, team, entry, reason)
+
+
+def team_name(text: str) -> str:
+    """Return a team's name as it is kept.
+
+    Raises:
+        UserError: if nothing of it can be seen, it is too long, or has signs that can't be printed.
+    """
+    team = read_name(text, NAME_MAX)
+    if team is None:
+        raise UserError(say("contest.team-name", most=NAME_MAX))
+    return team
+
+
+def enter_weighed(
+    where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str
+) -> Phrase:
+    """Enter a team with an entry that was weighed in, or change its files; return what was done.
+
+    Args:
+        where: the contest.
+        store: its facts.
+        team: name of the team, from `team_name`.
+        entry: its files and its bot.
+        reason: why its files change after entries were closed.
+
+    Raises:
+        UserError: if the team can't enter, or the files can't be written.
+    """
+    close_in_time(where, store)
+    said = say("contest.entered-same", team=team)
+
+    def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
+        nonlocal said
+        contest = compute(facts, FORMATS)
+        known = {one.name: one for one in contest.teams}
+        there = known.get(team)
+        if there is not None and there.gone and (contest.closed or not there.may_return):
+            raise UserError(say("contest.gone-for-good", team=team))
+        if there is not None and not there.gone and there.files == entry.hash:
+            return
+        alike = next((name for name in known if look_alike(name, team)), None)
+        if team not in known and alike is not None:
+            raise UserError(say("contest.name-alike", team=team, there=alike))
+        if contest.closed and team not in known:
+            raise UserError(say("league.closed", team=team))
+        if contest.closed and not reason.strip():
+            raise UserError(say("contest.needs-reason", team=team))
+        files = where.entries.save(entry)
+        if there is not None and there.gone:
+            said = say("contest.entered-back", team=team, hash=files)
+            yield new(Entered, team=team, files=files, bot=entry.bot)
+        elif there is not None:
+            said = say("contest.entered-again", team=team, hash=files)
+            yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
+        else:
+            said = say("contest.entered", team=team, hash=files)
+            yield new(Entered, team=team, files=files, bot=entry.bot)
+
+    store.decide(decision)
+    return said
+
+
+def take_out(file: Path, team: str, reason: str, *, disqualified: bool) -> Phrase:
+    """Take a team out of a contest; return what was done.
+
+    Args:
+        file: the contest file.
+        team: name of the team.
+        reason: why; it is public.
+        disqualified: True: the team is ranked last.
+
+    Raises:
+        UserError: if the team has not entered.
+    """
+    with FactStore(ContestFolder(file).facts) as store:
+        store.decide(
+            lambda facts: leaving(compute(facts, FORMATS), team, reason, disqualified=disqualified)
+        )
+    return say("contest.left", team=team)
+
+
+def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> list[AnyFact]:
+    """Return the facts with which a team leaves; none if it has left already.
+
+    A team that has withdrawn can still be disqualified.
+
+    `team`, `reason`, `disqualified` and the error are as in `take_out`.
+    """
+    teams = {one.name: one for one in contest.teams}
+    if team not in teams:
+        raise UserError(say("contest.not-in", team=team, teams=[*teams] or None))
+    if disqualified and not teams[team].disqualified:
+        return [new(Disqualified, team=team, reason=reason)]
+    return [] if teams[team].gone else [new(Withdrawn, team=team, reason=reason)]
+
+
+def drawing(contest: Contest) -> Drawn:
+    """Return the draw that waits for the organiser.
+
+    Raises:
+        UserError: if none does.
+    """
+    draw = waits_for_organiser(contest)
+    if draw is None:
+        raise UserError(say("contest.nothing-to-draw"))
+    return draw
+
+
+def draw(store: FactStore, shown: Drawn) -> Phrase:
+    """Draw the stage that waits for the organiser; return what was done.
+
+    Args:
+        store: the facts.
+        shown: the draw that the organiser has seen.
+
+    Raises:
+        UserError: if no stage waits, or another draw does: then nothing is drawn.
+    """
+
+    def decision(facts: tuple[AnyFact, ...]) -> list[AnyFact]:
+        contest = compute(facts, FORMATS)
+        made = drawing(contest)
+        if (made.stage, made.entries) != (shown.stage, shown.entries):
+            raise UserError(say("contest.other-draw", stage=title(contest, made.stage)))
+        return [made]
+
+    store.decide(decision)
+    stage = title(compute(store.facts(), FORMATS), shown.stage)
+    return say("contest.drawn", stage=stage, teams=len(shown.entries))
+
+
+def tokens(file: Path, team: str | None) -> dict[str, str]:
+    """Return the tokens of teams by name; those that are missing are made.
+
+    Args:
+        file: the contest file.
+        team: name of a team; None: all teams in the contest that are not bots.
+
+    Raises:
+        UserError: if there is no such team, or a token can't be written.
+    """
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        teams = compute(store.facts(), FORMATS).teams
+    names = [one.name for one in teams]
+    if team is not None and team not in names:
+        raise UserError(say("contest.not-in", team=team, teams=names or None))
+    people = [one.name for one in teams if not (one.gone or one.bot)]
+    if team is None and not people:
+        raise UserError(say("contest.no-people"))
+    return {
+        name: where.contest.secrets.team(name) for name in ([team] if team is not None else people)
+    }
+
+
+def play_headless(
+    file: Path,
+    steer: str,
+    engine: AbstractContextManager[Engine],
+    progress: Progress,
+    tell: Callable[[Phrase], None] = lambda _: None,
+) -> tuple[ContestSheet, int]:
+    """Play a contest to its end without a network.
+
+    Args:
+        file: the contest file.
+        steer: the bot that steers teams without a bot.
+        engine: plays the games; it is opened and closed here.
+        progress: told about each change.
+        tell: called for each team whose bot pressed keys that its gait does not have.
+
+    Returns:
+        The sheet at the end, and how many games this call played.
+
+    Raises:
+        UserError: if the contest runs already, has no stage or too few teams, a game has no time
+            limit, or something goes wrong.
+    """
+    where = ContestFolder(file)
+    with where.alone(), FactStore(where.facts) as store:
+        prepare(where, store, headless=True)
+        for plan in where.plans:
+            if not game(plan).match.duration_s:
+                raise UserError(say("contest.no-end", stage=plan.stage))
+        writer = SheetWriter(where, progress)
+        with engine as opened:
+            played = play(where, store, opened, steer, writer, tell)
+        return writer.write(), played
+
+
+def sheet(file: Path) -> ContestSheet:
+    """Return the sheet of a contest as it is now."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        return sheets.sheet_of(where.contest.name, store.facts(), FORMATS)
+
+
+def waiting(file: Path) -> list[str]:
+    """Return the teams whose entries wait for the organiser, the oldest first.
+
+    Raises:
+        UserError: if the entries that wait can't be read.
+    """
+    path = ContestFolder(file).applications
+    if not path.exists():  # nobody entered by page; reading makes no file
+        return []
+    with Applications(path) as applications:
+        return [*applications.waiting]
+
+
+def publish_to(file: Path, folder: Path) -> None:
+    """Write a contest as a folder, as `publish.publish` does, with the same errors."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        publish.publish(where, store.facts(), folder)
+
+
+def prepare(
+    where: ContestFolder, store: FactStore, *, entering: bool = False, headless: bool = False
+) -> None:
+    """Append the plans of the contest file, and check that a contest can be played.
+
+    Args:
+        where: the contest.
+        store: its facts.
+        entering: whether teams may still come.
+        headless: whether there are no courts, which could play open matches.
+
+    Raises:
+        UserError: if the file has no stage, a stage that is drawn has changed there, or there are
+            too few teams.
+    """
+    if not where.plans and (headless or where.open_stage is None):
+        raise UserError(say("contest.no-stages", file=str(where.file)))
+    note_plans(store, where.plans)
+    contest = compute(store.facts(), FORMATS)
+    if where.plans and not (entering and not contest.closed):
+        check_teams(where, contest)
+
+
+def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
+    """Return what is possible in the plans of stages, but hardly meant with the teams that are in.
+
+    In a Swiss stage with more rounds than a team has opponents, teams meet again.
+    """
+    here = sum(not team.gone for team in contest.teams)
+    found: list[Phrase] = []
+    for plan in where.plans:
+        teams = min(plan.teams, here) if plan.teams else here
+        most = teams - 1 + teams % 2
+        if plan.format == "swiss" and teams > 1 and plan.settings.rounds > most:
+            rounds = plan.settings.rounds
+            found.append(
+                say("contest.many-rounds", stage=plan.stage, rounds=rounds, teams=teams, most=most)
+            )
+    return found
+
+
+def doubts_of(file: Path) -> list[Phrase]:
+    """Return `doubts` of a contest that has facts."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        return doubts(where, compute(store.facts(), FORMATS))
+
+
+def check_teams(where: ContestFolder, contest: Contest) -> None:
+    """Check that there are enough teams for a draw.
+
+    Raises:
+        UserError: if there are fewer than two, and nothing is drawn yet.
+    """
+    here = sum(not team.gone for team in contest.teams)
+    if here < 2 and not contest.stages:
+        raise UserError(say("contest.few-teams", teams=here, file=str(where.file)))
+
+
+def close_in_time(where: ContestFolder, store: FactStore) -> None:
+    """Close entries if their time is over.
+
+    Raises:
+        UserError: if that can't be written.
+    """
+    end = where.contest.entries_close
+    if end is not None and end.astimezone(UTC) <= datetime.now(UTC):
+        store.decide(lambda facts: [] if compute(facts, FORMATS).closed else [new(Closed)])

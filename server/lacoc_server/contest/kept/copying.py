@@ -1,0 +1,103 @@
+"""Copies of records that another machine writes, in the contest's own folder.
+
+A copy grows while the match is played. It is always the beginning of a record, as a killed court
+leaves one, so any court can go on from it.
+"""
+
+import os
+from collections.abc import Mapping
+from enum import Enum
+from pathlib import Path
+
+from lacoc_shared.messages.office import Copied
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files
+from lacoc_shared.words import say
+
+
+class Taken(Enum):
+    """What came of an answer to a question for more of a record."""
+
+    MORE = "more"
+    """The copy has grown."""
+    NOTHING = "nothing"
+    """There is nothing new, as far as the other machine knows."""
+    WHOLE = "whole"
+    """The whole packed record is here."""
+
+
+def have(folder: Path, match_id: str) -> dict[str, int]:
+    """Return how many bytes of each file of a match's record are here, by the file's name.
+
+    Args:
+        folder: folder of the records.
+        match_id: the match.
+    """
+    packed = files.packed_path(folder, match_id)
+    paths = [*files.segment_paths(folder, match_id), _unfinished(packed)]
+    sizes = {path.name: path.stat().st_size for path in paths if path.exists()}
+    if (size := sizes.pop(_unfinished(packed).name, None)) is not None:
+        sizes[packed.name] = size
+    return sizes
+
+
+def take(folder: Path, match_id: str, part: Copied) -> Taken:
+    """Add a part to the copy of a match's record; anything else is not written.
+
+    Args:
+        folder: folder of the records; it is made.
+        match_id: the match.
+        part: the answer to a question with what is here (`have`).
+
+    Raises:
+        UserError: if it can't be written.
+    """
+    packed = files.packed_path(folder, match_id)
+    try:
+        if part.is_whole:
+            _finish(folder, match_id, packed)
+            return Taken.WHOLE
+        if not continues(match_id, have(folder, match_id), part):
+            return Taken.NOTHING
+        path = folder / part.file
+        folder.mkdir(parents=True, exist_ok=True)
+        with (_unfinished(packed) if path == packed else path).open("ab") as file:
+            file.write(part.data)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=str(folder), why=why)) from None
+    return Taken.MORE
+
+
+def _finish(folder: Path, match_id: str, packed: Path) -> None:
+    """Give the whole packed record its name; its segments are not needed any more."""
+    unfinished = _unfinished(packed)
+    if not unfinished.exists():
+        return
+    with unfinished.open("rb+") as file:
+        os.fsync(file.fileno())
+    unfinished.rename(packed)
+    for segment in files.segment_paths(folder, match_id):
+        segment.unlink(missing_ok=True)
+    files.sync_folder(folder)
+
+
+def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
+    """Return whether a part belongs to a match's record, and begins where what is here ends.
+
+    A court that is not what it seems must write nothing else on this machine.
+
+    Args:
+        match_id: the match.
+        have: bytes that are here, by the file's name.
+        part: what came.
+    """
+    segment = files.segment_name(Path(part.file))
+    is_segment = segment is not None and segment[0] == match_id
+    is_named = is_segment or part.file == f"{match_id}.mcap"
+    return is_named and Path(part.file).name == part.file and part.offset == have.get(part.file, 0)
+
+
+def _unfinished(packed: Path) -> Path:
+    """Return the name of a packed record while parts of it are missing."""
+    return packed.with_name(f"{packed.name}.copy")

@@ -1,0 +1,137 @@
+"""The sheet of a contest: everything that is public about it, for pages and for whoever checks it.
+
+It is computed from the facts alone, so the same facts give the same bytes.
+"""
+
+from collections.abc import Iterable, Mapping
+
+import msgspec
+
+from lacoc_server.contest.league.contest import Contest, StageView, Unused, compute
+from lacoc_server.contest.league.decided import Decided, decided
+from lacoc_server.contest.league.draws import Team
+from lacoc_server.contest.league.facts import AnyFact, Called, Planned
+from lacoc_server.contest.league.fixture import match_fixture
+from lacoc_server.contest.league.formats.format import Format
+from lacoc_server.contest.league.rating import Rated, Rating, ratings
+from lacoc_server.contest.league.timetable.schedule import playable
+from lacoc_server.contest.league.titles import titles
+from lacoc_shared.words import Phrase
+
+VERSION = 4
+"""Version of the layout of a sheet."""
+EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
+_UNKNOWN = ("", 0)
+
+
+class Coming(msgspec.Struct, frozen=True, kw_only=True):
+    """A game that can be played as soon as a court is free."""
+
+    pairing: str
+    game: int
+    teams: tuple[str, str]
+    """Who will sit left and right."""
+    court: str = ""
+    """Where it will probably be played; "": nobody knows, as in a published sheet."""
+    at_ms: int = 0
+    """About when it will begin, in milliseconds since 1970, UTC; 0: nobody knows."""
+
+
+class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
+    """What is public about a contest."""
+
+    version: int = VERSION
+    name: str
+    teams: tuple[Team, ...]
+    """In the order in which they entered."""
+    stages: tuple[StageView, ...]
+    """The stages that were drawn, in the order of their draws."""
+    titles: dict[str, Phrase]
+    """What each stage is called, by its name in the contest file; also of those not drawn yet."""
+    fixtures: dict[str, Phrase]
+    """What each match is in words, by its pairing: "Semi-final 1"."""
+    planned: tuple[Planned, ...]
+    """The stages that are not drawn yet."""
+    running: tuple[Called, ...]
+    """The games that are on a court now."""
+    coming: tuple[Coming, ...]
+    """The games that can be played next, in their order."""
+    decided: tuple[Decided, ...]
+    """What people decided, the newest first."""
+    ratings: tuple[Rating, ...]
+    """The strongest first; teams that have played no game are not among them."""
+    side_elo: float
+    """Advantage of the left side."""
+    unused: tuple[Unused, ...]
+    """Facts that change nothing, and why."""
+
+
+def sheet_of(name: str, facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> ContestSheet:
+    """Compute the sheet of a contest.
+
+    Args:
+        name: the contest's name.
+        facts: in any order.
+        formats: the known formats by name.
+
+    Raises:
+        UserError: if the facts contradict each other, or name an unknown format or tie-break.
+    """
+    return sheet(name, compute(facts, formats))
+
+
+def sheet(
+    name: str, contest: Contest, expected: Mapping[str, tuple[str, int]] = EXPECTED_NOTHING
+) -> ContestSheet:
+    """Make the sheet of a computed contest.
+
+    Args:
+        name: the contest's name.
+        contest: the contest.
+        expected: where and when open matches will probably begin, by pairing; it does not follow
+            from the facts, so a sheet that somebody can check does without it.
+    """
+    games = [game for view in contest.stages for match in view.matches for game in match.games]
+    rated = ratings(Rated(*game.teams, game.winner) for game in games)
+    return ContestSheet(
+        name=name,
+        teams=contest.teams,
+        stages=contest.stages,
+        titles=titles(contest),
+        fixtures={
+            match.pairing.id: match_fixture(contest, view, match)
+            for view in contest.stages
+            for match in view.matches
+        },
+        planned=contest.planned,
+        running=contest.running,
+        coming=tuple(
+            Coming(
+                pairing=match.pairing.id,
+                game=match.next_game,
+                teams=match.next_seats,
+                court=expected.get(match.pairing.id, _UNKNOWN)[0],
+                at_ms=expected.get(match.pairing.id, _UNKNOWN)[1],
+            )
+            for match in playable(contest)
+            if match.next_seats is not None
+        ),
+        decided=decided(contest)[::-1],
+        ratings=rated.teams,
+        side_elo=rated.side_elo,
+        unused=contest.unused,
+    )
+
+
+def encode(sheet: ContestSheet) -> bytes:
+    """Return a sheet as JSON; the same facts give the same bytes."""
+    return msgspec.json.encode(sheet, order="deterministic")
+
+
+def decode(data: bytes) -> ContestSheet:
+    """Read a sheet from JSON.
+
+    Raises:
+        msgspec.MsgspecError: if it is not the JSON of a sheet.
+    """
+    return msgspec.json.decode(data, type=ContestSheet)

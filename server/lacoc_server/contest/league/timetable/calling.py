@@ -1,0 +1,137 @@
+"""Which game goes to which court, when it is taken back, and what came of it; pure."""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, Recalled, new
+from lacoc_server.contest.league.timetable.schedule import assign
+
+LOST_MS = 20_000
+"""A court that was not heard for this long loses its game."""
+
+
+OPEN_CALL = "open."
+"""Begins the calls of open matches."""
+
+
+def is_open_call(call: str) -> bool:
+    """Return whether a call is that of an open match; calls of games are ids of facts."""
+    return call.startswith(OPEN_CALL)
+
+
+class Ended(NamedTuple):
+    """The end of a game at a court."""
+
+    scores: tuple[int, int]
+    """Points of the left and of the right seat."""
+    outcome: Outcome
+    record: str
+    """File name of the record."""
+
+
+class Seen(NamedTuple):
+    """A court as the office sees it."""
+
+    heard_ms: int
+    """When the court was heard last; 0: never."""
+    call: str = ""
+    """Id of the call whose match the court has; "": none."""
+    begun: bool = False
+    """Whether the match has begun to be played."""
+    ended: Ended | None = None
+    """How the match ended; None: it has no official end."""
+    there: bool = False
+    """Whether the court answers now."""
+
+
+def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
+    """Yield the results of the called games that courts have brought to an end."""
+    for call in contest.running:
+        court = seen.get(call.court)
+        if court is not None and court.call == call.id and court.ended is not None:
+            yield new(
+                Played,
+                pairing=call.pairing,
+                game=call.game,
+                teams=call.teams,
+                scores=court.ended.scores,
+                outcome=court.ended.outcome,
+                record=court.ended.record,
+            )
+
+
+def taken_back(
+    contest: Contest, seen: Mapping[str, Seen], now_ms: int, since_ms: int = 0
+) -> Iterator[AnyFact]:
+    """Yield the games that are taken back from their courts.
+
+    These are games that are not needed any more, because a team has left; games that were moved to
+    another court or a later time; and games of courts that were not heard for `LOST_MS`. A game
+    that has begun stays with a court that is heard: a court that was killed goes on with it.
+
+    Args:
+        contest: the contest.
+        seen: the courts.
+        now_ms: the time, in milliseconds since 1970, UTC.
+        since_ms: since when the office listens to its courts.
+    """
+    needed = {
+        (match.pairing.id, match.next_game, match.next_seats)
+        for view in contest.stages
+        for match in view.matches
+        if match.state == "open"
+    }
+    moves = {move.pairing: move for move in contest.moves}
+    for call in contest.running:
+        court = seen.get(call.court, Seen(0))
+        move = moves.get(call.pairing)
+        if court.call == call.id and court.begun:
+            continue
+        if (call.pairing, call.game, call.teams) not in needed:
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
+        elif move is not None and (
+            move.court not in ("", call.court) or move.not_before_ms > now_ms
+        ):
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason="moved")
+        elif now_ms - max(court.heard_ms, call.at_ms, since_ms) > LOST_MS:
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason="court lost")
+
+
+def calls(
+    contest: Contest,
+    seen: Mapping[str, Seen],
+    now_ms: int,
+    least_rest_ms: int,
+    held: Collection[tuple[str, int]] = (),
+) -> list[Called]:
+    """Give the next games to the courts that are free.
+
+    An open match that has begun is played to its end; another one goes.
+
+    Args:
+        contest: the contest.
+        seen: the courts, in the order in which they are filled.
+        now_ms: the time, in milliseconds since 1970, UTC.
+        least_rest_ms: shortest time between two matches of a team.
+        held: games that no court takes, by pairing and number.
+    """
+    free = [
+        name
+        for name in present(seen, now_ms)
+        if not (seen[name].begun and is_open_call(seen[name].call))
+    ]
+    return [
+        new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
+        for one in assign(contest, free, now_ms, least_rest_ms, held)
+    ]
+
+
+def present(seen: Mapping[str, Seen], now_ms: int) -> list[str]:
+    """Return the courts that were heard within the last `LOST_MS`, in the order of `seen`."""
+    return [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
+
+
+def wanted(contest: Contest, seen: Mapping[str, Seen]) -> Iterable[Called]:
+    """Return the calls that their courts do not have yet: the office sends them again."""
+    return [call for call in contest.running if seen.get(call.court, Seen(0)).call != call.id]

@@ -1,0 +1,103 @@
+"""What happens in a contest, a line for each thing, for the terminal of its organiser; pure."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    Called,
+    Closed,
+    Drawn,
+    Played,
+    RoundDrawn,
+)
+from lacoc_server.contest.league.fixture import named
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
+from lacoc_server.contest.league.timetable.whereabouts import Known
+from lacoc_server.contest.league.titles import title
+from lacoc_shared.words import Phrase, say
+
+
+class Ticker:
+    """Says each thing that happens once.
+
+    Args:
+        facts: the facts that are there already; nothing is said of them.
+    """
+
+    def __init__(self, facts: Sequence[AnyFact]) -> None:
+        self._told = len(facts)
+        self._there: dict[str, bool] = {}
+        """By court: whether it answered; a court that was never there is missing."""
+        self._held: set[tuple[str, int]] = set()
+        self._over = False
+        self._to_draw = ""
+
+    def newest(self, contest: Contest, facts: Sequence[AnyFact], known: Known) -> Iterator[Phrase]:
+        """Yield what has happened since the last call.
+
+        Args:
+            contest: the contest as it is now.
+            facts: its facts, in their order.
+            known: what the office knows besides the facts.
+        """
+        yield from self._courts(known.seen)
+        for fact in facts[self._told :]:
+            said = _said(contest, fact)
+            if said is not None:
+                yield said
+        self._told = len(facts)
+        for (pairing, game), why in known.held.items():
+            if (pairing, game) not in self._held:
+                yield say("news.refused", match=named(contest, pairing, game), why=why)
+        self._held = {*known.held}
+        waiting = waits_for_organiser(contest)
+        to_draw = "" if waiting is None else waiting.stage
+        if to_draw and to_draw != self._to_draw:
+            yield say("news.to-draw", stage=title(contest, to_draw))
+        self._to_draw = to_draw
+        if contest.over and not self._over:
+            yield say("news.over")
+        self._over = contest.over
+
+    def _courts(self, seen: Mapping[str, Seen]) -> Iterator[Phrase]:
+        for court, one in seen.items():
+            was_there = self._there.get(court)
+            if one.there or was_there is not None:
+                self._there[court] = one.there
+            if was_there and not one.there:
+                yield say("news.court-lost", court=court)
+            elif was_there is False and one.there:
+                yield say("news.court-back", court=court)
+
+
+def _said(contest: Contest, fact: AnyFact) -> Phrase | None:
+    """Say what a fact means for an organiser; None: nothing new."""
+    match fact:
+        case Closed():
+            here = sum(not team.gone for team in contest.teams)
+            return say("news.closed", teams=here)
+        case Drawn():
+            return say("news.drawn", stage=title(contest, fact.stage), teams=len(fact.entries))
+        case RoundDrawn():
+            return say("news.round", stage=title(contest, fact.stage), round=fact.round)
+        case Called():
+            left, right = fact.teams
+            said = named(contest, fact.pairing, fact.game)
+            return say("news.called", court=fact.court, match=said, left=left, right=right)
+        case Played():
+            left, right = fact.teams
+            points, conceded = fact.scores
+            said = named(contest, fact.pairing, fact.game)
+            if fact.outcome == "void":
+                return say("news.void", match=said, left=left, right=right)
+            return say(
+                "news.played",
+                match=said,
+                left=left,
+                right=right,
+                points=points,
+                conceded=conceded,
+            )
+    return None

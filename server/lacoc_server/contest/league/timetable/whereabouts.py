@@ -1,0 +1,285 @@
+"""Where each team plays, or what it waits for; pure.
+
+The estimate of when a team plays gives the open matches to the courts in the order of the schedule.
+It assumes that every game takes as long as games took so far, so it is right only on average.
+"""
+
+from bisect import bisect_left, insort
+from collections.abc import Iterator, Mapping, Sequence
+from statistics import median
+from typing import NamedTuple
+
+from lacoc_server.contest.league.contest import Contest, StageView
+from lacoc_server.contest.league.facts import AnyFact, Called, Played
+from lacoc_server.contest.league.fixture import fixture
+from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.timetable.calling import Seen, present
+from lacoc_server.contest.league.timetable.schedule import playable
+from lacoc_server.contest.league.titles import title
+from lacoc_shared.messages.office import Whereabouts
+from lacoc_shared.words import Phrase, say
+
+_SEATS = ("left", "right")
+_LONGEST = 20
+"""A game that seems to have taken this many times its usual length did not."""
+_COUNTED = 15
+"""How many of the newest games count for the usual length of a game."""
+_STEP_S = 5
+_MINUTE_MS = 60_000
+_MOMENT_S = 30
+"""What comes sooner is said to come in a moment."""
+
+
+class Courts(NamedTuple):
+    """What is known of the courts."""
+
+    seen: Mapping[str, Seen]
+    """In the order in which they are filled."""
+    addresses: Mapping[str, str]
+    """Addresses for contestants."""
+
+
+class Pace(NamedTuple):
+    """How fast the contest goes."""
+
+    now_ms: int
+    """The time, in milliseconds since 1970, UTC."""
+    game_ms: int
+    """Usual time from the call of a game to its result."""
+    least_rest_ms: int = 0
+    """Shortest time between two matches of a team."""
+
+
+class Known(NamedTuple):
+    """What the office knows besides the facts, as of its newest look at the courts."""
+
+    seen: Mapping[str, Seen]
+    """The courts, in the order in which they are filled."""
+    pace: Pace
+    held: Mapping[tuple[str, int], Phrase]
+    """Games that a court refused, by pairing and number, with the reason."""
+
+
+class Start(NamedTuple):
+    """When and where a match probably begins."""
+
+    court: str
+    at_ms: int
+    """In milliseconds since 1970, UTC."""
+    games_before: int
+    """Games that probably begin before it, on all courts."""
+
+
+def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
+    """Return how long a game usually takes from its call to its result.
+
+    Games during which the machine's clock was set do not count.
+
+    Args:
+        facts: the facts of the contest, in their order.
+        otherwise_ms: what to return before the first game has ended.
+    """
+    called: dict[tuple[str, int], int] = {}
+    lengths: list[int] = []
+    for fact in facts:
+        if isinstance(fact, Called):
+            called[fact.pairing, fact.game] = fact.at_ms
+        elif isinstance(fact, Played) and (fact.pairing, fact.game) in called:
+            length_ms = fact.at_ms - called[fact.pairing, fact.game]
+            if 0 <= length_ms <= _LONGEST * otherwise_ms:
+                lengths.append(length_ms)
+    return round(median(lengths[-_COUNTED:])) if lengths else otherwise_ms
+
+
+def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Whereabouts]:
+    """Say of each team where it plays, or what it waits for."""
+    calls = {team: call for call in contest.running for team in call.teams}
+    begins = dict(starts(contest, courts.seen, pace))
+    coming = _coming(contest)
+    found: dict[str, Whereabouts] = {}
+    for team in contest.teams:
+        name = team.name
+        if name in calls:
+            found[name] = _called(contest, name, calls[name], courts)
+        elif contest.over:
+            found[name] = _ended(contest, name, over=True)
+        elif not team.gone and name in coming:
+            view, match = coming[name]
+            found[name] = _waits(contest, name, view, match, begins.get(match.pairing.id), pace)
+        elif not team.gone and _may_come(contest, name):
+            found[name] = Whereabouts(team=name, state="waits", said=say("team.awaits-draw"))
+        else:
+            found[name] = _ended(contest, name, over=False)
+    return found
+
+
+def _called(contest: Contest, team: str, call: Called, courts: Courts) -> Whereabouts:
+    """Say where a team plays, if its game was given to a court; the court may not have it yet."""
+    view, match = _match(contest, call.pairing)
+    opponent = call.teams[call.teams[0] == team]
+    about = fixture(contest, view, match, call.game)
+    seen = courts.seen.get(call.court)
+    if seen is None or seen.call != call.id:
+        said = say("team.next", court=call.court, when=say("when.moment"), opponent=opponent)
+        return Whereabouts(
+            team=team,
+            state="waits",
+            said=said,
+            court=call.court,
+            opponent=opponent,
+            fixture=about,
+            games_before=0,
+            about_s=0,
+        )
+    seat = _SEATS[call.teams.index(team)]
+    return Whereabouts(
+        team=team,
+        state="court",
+        said=say("team.plays", court=call.court, seat=seat, opponent=opponent, fixture=about),
+        court=call.court,
+        address=courts.addresses[call.court],
+        seat=seat,
+        call=call.id,
+        opponent=opponent,
+        fixture=about,
+    )
+
+
+def _waits(
+    contest: Contest,
+    team: str,
+    view: StageView,
+    match: Match,
+    start: Start | None,
+    pace: Pace,
+) -> Whereabouts:
+    """Say what a team waits for, if its next match is known."""
+    about = fixture(contest, view, match, max(1, match.next_game))
+    opponent = match.teams[match.teams[0] == team] or ""
+    if start is None:
+        said = say("team.awaits-opponent", fixture=about)
+        return Whereabouts(team=team, state="waits", said=said, opponent=opponent, fixture=about)
+    about_s = _rounded_s(start.at_ms - pace.now_ms)
+    return Whereabouts(
+        team=team,
+        state="waits",
+        said=say("team.next", court=start.court, when=_when(about_s), opponent=opponent),
+        court=start.court,
+        opponent=opponent,
+        fixture=about,
+        games_before=start.games_before,
+        about_s=about_s,
+    )
+
+
+def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
+    """Say that a team plays no more, with its place in the newest stage that is over for it."""
+    place: Phrase | None = None
+    rank = 0
+    for view in contest.stages:
+        for table in view.tables if view.over else ():
+            for row in table.rows:
+                if row.team == team:
+                    rank = row.rank
+                    equal = [one.team for one in table.rows if one.shares and one.rank == rank]
+                    place = say(
+                        "team.place",
+                        rank=rank,
+                        stage=title(contest, view.name),
+                        group=table.section.upper() if len(view.tables) > 1 else None,
+                        equal=[one for one in equal if one != team] or None,
+                    )
+    if over:
+        return Whereabouts(team=team, state="over", said=say("team.over", place=place), rank=rank)
+    return Whereabouts(team=team, state="out", said=say("team.out", place=place), rank=rank)
+
+
+def _match(contest: Contest, pairing: str) -> tuple[StageView, Match]:
+    return next(
+        (view, match)
+        for view in contest.stages
+        for match in view.matches
+        if match.pairing.id == pairing
+    )
+
+
+def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
+    """Find the next match of each team: an open one, else one that still lacks an opponent."""
+    views = {match.pairing.id: view for view in contest.stages for match in view.matches}
+    waiting = (match for view in contest.stages for match in view.matches if match.state == "waits")
+    coming: dict[str, tuple[StageView, Match]] = {}
+    for match in (*playable(contest), *waiting):
+        for team in match.teams:
+            if team:
+                coming.setdefault(team, (views[match.pairing.id], match))
+    return coming
+
+
+def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[tuple[str, Start]]:
+    """Estimate when and where each open match begins; yield the id of its pairing and its start.
+
+    A court that has been silent for `LOST_MS` gets no match.
+    """
+    now_ms, game, rest_ms = pace
+    matches = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
+    court_ms = dict.fromkeys(present(seen, now_ms), now_ms)
+    # What happened in the future did not: the machine's clock was set back since.
+    team_ms = {t: end + rest_ms for t, (_, end) in contest.ended_ms.items() if end <= now_ms}
+    for call in contest.running:
+        view, match = matches[call.pairing]
+        end_ms = max(now_ms, min(call.at_ms, now_ms) + game) + (_games(view, match) - 1) * game
+        if call.court in court_ms:
+            court_ms[call.court] = end_ms
+        team_ms |= dict.fromkeys(call.teams, end_ms + rest_ms)
+    begun: list[int] = []
+    moves = {move.pairing: move for move in contest.moves}
+    for match in playable(contest):
+        if not court_ms or match.next_seats is None:
+            return
+        last = {contest.ended_ms.get(team, ("", 0))[0] for team in match.next_seats}
+        goes_on = last == {match.pairing.id}
+        rested = 0 if goes_on else max(team_ms.get(team, 0) for team in match.next_seats)
+        move = moves.get(match.pairing.id)
+        court = min(court_ms, key=court_ms.__getitem__)
+        if move is not None and move.court in court_ms:
+            court = move.court
+        at_ms = max(court_ms[court], rested, 0 if move is None else move.not_before_ms)
+        yield match.pairing.id, Start(court, at_ms, bisect_left(begun, at_ms))
+        count = _games(matches[match.pairing.id][0], match)
+        for number in range(count):
+            insort(begun, at_ms + number * game)
+        court_ms[court] = at_ms + count * game
+        team_ms |= dict.fromkeys(match.next_seats, court_ms[court] + rest_ms)
+
+
+def full_minute(at_ms: int) -> int:
+    """Round an expected time up to a minute, so that it does not change with each estimate."""
+    return -(-at_ms // _MINUTE_MS) * _MINUTE_MS
+
+
+def _games(view: StageView, match: Match) -> int:
+    """Return how many games a match takes from now on, if whoever leads wins the rest."""
+    wins = [sum(game.winner == team for game in match.games) for team in match.teams]
+    return max(1, view.stage.settings.games // 2 + 1 - max(wins))
+
+
+def _may_come(contest: Contest, team: str) -> bool:
+    """Return whether a team without a match may still get one, by a draw that is to come."""
+    drawn = {view.name: view for view in contest.stages}
+    if any(view.rounds_to_draw and team in view.stage.entries for view in contest.stages):
+        return True
+    may: dict[str, bool] = {name: team in view.stage.entries for name, view in drawn.items()}
+    for plan in contest.planned:  # each comes after the one that it follows
+        may[plan.stage] = may.get(plan.after, True) if plan.after else True
+    return any(may[plan.stage] for plan in contest.planned)
+
+
+def _rounded_s(time_ms: int) -> int:
+    """Round up to seconds, in steps so large that an estimate does not change with each look."""
+    return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
+
+
+def _when(about_s: int) -> Phrase:
+    if about_s <= _MOMENT_S:
+        return say("when.moment")
+    return say("when.minutes", minutes=max(1, round(about_s / 60)))

@@ -1,0 +1,137 @@
+"""Keeps what a court has sent, and knows what has not arrived. No I/O, no clock.
+
+A spectator and a gateway each hold a `CourtView`: they pass it what arrives, and ask the court for
+what is missing.
+"""
+
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+import msgspec
+
+from lacoc_shared.codec import decode, encode, message_hash
+from lacoc_shared.event_log import EventLog
+from lacoc_shared.messages import PROTOCOL, Event
+
+T = TypeVar("T")
+
+MAX_BYTES = 1 << 20
+"""Longest message of a court [bytes]."""
+
+
+class _Sheet(msgspec.Struct):
+    protocol: int
+    scene: bytes = b""
+    match_id: str = ""
+
+
+class Told(msgspec.Struct):
+    """The fields of `Health` that tell what a court has sent."""
+
+    match: int
+    beat: int
+    events: int = 0
+    sheet: bytes = b""
+
+
+class CourtView(Generic[T]):
+    """The newest sheet, scene and log of a court.
+
+    Everything it takes comes from the network: each `take_...` raises `BadMessage` if the bytes
+    can't be decoded, and changes nothing then.
+
+    Args:
+        keep: takes an event and its bytes; returns what is kept in `log`.
+    """
+
+    def __init__(self, keep: Callable[[Event, bytes], T]) -> None:
+        self._keep = keep
+        self.log: EventLog[T] = EventLog()
+        """The events of the match."""
+        self.sheet: bytes | None = None
+        """The newest sheet in this version of the protocol."""
+        self.scene: bytes | None = None
+        """The newest scene that belongs to a frame."""
+        self.match_id = ""
+        """Id of the match; it names the record."""
+        self.other_version: int | None = None
+        """The court's version of the protocol, if it is another; 0: its sheet can't be read."""
+        self._sheet_hash = self._scene_hash = b""
+        self._frame_scene = self._sheet_scene = b""
+        """Hash of the newest frame's scene, and of the sheet's."""
+        self._told = Told(0, 0)
+        self._doubt = False
+
+    @property
+    def lacks_events(self) -> bool:
+        """True if the court has sent an event that is not here."""
+        return self.log.differs(self._told.match, self._told.beat, self._told.events)
+
+    @property
+    def lacks_scene(self) -> bool:
+        """True if the scene here is not the newest frame's scene."""
+        return self._frame_scene != self._scene_hash
+
+    @property
+    def lacks_sheet(self) -> bool:
+        """True if the sheet here is not, or may not be, the court's newest one."""
+        return self._doubt or self.has_older_sheet or not self.fits
+
+    @property
+    def has_older_sheet(self) -> bool:
+        """True if the court said that its newest sheet is not the one here."""
+        return self._told.sheet not in (b"", self._sheet_hash)
+
+    @property
+    def fits(self) -> bool:
+        """True if the sheet belongs to the newest frame."""
+        return self._frame_scene == self._sheet_scene
+
+    def doubt(self) -> None:
+        """Note that a message can't be decoded; the sheet will tell the court's version."""
+        self._doubt = True
+
+    def refuse_sheet(self) -> None:
+        """Note that the court's sheet itself can't be decoded."""
+        self.other_version = 0
+
+    def see_frame(self, scene: bytes) -> None:
+        """Note the scene of the newest frame.
+
+        Args:
+            scene: hash of the scene.
+        """
+        self._frame_scene = scene
+
+    def see_health(self, told: Told) -> None:
+        """Note what the court says it has sent."""
+        self._told = told
+
+    def add_event(self, event: Event, payload: bytes) -> bool:
+        """Take in an event; return whether it is new."""
+        return self.log.add(event, self._keep(event, payload))
+
+    def take_log(self, payload: bytes) -> list[Event]:
+        """Take in the court's list of events; return the new ones in order."""
+        events = decode(payload, tuple[Event, ...], MAX_BYTES)
+        return self.log.restore([(event, self._keep(event, encode(event))) for event in events])
+
+    def take_sheet(self, payload: bytes) -> bool:
+        """Take in a sheet; return whether it is new and of this version of the protocol."""
+        found = decode(payload, _Sheet, MAX_BYTES)
+        self._doubt = False
+        self._sheet_scene, self.match_id = found.scene, found.match_id
+        self._sheet_hash = message_hash(payload)
+        self.other_version = None if found.protocol == PROTOCOL else found.protocol
+        if self.other_version is not None or payload == self.sheet:
+            return False
+        self.sheet = payload
+        return True
+
+    def take_scene(self, payload: bytes) -> bool:
+        """Take in a scene; return whether it is new and belongs to the newest frame."""
+        found = message_hash(payload)
+        if found != self._frame_scene or found == self._scene_hash:
+            return False
+        self._scene_hash, self.scene = found, payload
+        return True
