@@ -300,8 +300,11 @@ def test_entries_close_once_and_need_two_teams(room: Room) -> None:
     room.ask(CloseEntries(secret=KEY))
     assert isinstance(room.facts[-1], Closed)
     assert said(room.ask(CloseEntries(secret=KEY))) == "desk.closed-already"
-    assert said(room.ask(Apply(secret=CODE, team="Dogs", files=sample()))) == "league.closed"
-    assert said(room.ask(Approve(secret=KEY, teams=("Crabs",)))) == "league.closed"
+    assert isinstance(room.ask(Apply(secret=CODE, team="Dogs", files=sample())), OwnEntry)
+    for team in ("Crabs", "Dogs"):
+        assert said(room.ask(Approve(secret=KEY, teams=(team,)))) == "contest.late-reason"
+    room.ask(Approve(secret=KEY, teams=("Dogs",), reason="a late train"))
+    assert room.states()["Dogs"] == "in"
 
 
 def test_more_swiss_rounds_than_opponents_are_told(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ from lacoc_server.contest.league.facts import (
     AnyFact,
     Closed,
     Disqualified,
+    Entered,
     FilesChanged,
     Withdrawn,
     new,
@@ -298,7 +299,7 @@ def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
     assert cup.enter("Bob") == "contest.entered"
     end = f'name = "Cup"\nentries_close = {now - timedelta(hours=1):%Y-%m-%dT%H:%M:%SZ}'
     cup.file.write_text(text.replace('name = "Cup"', end), "utf-8")
-    with pytest.raises(UserError, match="Entries were closed before Cy entered"):
+    with pytest.raises(UserError, match="If Cy may enter nevertheless, give a reason"):
         cup.enter("Cy")
     with pytest.raises(UserError, match="--reason"):
         cup.enter("Bob", "nearest")
@@ -306,6 +307,13 @@ def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
     last = cup.facts[-1]
     assert isinstance(last, FilesChanged)
     assert last.reason == "broken file"
+    assert cup.enter("Cy", reason="the train was late") == "contest.entered"
+    last = cup.facts[-1]
+    assert isinstance(last, Entered)
+    assert last.reason == "the train was late"
+    contest = compute(cup.facts, FORMATS)
+    assert [team.name for team in contest.teams] == ["Ann", "Bob", "Cy"]
+    assert [fact.id for fact in contest.decisions] == [cup.facts[-2].id, last.id]
     assert sum(isinstance(fact, Closed) for fact in cup.facts) == 1
 
 

@@ -6,6 +6,7 @@ import pytest
 from chance_event import GAME_MS, LEAST_REST_MS, Event
 from cup import Cup
 
+from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import (
     Disqualified,
     Drawn,
@@ -14,9 +15,17 @@ from lacoc_server.contest.league.facts import (
     Settings,
     Withdrawn,
 )
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import assign
-from lacoc_server.contest.league.timetable.whereabouts import Courts, Pace, game_ms, whereabouts
+from lacoc_server.contest.league.timetable.whereabouts import (
+    Courts,
+    Pace,
+    game_ms,
+    starts,
+    whereabouts,
+)
 from lacoc_server.contest.league.titles import titles
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import faults, render
@@ -26,10 +35,16 @@ GAME = 120_000
 """Length of a game in these tests [ms]."""
 
 
+def found_for(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Whereabouts]:
+    """Return where each team is, with the estimate of when matches begin."""
+    begins = dict(starts(contest, foreseen(contest, FORMATS), courts.seen, pace))
+    return whereabouts(contest, courts, pace, begins)
+
+
 def where(cup: Cup, calls: dict[str, str], rest_ms: int = 0) -> dict[str, Whereabouts]:
     """Return where each team is; `calls` maps each court to the call that it shows."""
     seen = {court: Seen(cup.now_ms, calls.get(court, "")) for court in ADDRESSES}
-    found = whereabouts(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, rest_ms))
+    found = found_for(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, rest_ms))
     for there in found.values():
         assert faults(there.said) == []
     return found
@@ -51,7 +66,7 @@ def test_nobody_is_sent_to_a_silent_court() -> None:
     """A court that is not there yet, or not any more, is in no estimate."""
     cup = Cup()
     seen = {"north": Seen(0), "south": Seen(cup.now_ms)}
-    found = whereabouts(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, 0))
+    found = found_for(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, 0))
     assert {there.court for there in found.values()} == {"south"}
 
 
@@ -149,9 +164,9 @@ def test_a_knockout_goes_on() -> None:
     winner, loser = first.next_seats
     found = where(cup, {})
     assert (found[winner].state, found[winner].opponent) == ("waits", "")
-    assert found[winner].about_s is None
+    assert found[winner].about_s == GAME // 1000  # after the other semi-final
     assert render(found[winner].said) == (
-        "Your next match is Final. Your opponent is not known yet."
+        "Final: court south, about 2 minutes. Your opponent is not known yet."
     )
     assert (found[loser].state, found[loser].rank) == ("out", 0)
     assert render(found[loser].said) == "You have played your last match."
@@ -225,7 +240,7 @@ def test_before_the_first_draw_all_wait() -> None:
     """Before the first draw, all teams that have entered wait for the draw."""
     event = Event(3, 1, Random(1))
     event.add(Planned, stage="cup", format="round-robin", settings=Settings())
-    found = whereabouts(event.contest, Courts({}, {}), Pace(0, GAME))
+    found = found_for(event.contest, Courts({}, {}), Pace(0, GAME))
     assert [there.said.code for there in found.values()] == ["team.awaits-draw"] * 3
 
 
@@ -252,7 +267,7 @@ def test_any_contest(how: str, trouble: float) -> None:
         calls = {call.court: call.id for call in event.contest.running}
         seen = {court: Seen(event.now_ms, calls.get(court, "")) for court in event.courts}
         pace = Pace(event.now_ms, GAME_MS, LEAST_REST_MS)
-        found = whereabouts(event.contest, Courts(seen, addresses), pace)
+        found = found_for(event.contest, Courts(seen, addresses), pace)
         assert list(found) == [team.name for team in contest.teams]
         on_court = {name for name, there in found.items() if there.state == "court"}
         assert on_court == {team for call in event.contest.running for team in call.teams}

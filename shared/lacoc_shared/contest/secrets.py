@@ -22,7 +22,7 @@ from lacoc_shared.words import say
 _OFFICE, _STANDBY, _ORGANISER = "office", "standby", "organiser"
 _ALWAYS = (_OFFICE, _STANDBY, _ORGANISER)
 """Made with the first token, so that a copy of the file has them."""
-_TEAM = "team."
+_TEAM, _STAFF = "team.", "staff."
 _WAIT_S = 5.0
 """Longest wait for another program that makes a token."""
 
@@ -80,14 +80,37 @@ class Secrets:
 
     def team_of(self, token: str) -> str | None:
         """Return the team that has a token; None: nobody has it."""
-        shown = digest(token)
-        # Digests are compared, so the time that this takes tells nothing of a token.
-        found = [name for name, one in self._read().items() if digest(one) == shown]
-        return next((name[len(_TEAM) :] for name in found if name.startswith(_TEAM)), None)
+        return self._owner(_TEAM, token)
+
+    def staff(self, name: str) -> str:
+        """Return the token of one of the staff, who may do what the organiser may."""
+        return self._of(f"{_STAFF}{name}")
+
+    def staff_of(self, token: str) -> str | None:
+        """Return who of the staff has a token; None: nobody has it."""
+        return self._owner(_STAFF, token)
+
+    @property
+    def staff_names(self) -> tuple[str, ...]:
+        """Who of the staff has a token."""
+        names = (name for name in self._read() if name.startswith(_STAFF))
+        return tuple(sorted(name.removeprefix(_STAFF) for name in names))
 
     def forget(self, *teams: str) -> None:
         """Forget the tokens of teams: their links open nothing any more."""
-        gone = {f"{_TEAM}{name}" for name in teams}
+        self._forget({f"{_TEAM}{name}" for name in teams})
+
+    def forget_staff(self, name: str) -> None:
+        """Forget the token of one of the staff."""
+        self._forget({f"{_STAFF}{name}"})
+
+    def _owner(self, kind: str, token: str) -> str | None:
+        shown = digest(token)
+        # Digests are compared, so the time that this takes tells nothing of a token.
+        found = [name for name, one in self._read().items() if digest(one) == shown]
+        return next((name.removeprefix(kind) for name in found if name.startswith(kind)), None)
+
+    def _forget(self, gone: set[str]) -> None:
         self._change(lambda there: {name: one for name, one in there.items() if name not in gone})
 
     def check_copied(self, *courts: str) -> None:

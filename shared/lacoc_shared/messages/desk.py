@@ -17,6 +17,9 @@ DESK_MAX_BYTES = 98_304
 REPLY_MAX_BYTES = 2 << 20
 """Longest answer that is read."""
 
+PUBLISHED = "published/"
+"""Path of a published contest below the address of the pages."""
+
 Replays = Literal["at-once", "after-stage", "after-contest"]
 """From when everybody may see the record of a game: at once, or when its stage or the contest is
 over."""
@@ -65,6 +68,10 @@ class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
 
     team: _Name
     files: Files
+    contact: Annotated[str, msgspec.Meta(max_length=200)] = ""
+    """How to reach the team; only the organiser reads it."""
+    club: _Name = ""
+    """Its school or club; a stage may draw teams of one club apart."""
 
 
 # With a team's token
@@ -93,7 +100,7 @@ class CourtDay(DeskRequest, frozen=True, kw_only=True, tag="court_day"):
     """Who would win, for `scores`."""
 
 
-# With the organiser's key
+# With the organiser's key, or a token of the staff
 
 
 class Overview(DeskRequest, frozen=True, kw_only=True, tag="overview"):
@@ -108,7 +115,7 @@ class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
 
     teams: tuple[_Name, ...]
     reason: _Text = ""
-    """For late files; everybody can read it."""
+    """For teams and files that are late; everybody can read it."""
 
 
 class Decline(DeskRequest, frozen=True, kw_only=True, tag="decline"):
@@ -130,7 +137,68 @@ class Draw(DeskRequest, frozen=True, kw_only=True, tag="draw"):
 
     stage: _Name
     entries: tuple[_Name, ...]
-    """The teams by their seeding, as shown. If others would be drawn now, nothing is drawn."""
+    """The teams by their seeding, as shown; for "hand" in the order that is wanted. If others would
+    be drawn now, nothing is drawn."""
+    how: Literal["", "hand", "lot"] = ""
+    """As in the fact: by the ranking before, by hand with a reason, or by lot."""
+    lot: _Name = ""
+    """What was drawn in front of everybody, for "lot"."""
+    reason: _Text = ""
+
+
+class Undraw(DeskRequest, frozen=True, kw_only=True, tag="undraw"):
+    """Take the draw of a stage back that nobody has played in."""
+
+    stage: _Name
+    reason: _Text
+    really: bool = False
+    """False: only say what would change."""
+
+
+class Substitute(DeskRequest, frozen=True, kw_only=True, tag="substitute"):
+    """Let a team take the place of another one that has not played yet."""
+
+    team: _Name
+    substitute: _Name
+    reason: _Text
+    really: bool = False
+    """False: only say what would change."""
+
+
+class Pause(DeskRequest, frozen=True, kw_only=True, tag="pause"):
+    """Call no game until the contest goes on."""
+
+    until_ms: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 0
+    """It goes on by itself then, in milliseconds since 1970, UTC; 0: when somebody says so."""
+    reason: _Text = ""
+
+
+class Resume(DeskRequest, frozen=True, kw_only=True, tag="resume"):
+    """Let the contest go on."""
+
+
+class Shift(DeskRequest, frozen=True, kw_only=True, tag="shift"):
+    """Make all that is to come later."""
+
+    by_ms: Annotated[int, msgspec.Meta(ge=60_000, le=86_400_000)]
+    reason: _Text = ""
+
+
+class Announce(DeskRequest, frozen=True, kw_only=True, tag="announce"):
+    """Show a line on all pages; "" takes it away."""
+
+    text: Annotated[str, msgspec.Meta(max_length=200)]
+
+
+class Publish(DeskRequest, frozen=True, kw_only=True, tag="publish"):
+    """Publish the contest: write its folder, which the pages serve."""
+
+
+class Staff(DeskRequest, frozen=True, kw_only=True, tag="staff"):
+    """Give somebody an own link to this page, or take it away; only the organiser may."""
+
+    name: _Name
+    remove: bool = False
 
 
 class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
@@ -175,23 +243,27 @@ class Tokens(DeskRequest, frozen=True, kw_only=True, tag="tokens"):
     """Ask for the tokens of all teams of people and of all referees, to hand out their links."""
 
 
-AnyRequest = (
-    Look
-    | Apply
-    | Change
-    | Own
-    | CourtDay
-    | Overview
+OfStaff = (
+    Overview
     | Approve
     | Decline
     | NewCode
     | CloseEntries
     | Draw
+    | Undraw
+    | Substitute
     | TakeOut
     | Rule
     | Move
+    | Pause
+    | Resume
+    | Shift
+    | Announce
+    | Staff
     | Tokens
 )
+"""What the organiser and the staff may ask; `Staff` only the organiser."""
+AnyRequest = Look | Apply | Change | Own | CourtDay | Publish | OfStaff
 """Every request to the desk."""
 
 
@@ -240,6 +312,10 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
     at_ms: int = 0
     mistakes: tuple[Mistake, ...] = ()
     """What is wrong with the files that it handed in last."""
+    contact: str = ""
+    club: str = ""
+    substitute: bool = False
+    """Whether another team can still take its place: it has not played in a drawn stage."""
 
 
 class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -259,14 +335,18 @@ class Moved(msgspec.Struct, frozen=True):
 
 
 class Slot(msgspec.Struct, frozen=True, kw_only=True):
-    """A match that is being played or can be played, with its court and its time."""
+    """A match that is being played or is to come, with its court and its time."""
 
     pairing: str
     fixture: Phrase
     teams: tuple[str, str]
+    """Who sits left and right; "": not known yet."""
+    who: tuple[Phrase, Phrase] | None = None
+    """Who plays, as far as that is known: "winner of Semi-final 1"; None: `teams` says it."""
     court: str
+    """"": nobody can say, because no court is there."""
     at_ms: int
-    """When it began, or probably begins; in milliseconds since 1970, UTC."""
+    """When it began, or probably begins; in milliseconds since 1970, UTC. 0: nobody can say."""
     running: bool = False
     begun: bool = False
     """Whether its game at the court has begun; a move no longer changes this game."""
@@ -286,6 +366,23 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
     """Its teams by their seeding, the best first."""
 
 
+class Undrawable(msgspec.Struct, frozen=True, kw_only=True):
+    """A stage whose draw can be taken back."""
+
+    stage: str
+    title: Phrase
+
+
+class DayState(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether games are called."""
+
+    paused: bool
+    """True: not before somebody says so."""
+    until_ms: int
+    """Not before this time, in milliseconds since 1970, UTC; 0: at any time."""
+    reason: str
+
+
 class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     """What the organiser's page shows in addition to the sheet of the contest."""
 
@@ -302,6 +399,17 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     courts: tuple[CourtRow, ...]
     slots: tuple[Slot, ...]
     """By court, and by time."""
+    day: DayState
+    announced: str
+    """The line to all; "": there is none."""
+    undrawable: Undrawable | None
+    """The newest stage, if nobody has played in it; None: its draw stays."""
+    published: str
+    """Path of the published contest below the address of the pages; "": it is not published."""
+    staff: tuple[str, ...]
+    """Who has a link with a name."""
+    me: str
+    """The name of whoever asks; "": the organiser."""
 
 
 class Overviewed(msgspec.Struct, frozen=True, kw_only=True):
@@ -352,6 +460,10 @@ class TokenList(msgspec.Struct, frozen=True, kw_only=True):
     """Tokens of the referees, by the names of their courts."""
     seats: tuple[OpenSeat, ...] = ()
     """The open seats of all courts, if the contest has a stage of open matches."""
+    staff: dict[str, str] = {}
+    """Tokens of the staff, by their names; only for the organiser."""
+    contacts: dict[str, str] = {}
+    """How to reach the teams, by their names."""
 
 
 Answer = EventInfo | OwnEntry | CourtPlan | Overviewed | Effect | Said | TokenList

@@ -20,6 +20,8 @@ export interface Apply {
   secret?: string;
   team: string;
   files: Files;
+  contact?: string;
+  club?: string;
 }
 
 export interface Change {
@@ -39,6 +41,11 @@ export interface CourtDay {
   court: string;
   scores?: [number, number] | null;
   outcome?: "left" | "right" | "draw";
+}
+
+export interface Publish {
+  do: "publish";
+  secret?: string;
 }
 
 export interface Overview {
@@ -75,6 +82,26 @@ export interface Draw {
   secret?: string;
   stage: string;
   entries: string[];
+  how?: "" | "hand" | "lot";
+  lot?: string;
+  reason?: string;
+}
+
+export interface Undraw {
+  do: "undraw";
+  secret?: string;
+  stage: string;
+  reason: string;
+  really?: boolean;
+}
+
+export interface Substitute {
+  do: "substitute";
+  secret?: string;
+  team: string;
+  substitute: string;
+  reason: string;
+  really?: boolean;
 }
 
 export interface TakeOut {
@@ -107,6 +134,38 @@ export interface Move {
   not_before_ms?: number;
 }
 
+export interface Pause {
+  do: "pause";
+  secret?: string;
+  until_ms?: number;
+  reason?: string;
+}
+
+export interface Resume {
+  do: "resume";
+  secret?: string;
+}
+
+export interface Shift {
+  do: "shift";
+  secret?: string;
+  by_ms: number;
+  reason?: string;
+}
+
+export interface Announce {
+  do: "announce";
+  secret?: string;
+  text: string;
+}
+
+export interface Staff {
+  do: "staff";
+  secret?: string;
+  name: string;
+  remove?: boolean;
+}
+
 export interface Tokens {
   do: "tokens";
   secret?: string;
@@ -135,6 +194,9 @@ export interface TeamRow {
   bot: string;
   at_ms: number;
   mistakes: Mistake[];
+  contact: string;
+  club: string;
+  substitute: boolean;
 }
 
 export interface CourtRow {
@@ -152,6 +214,7 @@ export interface Slot {
   pairing: string;
   fixture: Phrase;
   teams: [string, string];
+  who: [Phrase, Phrase] | null;
   court: string;
   at_ms: number;
   running: boolean;
@@ -175,6 +238,12 @@ export interface OfficeView {
   teams: TeamRow[];
   courts: CourtRow[];
   slots: Slot[];
+  day: unknown;
+  announced: string;
+  undrawable: unknown | null;
+  published: string;
+  staff: string[];
+  me: string;
 }
 
 export interface Overviewed {
@@ -231,4 +300,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = Look | Apply | Change | Own | CourtDay | Overview | Approve | Decline | NewCode | CloseEntries | Draw | TakeOut | Rule | Move | Tokens;
+export type AnyRequest = Look | Apply | Change | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | Rule | Move | Pause | Resume | Shift | Announce | Staff | Tokens;

@@ -5,6 +5,8 @@ from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
 
+import msgspec
+
 from lacoc_server.contest.headless.play import Engine, play
 from lacoc_server.contest.kept import publish
 from lacoc_server.contest.kept.applications import Applications
@@ -15,6 +17,7 @@ from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import sheet as sheets
 from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.draws import by_lot
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Closed,
@@ -44,6 +47,9 @@ def enter(
     bot: str,
     reason: str,
     found: Callable[[HandedIn], None] = lambda _: None,
+    *,
+    club: str = "",
+    by: str = "",
 ) -> Phrase:
     """Enter a team, or change its files; return what was done.
 
@@ -52,8 +58,10 @@ def enter(
         team: name of the team.
         folder: folder with its files; None: the contest's robot and gait.
         bot: the bot that plays for it; "": people play.
-        reason: why its files change after entries were closed.
+        reason: why it enters, or its files change, after entries were closed.
         found: called with the files that were found, before they are weighed in.
+        club: its school or club; "": none.
+        by: who of the staff decides; "": the organiser.
 
     Raises:
         FileRefused: with every mistake of every file.
@@ -64,8 +72,8 @@ def enter(
     handed = gather(folder, bot, where.contest.robot)
     found(handed)
     entry = weigh(handed, where.games, where.contest.limits)
-    with FactStore(where.facts) as store:
-        return enter_weighed(where, store, team, entry, reason)
+    with FactStore(where.facts, by) as store:
+        return enter_weighed(where, store, team, entry, reason, club)
 
 
 def team_name(text: str) -> str:
@@ -81,7 +89,7 @@ def team_name(text: str) -> str:
 
 
 def enter_weighed(
-    where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str
+    where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str, club: str = ""
 ) -> Phrase:
     """Enter a team with an entry that was weighed in, or change its files; return what was done.
 
@@ -90,7 +98,8 @@ def enter_weighed(
         store: its facts.
         team: name of the team, from `team_name`.
         entry: its files and its bot.
-        reason: why its files change after entries were closed.
+        reason: why it enters, or its files change, after entries were closed.
+        club: its school or club; "": none.
 
     Raises:
         UserError: if the team can't enter, or the files can't be written.
@@ -103,6 +112,8 @@ def enter_weighed(
         contest = compute(facts, FORMATS)
         known = {one.name: one for one in contest.teams}
         there = known.get(team)
+        late = reason.strip()
+        may_come = bool(late) or not contest.closed
         if there is not None and there.gone and (contest.closed or not there.may_return):
             raise UserError(say("contest.gone-for-good", team=team))
         if there is not None and not there.gone and there.files == entry.hash:
@@ -110,20 +121,20 @@ def enter_weighed(
         alike = next((name for name in known if look_alike(name, team)), None)
         if team not in known and alike is not None:
             raise UserError(say("contest.name-alike", team=team, there=alike))
-        if contest.closed and team not in known:
-            raise UserError(say("league.closed", team=team))
-        if contest.closed and not reason.strip():
+        if not may_come and team in known:
             raise UserError(say("contest.needs-reason", team=team))
+        if not may_come:
+            raise UserError(say("contest.late-reason", team=team))
         files = where.entries.save(entry)
         if there is not None and there.gone:
             said = say("contest.entered-back", team=team, hash=files)
-            yield new(Entered, team=team, files=files, bot=entry.bot)
+            yield new(Entered, team=team, files=files, bot=entry.bot, club=club, reason=late)
         elif there is not None:
             said = say("contest.entered-again", team=team, hash=files)
             yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
         else:
             said = say("contest.entered", team=team, hash=files)
-            yield new(Entered, team=team, files=files, bot=entry.bot)
+            yield new(Entered, team=team, files=files, bot=entry.bot, club=club, reason=late)
 
     store.decide(decision)
     return said
@@ -169,7 +180,7 @@ def drawing(contest: Contest) -> Drawn:
     Raises:
         UserError: if none does.
     """
-    draw = waits_for_organiser(contest)
+    draw = waits_for_organiser(contest, FORMATS)
     if draw is None:
         raise UserError(say("contest.nothing-to-draw"))
     return draw
@@ -180,18 +191,27 @@ def draw(store: FactStore, shown: Drawn) -> Phrase:
 
     Args:
         store: the facts.
-        shown: the draw that the organiser has seen.
+        shown: the draw that the organiser has seen, or these teams in an order by hand; with a lot,
+            the lot makes the order.
 
     Raises:
-        UserError: if no stage waits, or another draw does: then nothing is drawn.
+        UserError: if no stage waits, or another draw does, or a reason or the lot is missing: then
+            nothing is drawn.
     """
 
     def decision(facts: tuple[AnyFact, ...]) -> list[AnyFact]:
         contest = compute(facts, FORMATS)
         made = drawing(contest)
-        if (made.stage, made.entries) != (shown.stage, shown.entries):
+        order = sorted if shown.how == "hand" else tuple
+        if (made.stage, order(made.entries)) != (shown.stage, order(shown.entries)):
             raise UserError(say("contest.other-draw", stage=title(contest, made.stage)))
-        return [made]
+        if shown.how == "hand" and not shown.reason.strip():
+            raise UserError(say("decide.needs-reason"))
+        if shown.how == "lot":
+            if not shown.lot.strip():
+                raise UserError(say("contest.needs-lot"))
+            return [msgspec.structs.replace(shown, entries=by_lot(made.entries, shown.lot))]
+        return [shown]
 
     store.decide(decision)
     stage = title(compute(store.facts(), FORMATS), shown.stage)

@@ -23,28 +23,37 @@ class Admission:
 
     Args:
         organiser: the organiser's key.
+        staff_of: returns who of the staff has a token; None: nobody has it.
         code: returns the event code.
         team_of: returns the team that has a token; None: nobody has it.
     """
 
     def __init__(
-        self, organiser: str, code: Callable[[], str], team_of: Callable[[str], str | None]
+        self,
+        organiser: str,
+        staff_of: Callable[[str], str | None],
+        code: Callable[[], str],
+        team_of: Callable[[str], str | None],
     ) -> None:
         self._organiser = organiser
+        self._staff_of = staff_of
         self._code = code
         self._team_of = team_of
         self._guesses = Allowance(_GUESSES_HZ, _GUESSES_BURST)
         self.refused = 0
         """Number of wrong secrets."""
 
-    def organiser(self, secret: str, now_s: float) -> None:
-        """Let the organiser in.
+    def organiser(self, secret: str, now_s: float) -> str:
+        """Let the organiser in, or one of the staff; return the name; "": the organiser.
 
         Raises:
-            UserError: if this is not the organiser's key.
+            UserError: if this is neither the organiser's key nor a token of the staff.
         """
-        if not _same(secret, self._organiser):
-            raise self._wrong(say("desk.not-organiser"), now_s)
+        if _same(secret, self._organiser):
+            return ""
+        if secret and (name := self._staff_of(secret)):
+            return name
+        raise self._wrong(say("desk.not-organiser"), now_s)
 
     def applicant(self, secret: str, now_s: float) -> None:
         """Let somebody in who has the event code.

@@ -3,6 +3,7 @@
 from datetime import datetime
 
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.contacts import Contacts
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
@@ -38,6 +39,7 @@ class Book:
         self.where = where
         self.store = store
         self.applications = applications
+        self.contacts = Contacts(where.contacts)
         self.secrets = where.contest.secrets
         self.code = code
         self.refused: dict[str, tuple[Mistake, ...]] = {}

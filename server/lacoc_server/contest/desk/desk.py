@@ -9,11 +9,14 @@ import msgspec
 from lacoc_server.contest.desk import entering, organising, overview, refereeing
 from lacoc_server.contest.desk.admission import Admission, Slower
 from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.kept.contacts import Contact
 from lacoc_server.contest.kept.entries import Entry, weigh
+from lacoc_server.contest.kept.publish import publish
 from lacoc_server.contest.league.timetable.whereabouts import Known
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.desk import (
     DESK_MAX_BYTES,
+    Announce,
     Answer,
     AnyRequest,
     Apply,
@@ -27,12 +30,21 @@ from lacoc_shared.messages.desk import (
     Look,
     Move,
     NewCode,
+    OfStaff,
     Overview,
     Overviewed,
     Own,
+    Pause,
+    Publish,
+    Resume,
     Rule,
+    Said,
+    Shift,
+    Staff,
+    Substitute,
     TakeOut,
     Tokens,
+    Undraw,
 )
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import say
@@ -52,12 +64,17 @@ class Desk:
     """
 
     def __init__(self, book: Book, organiser: str, known: Callable[[], Known]) -> None:
-        self.admission = Admission(organiser, lambda: book.code.value, book.secrets.team_of)
+        secrets = book.secrets
+        self.admission = Admission(
+            organiser, secrets.staff_of, lambda: book.code.value, secrets.team_of
+        )
         self._book = book
         self._known = known
         self._games = book.where.games
         self._one = threading.Lock()
         """Held while the book is used, but not during a weigh-in."""
+        self._publishing = threading.Lock()
+        """Held while the published folder is written."""
         self._scales = threading.Semaphore(_WEIGHED_AT_ONCE)
 
     def judge(self, payload: bytes) -> Answer | Refusal:
@@ -102,27 +119,17 @@ class Desk:
             self.admission.referee(asked.secret, token, now_s)
             with self._one:
                 return refereeing.plan(self._book, self._known(), asked)
-        self.admission.organiser(asked.secret, now_s)
-        with self._one:
-            return self._organise(asked)
+        by = self.admission.organiser(asked.secret, now_s)
+        if isinstance(asked, Publish):
+            return self._publish()
+        with self._one, self._book.store.decided_by(by):
+            return self._organise(asked, by)
 
-    def _organise(
-        self,
-        asked: Overview
-        | Approve
-        | Decline
-        | NewCode
-        | CloseEntries
-        | Draw
-        | TakeOut
-        | Rule
-        | Move
-        | Tokens,
-    ) -> Answer:
+    def _organise(self, asked: OfStaff, by: str) -> Answer:
         book = self._book
         match asked:
             case Overview():
-                made = overview.view(book, self._known())
+                made = overview.view(book, self._known(), by)
                 return Overviewed(view=None if made.version == asked.known else made)
             case Approve():
                 return organising.approve(book, asked)
@@ -134,21 +141,42 @@ class Desk:
                 return organising.close(book)
             case Draw():
                 return organising.draw(book, asked)
+            case Undraw():
+                return organising.undraw(book, asked)
+            case Substitute():
+                return organising.substitute(book, asked)
             case TakeOut():
                 return organising.take_out(book, asked)
             case Rule():
                 return organising.rule(book, asked)
-            case Move():
-                return organising.move(book, asked)
+            case Move() | Pause() | Resume() | Shift() | Announce():
+                return organising.steer(book, asked, time.time_ns() // 1_000_000)
+            case Staff():
+                if by:
+                    raise UserError(say("desk.not-organiser"))
+                return organising.staff(book, asked)
             case Tokens():
-                return organising.tokens(book)
+                return organising.tokens(book, by)
+
+    def _publish(self) -> Said:
+        """Publish the contest; copying the records takes a while, and others are served meanwhile.
+
+        Raises:
+            UserError: if a record or an entry is missing, or something can't be written.
+        """
+        with self._one:
+            facts = self._book.facts
+        with self._publishing:
+            publish(self._book.where, facts, self._book.where.published)
+        return Said(said=(say("desk.published", folder=self._book.where.published.name),))
 
     def _apply(self, asked: Apply) -> Answer:
         with self._one:
             team = entering.newcomer(self._book, asked.team)
         entry = self._weighed(team, asked.files)
         with self._one:
-            return entering.apply(self._book, team, entry)
+            contact = Contact(asked.contact.strip(), asked.club.strip())
+            return entering.apply(self._book, team, entry, contact)
 
     def _weighed(self, team: str, files: Files) -> Entry:
         """Weigh in files; note for the organiser what is wrong with them."""

@@ -5,6 +5,7 @@ from typing import Literal
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_server.contest.acts.organiser import close_in_time, enter_weighed, team_name
 from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.kept.contacts import Contact
 from lacoc_server.contest.kept.entries import Entry, HandedIn, hand_in
 from lacoc_shared.messages.desk import Files, OwnEntry
 from lacoc_shared.mistakes import UserError
@@ -32,12 +33,14 @@ def handed_in(files: Files, robot: str) -> HandedIn:
 def newcomer(book: Book, text: str) -> str:
     """Check whether a team can apply; return its name as it is kept.
 
+    Once entries are closed, the organiser needs a reason to let it in.
+
     Raises:
-        UserError: if entries are closed, the name is wrong or taken, or too many teams wait.
+        UserError: if the contest is over, the name is wrong or taken, or too many teams wait.
     """
     close_in_time(book.where, book.store)
     team = team_name(text)
-    if book.contest.closed:
+    if book.contest.over:
         raise UserError(say("league.closed", team=team))
     if book.is_taken(team):
         raise UserError(say("desk.name-taken", team=team))
@@ -46,13 +49,14 @@ def newcomer(book: Book, text: str) -> str:
     return team
 
 
-def apply(book: Book, team: str, entry: Entry) -> OwnEntry:
+def apply(book: Book, team: str, entry: Entry, contact: Contact) -> OwnEntry:
     """Let a weighed entry of a new team wait for the organiser.
 
     Raises:
         UserError: as `newcomer`, or if it can't be written.
     """
     team = newcomer(book, team)  # somebody else may have taken the name while this was weighed
+    book.contacts.put(team, contact)
     book.applications.put(team, entry)
     return own(book, team)
 
@@ -64,15 +68,12 @@ def change(book: Book, team: str, entry: Entry) -> OwnEntry:
     or if the team itself still waits, its files wait for the organiser.
 
     Raises:
-        UserError: if the team has left the contest, if entries were closed before the team was in,
-            or if the files can't be written.
+        UserError: if the team has left the contest, or the files can't be written.
     """
     close_in_time(book.where, book.store)
     there = book.team(team)
     if there is not None and there.gone:
         raise UserError(say("desk.left", team=team))
-    if there is None and book.contest.closed:
-        raise UserError(say("league.closed", team=team))
     if there is not None and not book.contest.closed:
         enter_weighed(book.where, book.store, team, entry, "")
         book.applications.drop(team)

@@ -1,20 +1,27 @@
-"""What the organiser asks the desk: to approve, decline, close, draw, take out, rule and move."""
+"""What the organiser and the staff ask the desk; `acts` does it."""
 
 from collections.abc import Iterable, Sequence
 
-from lacoc_server.contest.acts import deciding, organiser
+from lacoc_server.contest.acts import deciding, organiser, steering
 from lacoc_server.contest.desk.book import Book
-from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, Moved, new
+from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, new
 from lacoc_shared.messages.desk import (
+    Announce,
     Approve,
     Draw,
     Effect,
     Move,
     OpenSeat,
+    Pause,
+    Resume,
     Rule,
     Said,
+    Shift,
+    Staff,
+    Substitute,
     TakeOut,
     TokenList,
+    Undraw,
 )
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -36,7 +43,8 @@ def approve(book: Book, asked: Approve) -> Said:
             entry = book.where.entries.load(there.files)
         else:
             raise UserError(say("desk.no-application", team=team))
-        done = organiser.enter_weighed(book.where, book.store, team, entry, asked.reason)
+        club = book.contacts.of(team).club
+        done = organiser.enter_weighed(book.where, book.store, team, entry, asked.reason, club)
         book.applications.drop(team)
         said.append(done)
     return Said(said=tuple(said))
@@ -88,12 +96,9 @@ def close(book: Book) -> Said:
 
 
 def draw(book: Book, asked: Draw) -> Said:
-    """Draw the stage that waits for the organiser.
-
-    Raises:
-        UserError: if none waits, or its teams are not those that the page shows.
-    """
-    shown = new(Drawn, stage=asked.stage, entries=asked.entries)
+    """Draw the stage that waits for the organiser; errors as `organiser.draw`."""
+    given = {"how": asked.how, "lot": asked.lot, "reason": asked.reason}
+    shown = new(Drawn, stage=asked.stage, entries=asked.entries, **given)
     return Said(said=(organiser.draw(book.store, shown),))
 
 
@@ -121,35 +126,66 @@ def rule(book: Book, asked: Rule) -> Effect:
     return _decided(book, [deciding.decision(book.contest, wanted)], asked.really)
 
 
-def move(book: Book, asked: Move) -> Said:
-    """Move a match to another court, before another match, or to a later time.
+def undraw(book: Book, asked: Undraw) -> Effect:
+    """Take the draw of a stage back, or say what that would change; errors as `undrawing`."""
+    return _decided(
+        book, [steering.undrawing(book.contest, asked.stage, asked.reason)], asked.really
+    )
+
+
+def substitute(book: Book, asked: Substitute) -> Effect:
+    """Let a substitute in, or say what that would change; errors as `substituting`."""
+    fact = steering.substituting(book.contest, asked.team, asked.substitute, asked.reason)
+    return _decided(book, [fact], asked.really)
+
+
+def steer(book: Book, asked: Move | Pause | Resume | Shift | Announce, now_ms: int) -> Said:
+    """Move a match, pause, go on, shift or tell all; errors as in `acts.steering`."""
+    contest = book.contest
+    fact: AnyFact
+    match asked:
+        case Move():
+            courts = book.where.contest.courts
+            where = (asked.court, asked.before, asked.not_before_ms)
+            fact = steering.moving(contest, courts, asked.pairing, *where)
+        case Pause():
+            fact = steering.pausing(contest, asked.until_ms, asked.reason, now_ms)
+        case Resume():
+            fact = steering.resuming(contest, now_ms)
+        case Shift():
+            fact = steering.shifting(asked.by_ms, asked.reason)
+        case Announce():
+            fact = steering.announcing(asked.text)
+    book.store.append(fact)
+    return Said(said=(steering.done(contest, fact),))
+
+
+def staff(book: Book, asked: Staff) -> Said:
+    """Give somebody a link with a name, or take it away.
 
     Raises:
-        UserError: if there is no such match or court, if the match is decided, or if the match
-            would have to be played before itself.
+        UserError: if nothing of the name can be seen, it is too long, or the file of secrets can't
+            be written.
     """
-    match = deciding.match_of(book.contest, asked.pairing)
-    if asked.before:
-        deciding.match_of(book.contest, asked.before)
-    if asked.before == asked.pairing:
-        raise UserError(say("desk.before-itself"))
-    if match.decided:
-        raise UserError(say("desk.match-over", pairing=asked.pairing))
-    courts = [*book.where.contest.courts]
-    if asked.court and asked.court not in courts:
-        raise UserError(say("desk.no-court", court=asked.court, courts=courts))
-    where = {"court": asked.court, "before": asked.before, "not_before_ms": asked.not_before_ms}
-    book.store.append(new(Moved, pairing=asked.pairing, **where))
-    teams = [team or "?" for team in match.teams]
-    return Said(said=(say("desk.moved", teams=teams, court=asked.court or None),))
+    name = organiser.team_name(asked.name)
+    if asked.remove:
+        book.secrets.forget_staff(name)
+        return Said(said=(say("desk.staff-removed", name=name),))
+    book.secrets.staff(name)
+    return Said(said=(say("desk.staff-added", name=name),))
 
 
-def tokens(book: Book) -> TokenList:
+def tokens(book: Book, by: str) -> TokenList:
     """Return the tokens of all teams of people that are in or wait, of referees and open seats.
+
+    Args:
+        book: the contest.
+        by: who asks; only the organiser ("") gets the tokens of the staff.
 
     Raises:
         UserError: if a new token can't be written.
     """
+    staff = () if by else book.secrets.staff_names
     people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]
     waiting = [team for team in book.applications.waiting if team not in people]
     stage, courts = book.where.open_stage, book.where.contest.courts
@@ -161,6 +197,8 @@ def tokens(book: Book) -> TokenList:
             for court in courts
             for seat in (stage.seats if stage is not None else ())
         ),
+        staff={name: book.secrets.staff(name) for name in staff},
+        contacts={team: book.contacts.of(team).reach for team in (*people, *waiting)},
     )
 
 

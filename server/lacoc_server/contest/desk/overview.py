@@ -5,25 +5,39 @@ from typing import Literal
 
 import msgspec
 
+from lacoc_server.contest.acts.steering import places, undrawable
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league import facts
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
-from lacoc_server.contest.league.fixture import fixture, match_fixture
+from lacoc_server.contest.league.fixture import fixture
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import LOST_MS
+from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
 from lacoc_server.contest.league.timetable.whereabouts import Known, full_minute, starts
 from lacoc_server.contest.league.titles import title
 from lacoc_shared import codec
-from lacoc_shared.messages.desk import CourtRow, Moved, OfficeView, Slot, TeamRow, ToDraw
+from lacoc_shared.messages.desk import (
+    PUBLISHED,
+    CourtRow,
+    DayState,
+    Moved,
+    OfficeView,
+    Slot,
+    TeamRow,
+    ToDraw,
+    Undrawable,
+)
 
 
-def view(book: Book, known: Known) -> OfficeView:
+def view(book: Book, known: Known, by: str) -> OfficeView:
     """Make the view of the organiser's page.
 
     Args:
         book: the contest.
         known: what the office knows besides the facts.
+        by: who of the staff looks at it; "": the organiser.
 
     Raises:
         UserError: if the facts can't be read.
@@ -41,20 +55,42 @@ def view(book: Book, known: Known) -> OfficeView:
             for court, seen in known.seen.items()
         ),
         slots=tuple(sorted(slots(contest, known), key=lambda slot: (slot.court, slot.at_ms))),
+        day=DayState(
+            paused=contest.day.paused, until_ms=contest.day.until_ms, reason=contest.day.reason
+        ),
+        announced=contest.announced.text if contest.announced is not None else "",
+        undrawable=_undrawable(contest),
+        published=PUBLISHED if book.where.published.is_dir() else "",
+        staff=book.secrets.staff_names,
+        me=by,
     )
     version = codec.message_hash(codec.encode(made)).hex()
     return msgspec.structs.replace(made, version=version)
 
 
+def _undrawable(contest: Contest) -> Undrawable | None:
+    stage = undrawable(contest)
+    return Undrawable(stage=stage, title=title(contest, stage)) if stage else None
+
+
 def _to_draw(contest: Contest) -> ToDraw | None:
-    draw = waits_for_organiser(contest)
+    draw = waits_for_organiser(contest, FORMATS)
     if draw is None:
         return None
     return ToDraw(stage=draw.stage, title=title(contest, draw.stage), entries=draw.entries)
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:
-    """Yield the teams; those that wait or were refused come first."""
+    """Yield the teams with what they told; those that wait or were refused come first."""
+    contest = book.contest
+    for row in _rows(book):
+        told = book.contacts.of(row.team)
+        yield msgspec.structs.replace(
+            row, contact=told.reach, club=told.club, substitute=bool(places(contest, row.team))
+        )
+
+
+def _rows(book: Book) -> Iterator[TeamRow]:
     known = {team.name: team for team in book.contest.teams}
     waiting = {
         team: there
@@ -88,7 +124,7 @@ def _state(team: Team) -> Literal["in", "withdrawn", "disqualified"]:
 
 
 def slots(contest: Contest, known: Known) -> Iterator[Slot]:
-    """Yield the matches that are at a court, then those that can be played."""
+    """Yield the matches that are at a court, then all that are to come."""
     places = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     moves = {move.pairing: move for move in contest.moves}
     for call in contest.running:
@@ -104,18 +140,20 @@ def slots(contest: Contest, known: Known) -> Iterator[Slot]:
             begun=seen is not None and seen.call == call.id and seen.begun,
             moved=_moved(moves.get(call.pairing)),
         )
-    for pairing, start in starts(contest, known.seen, known.pace):
-        stage, match = places[pairing]
-        if match.next_seats is not None:
-            yield Slot(
-                pairing=pairing,
-                fixture=match_fixture(contest, stage, match),
-                teams=match.next_seats,
-                court=start.court,
-                at_ms=full_minute(start.at_ms),
-                held=known.held.get((pairing, match.next_game)),
-                moved=_moved(moves.get(pairing)),
-            )
+    coming = foreseen(contest, FORMATS)
+    begins = dict(starts(contest, coming, known.seen, known.pace))
+    for one in coming:
+        start = begins.get(one.pairing.id)
+        yield Slot(
+            pairing=one.pairing.id,
+            fixture=one.fixture,
+            teams=one.match.next_seats or ("", ""),
+            who=None if one.match.next_seats else one.who,
+            court=start.court if start else "",
+            at_ms=full_minute(start.at_ms) if start else 0,
+            held=known.held.get((one.pairing.id, one.match.next_game)),
+            moved=_moved(moves.get(one.pairing.id)),
+        )
 
 
 def _moved(move: facts.Moved | None) -> Moved | None:

@@ -42,6 +42,10 @@ class ContestFolder:
         """The entries that wait for the organiser."""
         self.secrets = contests.secrets_path(file)
         """All tokens."""
+        self.contacts = folder / f"{file.stem}.contacts.json"
+        """How to reach the teams."""
+        self.published = folder / f"{file.stem}-published"
+        """The published contest, if the office has published it."""
         self.event_code = folder / f"{file.stem}.code.txt"
         """The event code, if it was changed."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"

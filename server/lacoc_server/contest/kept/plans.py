@@ -1,6 +1,6 @@
 """The stages of a contest, as its contest file plans them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -12,6 +12,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
+from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_shared.contest.courts import wrong_in
@@ -39,6 +40,10 @@ class _Stage(msgspec.Struct, frozen=True, kw_only=True):
     arena: str = _USUAL_ARENA
     settings: dict[str, Any] = {}
     """Entries that replace those of the arena file."""
+    apart: bool = False
+    break_s: float = 0.0
+    final_court: str = ""
+    final_break_s: float = 0.0
 
 
 OPEN = "open"
@@ -133,7 +138,7 @@ def _read(
     """
     try:
         plan = _plan(name, table, contest.limits)
-        _check(plan, before)
+        _check(plan, before, [*contest.courts])
         game(plan)
     except msgspec.ValidationError as error:
         where, said = place_and_words(error)
@@ -206,6 +211,10 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         settings=msgspec.convert(rest, Settings),
         after=stage.after,
         draw=stage.draw,
+        apart=stage.apart,
+        break_s=stage.break_s,
+        final_court=stage.final_court,
+        final_break_s=stage.final_break_s,
         teams=stage.teams,
         arena=stage.arena,
         arena_settings=stage.settings,
@@ -214,12 +223,13 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     return msgspec.convert(msgspec.to_builtins(plan), Planned)  # checks the lengths and patterns
 
 
-def _check(plan: Planned, before: Mapping[str, Planned | None]) -> None:
+def _check(plan: Planned, before: Mapping[str, Planned | None], courts: Sequence[str]) -> None:
     """Check what a plan names, and that its settings fit each other.
 
     Args:
         plan: the plan of a stage.
         before: the plans of the stages before it, by name; None: that one is wrong.
+        courts: names of the contest's courts.
 
     Raises:
         UserError: at the first name that is not known, or the first setting that does not fit.
@@ -231,6 +241,13 @@ def _check(plan: Planned, before: Mapping[str, Planned | None]) -> None:
     most = _most_teams(plan, before)
     if plan.settings.third_place and 0 < most < _TEAMS_FOR_THIRD:
         raise UserError(say("contest.no-third-place", teams=most, least=_TEAMS_FOR_THIRD))
+    how = FORMATS[plan.format]
+    if plan.apart and how.rounds(Stage(name="", settings=plan.settings, entries=("", ""))):
+        raise UserError(say("contest.not-apart", format=plan.format))
+    if (plan.final_court or plan.final_break_s) and not how.decisive:
+        raise UserError(say("contest.no-final", format=plan.format))
+    if plan.final_court and plan.final_court not in courts:
+        raise UserError(say("desk.no-court", court=plan.final_court, courts=[*courts]))
     for code in plan.settings.tie_breaks:
         if code not in TIE_BREAKS:
             raise UserError(say("league.unknown-tie-break", code=code, known=[*TIE_BREAKS]))

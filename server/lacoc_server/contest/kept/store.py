@@ -2,7 +2,8 @@
 
 import sqlite3
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
@@ -33,13 +34,15 @@ class FactStore:
 
     Args:
         path: the file; it is made if there is none.
+        by: who of the staff decides what is appended; "": the organiser, or the office itself.
 
     Raises:
         UserError: if it is damaged, a database of something else, or can't be opened.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, by: str = "") -> None:
         self._path = path
+        self._by = by
         try:
             self._db = database.connect(path, _APPLICATION, _VERSION, _TABLES, alone=False)
         except Damaged as damage:
@@ -53,6 +56,15 @@ class FactStore:
 
     def __exit__(self, *_: object) -> None:
         self._db.close()
+
+    @contextmanager
+    def decided_by(self, name: str) -> Iterator[None]:
+        """In the block, facts that are appended are decided by one of the staff."""
+        before, self._by = self._by, name
+        try:
+            yield
+        finally:
+            self._by = before
 
     def append(self, *facts: AnyFact) -> None:
         """Append facts; they get their places, ids and times here.
@@ -98,7 +110,7 @@ class FactStore:
                 for number, fact in enumerate(decision(known), last + 1):
                     moves += isinstance(fact, TakenOver)
                     placed = msgspec.structs.replace(
-                        fact, id=_id(number, moves), number=number, at_ms=now_ms
+                        fact, id=_id(number, moves), number=number, at_ms=now_ms, by=self._by
                     )
                     row = (number, now_ms, msgspec.json.encode(placed).decode())
                     self._db.execute(_INSERT, row)

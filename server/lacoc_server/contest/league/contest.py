@@ -6,6 +6,7 @@ import msgspec
 
 from lacoc_server.contest.league.draws import Team, drawn_stages, entered_teams
 from lacoc_server.contest.league.facts import (
+    Announced,
     AnyFact,
     Called,
     Closed,
@@ -13,12 +14,16 @@ from lacoc_server.contest.league.facts import (
     NoShow,
     OfDecision,
     OfMatch,
+    Paused,
     Planned,
     Played,
     Recalled,
     Replaced,
+    Resumed,
+    Shifted,
     decisions,
     ordered,
+    stage_of,
 )
 from lacoc_server.contest.league.formats.format import Format, Pair, Stage
 from lacoc_server.contest.league.matches import (
@@ -96,6 +101,20 @@ class Unused(msgspec.Struct, frozen=True, kw_only=True):
     why: Phrase
 
 
+class Day(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether games are called."""
+
+    paused: bool
+    """True: not before somebody says so."""
+    until_ms: int
+    """Not before this time, in milliseconds since 1970, UTC; 0: at any time."""
+    reason: str
+
+    def is_held(self, now_ms: int) -> bool:
+        """Return whether no game is called now."""
+        return self.paused or now_ms < self.until_ms
+
+
 class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that follows from the facts."""
 
@@ -113,8 +132,13 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """The newest move of each match that was moved, in the order in which they were made."""
     decisions: tuple[OfDecision, ...]
     """What people decided, in the order in which they did."""
+    day: "Day"
+    announced: Announced | None
+    """The line to all; None: there is none."""
     ended_ms: dict[str, tuple[str, int]]
     """By team: the pairing of its newest game, and when that ended."""
+    stages_ended_ms: dict[str, int]
+    """By stage: when its newest game ended; a stage without a game is not there."""
     unused: tuple[Unused, ...]
 
     @property
@@ -209,7 +233,10 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         for number, (plan, stage) in enumerate(drawn, 1)
     ]
     matches = {match.pairing.id: match for view in stages for match in view.matches}
+    coming = {plan.stage for plan in planned}
     for pairing, about in by_pairing.items():
+        if pairing not in matches and stage_of(pairing) in coming:
+            about = [fact for fact in about if not isinstance(fact, Moved)]  # it was moved early
         _note_unused(matches.get(pairing), about, unused)
     return Contest(
         teams=tuple(teams.values()),
@@ -219,7 +246,10 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         running=_running(known, matches),
         moves=_moves(known),
         decisions=decisions(known),
+        day=_day(known),
+        announced=_announced(known),
         ended_ms=_ended(known),
+        stages_ended_ms=_stages_ended(known),
         unused=tuple(
             Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused
         ),
@@ -345,13 +375,48 @@ def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Ca
 
 
 def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
-    """Find the newest move of each match."""
+    """Find the newest move of each match; what was shifted since is later."""
     moves: dict[str, Moved] = {}
     for fact in facts:
         if isinstance(fact, Moved):
             moves.pop(fact.pairing, None)
             moves[fact.pairing] = fact
+        elif isinstance(fact, Shifted):
+            for pairing, move in moves.items():
+                if move.not_before_ms > fact.at_ms:
+                    later_ms = move.not_before_ms + fact.by_ms
+                    moves[pairing] = msgspec.structs.replace(move, not_before_ms=later_ms)
     return tuple(moves.values())
+
+
+def _day(facts: Sequence[AnyFact]) -> Day:
+    """Return whether games are called: the newest pause, and what was shifted since."""
+    day = Day(paused=False, until_ms=0, reason="")
+    for fact in facts:
+        match fact:
+            case Paused():
+                day = Day(paused=not fact.until_ms, until_ms=fact.until_ms, reason=fact.reason)
+            case Resumed():
+                day = Day(paused=False, until_ms=0, reason="")
+            case Shifted():
+                until_ms = max(day.until_ms, fact.at_ms + fact.by_ms)
+                day = Day(paused=day.paused, until_ms=until_ms, reason=fact.reason or day.reason)
+    return day
+
+
+def _announced(facts: Sequence[AnyFact]) -> Announced | None:
+    newest = next((fact for fact in reversed(facts) if isinstance(fact, Announced)), None)
+    return newest if newest is not None and newest.text else None
+
+
+def _stages_ended(facts: Sequence[AnyFact]) -> dict[str, int]:
+    """Return for each stage when its newest game ended [ms]."""
+    ended: dict[str, int] = {}
+    for fact in facts:
+        if isinstance(fact, Played):
+            stage = stage_of(fact.pairing)
+            ended[stage] = max(ended.get(stage, 0), fact.at_ms)
+    return ended
 
 
 def _ended(facts: Sequence[AnyFact]) -> dict[str, tuple[str, int]]:

@@ -5,15 +5,20 @@ import msgspec
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import (
     Disqualified,
+    Drawn,
+    Entered,
     FilesChanged,
     NoShow,
     OfDecision,
     Replaced,
     Replay,
+    Substituted,
+    Undrawn,
     Voided,
     Withdrawn,
 )
 from lacoc_server.contest.league.fixture import named
+from lacoc_server.contest.league.titles import title
 from lacoc_shared.words import Phrase, say
 
 
@@ -27,6 +32,8 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     pairing: str = ""
     """The match; "": it is about a team."""
     reason: str
+    by: str = ""
+    """Who of the staff made it; "": the organiser."""
 
 
 def decided(contest: Contest) -> tuple[Decided, ...]:
@@ -38,6 +45,7 @@ def decided(contest: Contest) -> tuple[Decided, ...]:
             what=_what(contest, fact),
             pairing=getattr(fact, "pairing", ""),
             reason=fact.reason,
+            by=fact.by,
         )
         for fact in contest.decisions
     )
@@ -45,6 +53,17 @@ def decided(contest: Contest) -> tuple[Decided, ...]:
 
 def _what(contest: Contest, fact: OfDecision) -> Phrase:
     match fact:
+        case Entered():
+            return say("decided.entered-late", team=fact.team)
+        case Substituted():
+            return say("decided.substituted", team=fact.team, substitute=fact.substitute)
+        case Drawn():
+            stage = title(contest, fact.stage)
+            if fact.how == "lot":
+                return say("decided.drawn-by-lot", stage=stage, lot=fact.lot)
+            return say("decided.drawn-by-hand", stage=stage)
+        case Undrawn():
+            return say("decided.undrawn", stage=title(contest, fact.stage))
         case Withdrawn():
             return say("decided.withdrawn", team=fact.team)
         case Disqualified():

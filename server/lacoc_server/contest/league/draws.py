@@ -1,6 +1,7 @@
 """What is drawn: the teams and stages of a contest, before anything is played."""
 
-from collections.abc import Mapping, Sequence
+import hashlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import msgspec
 
@@ -12,8 +13,12 @@ from lacoc_server.contest.league.facts import (
     Entered,
     FilesChanged,
     Planned,
+    Played,
     RoundDrawn,
+    Substituted,
+    Undrawn,
     Withdrawn,
+    stage_of,
 )
 from lacoc_server.contest.league.formats.format import Format, Stage
 from lacoc_shared.mistakes import UserError
@@ -28,6 +33,8 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     """Hash of the files that it plays with."""
     bot: str = ""
     """Name of the bot that plays for it; "": people play."""
+    club: str = ""
+    """Its school or club; "": none."""
     withdrawn: bool = False
     disqualified: bool = False
 
@@ -55,20 +62,27 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
         if isinstance(fact, Closed):
             closed = True
         elif isinstance(fact, Entered):
-            if closed:
+            if closed and (fact.team in teams or not fact.reason.strip()):
                 unused[fact.id] = say("league.closed", team=fact.team)
             elif fact.team in teams and not teams[fact.team].may_return:
                 unused[fact.id] = say("league.entered-twice", team=fact.team)
             else:
-                teams[fact.team] = Team(name=fact.team, files=fact.files, bot=fact.bot)
-        elif isinstance(fact, Withdrawn | Disqualified | FilesChanged):
+                teams[fact.team] = Team(
+                    name=fact.team, files=fact.files, bot=fact.bot, club=fact.club
+                )
+        elif isinstance(fact, Withdrawn | Disqualified | Substituted | FilesChanged):
             if fact.team not in teams:
                 unused[fact.id] = say("league.unknown-team", team=fact.team)
                 continue
+            if isinstance(fact, Substituted):
+                other = teams.get(fact.substitute)
+                if other is None or other.gone or other.name == fact.team:
+                    unused[fact.id] = say("league.no-substitute", team=fact.substitute)
+                    continue
             team = teams[fact.team]
             if isinstance(fact, FilesChanged):
                 team = msgspec.structs.replace(team, files=fact.files, bot=fact.bot)
-            elif isinstance(fact, Withdrawn):
+            elif isinstance(fact, Withdrawn | Substituted):
                 team = msgspec.structs.replace(team, withdrawn=True)
             else:
                 team = msgspec.structs.replace(team, disqualified=True)
@@ -88,8 +102,23 @@ def drawn_stages(
     """
     plans: dict[str, Planned] = {}
     stages: dict[str, tuple[Planned, Stage]] = {}
+    played: set[tuple[str, str]] = set()
+    """Each stage with each team that has played in it."""
     for fact in facts:
-        if isinstance(fact, Planned):
+        if isinstance(fact, Played):
+            played |= {(stage_of(fact.pairing), team) for team in fact.teams}
+        elif isinstance(fact, Substituted) and fact.id not in unused:
+            for name, (plan, stage) in stages.items():
+                if (name, fact.team) not in played:
+                    stages[name] = plan, _substituted(stage, fact)
+        elif isinstance(fact, Undrawn):
+            if fact.stage not in stages:
+                unused[fact.id] = say("league.not-drawn", stage=fact.stage)
+            elif fact.stage != [*stages][-1] or any(name == fact.stage for name, _ in played):
+                unused[fact.id] = say("league.played-already", stage=fact.stage)
+            else:
+                del stages[fact.stage]
+        elif isinstance(fact, Planned):
             if fact.stage in stages:
                 unused[fact.id] = say("league.drawn-already", stage=fact.stage)
             else:
@@ -113,6 +142,75 @@ def drawn_stages(
             drawn = (*stage.drawn, fact.pairs)
             stages[fact.stage] = (plan, msgspec.structs.replace(stage, drawn=drawn))
     return [*stages.values()], [plan for name, plan in plans.items() if name not in stages]
+
+
+def _substituted(stage: Stage, fact: Substituted) -> Stage:
+    """Put a substitute in the place of its team, unless the substitute has a place of its own."""
+    if fact.substitute in stage.entries:
+        return stage
+
+    def named(teams: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(fact.substitute if team == fact.team else team for team in teams)
+
+    drawn = tuple(tuple(map(named, pairs)) for pairs in stage.drawn)
+    return msgspec.structs.replace(stage, entries=named(stage.entries), drawn=drawn)
+
+
+def by_lot(teams: Iterable[str], lot: str) -> tuple[str, ...]:
+    """Return teams in the order of a lot: everybody who knows the lot can draw again.
+
+    Args:
+        teams: in any order.
+        lot: what was drawn in front of everybody; nobody may know it before.
+    """
+
+    def ticket(team: str) -> bytes:
+        return hashlib.sha256(f"{lot.strip()}\n{team}".encode()).digest()
+
+    return tuple(sorted(teams, key=ticket))
+
+
+def apart(
+    entries: tuple[str, ...],
+    club_of: Mapping[str, str],
+    met: Callable[[tuple[str, ...]], Iterable[tuple[str, str]]],
+) -> tuple[str, ...]:
+    """Change the order of teams as little as possible, so that teams of one club do not meet.
+
+    Teams change places one pair after the other, near ones and low ones first, as long as fewer of
+    one club meet.
+
+    Args:
+        entries: the teams by their seeding.
+        club_of: the club of each team that has one.
+        met: returns which teams surely meet, for an order of teams.
+    """
+
+    def clash(order: tuple[str, ...]) -> list[tuple[str, str]]:
+        return [
+            (one, other)
+            for one, other in met(order)
+            if club_of.get(one) and club_of.get(one) == club_of.get(other)
+        ]
+
+    while clashing := clash(entries):
+        places = sorted({entries.index(team) for pair in clashing for team in pair}, reverse=True)
+        swaps = sorted(
+            ((at, other) for at in places for other in range(len(entries)) if other != at),
+            key=lambda swap: (abs(swap[0] - swap[1]), -min(swap)),
+        )
+        orders = (_swapped(entries, *swap) for swap in swaps)
+        better = next((order for order in orders if len(clash(order)) < len(clashing)), None)
+        if better is None:
+            break
+        entries = better
+    return entries
+
+
+def _swapped(entries: tuple[str, ...], one: int, other: int) -> tuple[str, ...]:
+    order = list(entries)
+    order[one], order[other] = order[other], order[one]
+    return tuple(order)
 
 
 def _cannot_draw(

@@ -33,6 +33,8 @@ class Fact(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, tag_fi
     """Place of the fact among all facts; equal numbers are ordered by id."""
     at_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
     """When it happened, in milliseconds since 1970, UTC."""
+    by: Annotated[str, msgspec.Meta(max_length=64)] = ""
+    """Who of the staff decided it; "": the organiser, or the office itself."""
 
 
 class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
@@ -43,6 +45,10 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
     """Hash of the robot file, the gait files and the bot."""
     bot: str = ""
     """Name of the bot that plays for the team; "": people play."""
+    club: Annotated[str, msgspec.Meta(max_length=64)] = ""
+    """The school or club of the team; a stage may draw teams of one club apart. "": none."""
+    reason: str = ""
+    """Why it entered although entries were closed; "" only while they are open."""
 
 
 class Closed(Fact, frozen=True, kw_only=True, tag="closed"):
@@ -60,6 +66,15 @@ class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
     """A team is expelled: it leaves as if withdrawn, and is ranked last."""
 
     team: Name
+    reason: str = ""
+
+
+class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
+    """A team takes the place of another one in all stages in which that one has not played yet."""
+
+    team: Name
+    """The team that gives its place up; it leaves the contest."""
+    substitute: Name
     reason: str = ""
 
 
@@ -109,6 +124,15 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     title: dict[Literal["en", "ja"], Name] = {}
     """What people call it, by language; empty: the usual name of its format."""
     draw: Draw = "at-once"
+    apart: bool = False
+    """True: teams of one club do not meet in the first round, or in a group, if it can be avoided.
+    """
+    break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+    """Time between the end of the stages before it and its first game [s]."""
+    final_court: str = ""
+    """The only court for its final; "": any court."""
+    final_break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+    """Time between its other games and its final [s]."""
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""
     arena: str = ""
@@ -124,6 +148,19 @@ class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
 
     stage: str
     entries: tuple[Name, ...]
+    how: Literal["", "hand", "lot"] = ""
+    """"": by the ranking before. hand: in the order that the organiser gave, with a reason. lot: in
+    the order that follows from `lot` (`draws.by_lot`)."""
+    lot: Annotated[str, msgspec.Meta(max_length=64)] = ""
+    """What was drawn in front of everybody: numbers of dice, a word."""
+    reason: str = ""
+
+
+class Undrawn(Fact, frozen=True, kw_only=True, tag="undrawn"):
+    """A decision: the draw of a stage that nobody has played in is taken back."""
+
+    stage: str
+    reason: str
 
 
 class RoundDrawn(Fact, frozen=True, kw_only=True, tag="round-drawn"):
@@ -221,6 +258,35 @@ class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
     """It is not called before this time, in milliseconds since 1970, UTC."""
 
 
+class Paused(Fact, frozen=True, kw_only=True, tag="paused"):
+    """No game is called until the contest goes on; games that were called are played."""
+
+    until_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
+    """It goes on by itself then, in milliseconds since 1970, UTC; 0: when somebody says so."""
+    reason: str = ""
+
+
+class Resumed(Fact, frozen=True, kw_only=True, tag="resumed"):
+    """The contest goes on."""
+
+
+class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
+    """All that is to come becomes later.
+
+    No game is called for so long, and appointed times of moved matches are later by so much.
+    """
+
+    by_ms: Annotated[int, msgspec.Meta(ge=0, le=86_400_000)]
+    reason: str = ""
+
+
+class Announced(Fact, frozen=True, kw_only=True, tag="announced"):
+    """A line to all, until the next one."""
+
+    text: Annotated[str, msgspec.Meta(max_length=200)]
+    """"": there is none any more."""
+
+
 class TakenOver(Fact, frozen=True, kw_only=True, tag="taken-over"):
     """The office goes on at another machine, from a copy of the facts before this one.
 
@@ -228,12 +294,30 @@ class TakenOver(Fact, frozen=True, kw_only=True, tag="taken-over"):
     """
 
 
-OfDecision = Withdrawn | Disqualified | FilesChanged | NoShow | Replaced | Replay | Voided
+OfDecision = (
+    Entered
+    | Withdrawn
+    | Disqualified
+    | Substituted
+    | FilesChanged
+    | Drawn
+    | Undrawn
+    | NoShow
+    | Replaced
+    | Replay
+    | Voided
+)
 """What people decide, with a reason; no record can prove it."""
-OfTeam = Entered | Closed | Withdrawn | Disqualified | FilesChanged
+OfTeam = Entered | Closed | Withdrawn | Disqualified | Substituted | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
-OfStage = Planned | Drawn | RoundDrawn
-AnyFact = OfTeam | OfMatch | OfStage | TakenOver
+OfStage = Planned | Drawn | Undrawn | RoundDrawn
+OfDay = Paused | Resumed | Shifted | Announced
+AnyFact = OfTeam | OfMatch | OfStage | OfDay | TakenOver
+
+
+def stage_of(pairing: str) -> str:
+    """Return the name of the stage of a pairing."""
+    return pairing.partition(":")[0]
 
 
 _Kind = TypeVar("_Kind", bound=Fact)
@@ -250,7 +334,10 @@ def generation(facts: Iterable[AnyFact]) -> int:
 
 
 def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:
-    """Return what people decided; other files are a decision once entries are closed.
+    """Return what people decided, among what else happened.
+
+    Entries and other files are decisions once entries are closed, and draws if they do not follow
+    from a ranking.
 
     Args:
         facts: in their order.
@@ -259,8 +346,15 @@ def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:
     closed = False
     for fact in facts:
         closed = closed or isinstance(fact, Closed)
-        if isinstance(fact, OfDecision) and (closed or not isinstance(fact, FilesChanged)):
-            found.append(fact)
+        match fact:
+            case Entered() | FilesChanged():
+                decided = closed
+            case Drawn():
+                decided = bool(fact.how)
+            case _:
+                decided = isinstance(fact, OfDecision)
+        if decided:
+            found.append(fact)  # type: ignore[arg-type]
     return tuple(found)
 
 

@@ -7,18 +7,20 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from lacoc_server.contest.league.contest import Contest, StageView, Unused, compute
+from lacoc_server.contest.league.contest import Contest, Day, StageView, Unused, compute
 from lacoc_server.contest.league.decided import Decided, decided
 from lacoc_server.contest.league.draws import Team
-from lacoc_server.contest.league.facts import AnyFact, Called, Planned
+from lacoc_server.contest.league.facts import Announced, AnyFact, Called, Planned, stage_of
 from lacoc_server.contest.league.fixture import match_fixture
 from lacoc_server.contest.league.formats.format import Format
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.rating import Rated, Rating, ratings
+from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.league.titles import titles
 from lacoc_shared.words import Phrase
 
-VERSION = 4
+VERSION = 5
 """Version of the layout of a sheet."""
 EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
 _UNKNOWN = ("", 0)
@@ -35,6 +37,20 @@ class Coming(msgspec.Struct, frozen=True, kw_only=True):
     """Where it will probably be played; "": nobody knows, as in a published sheet."""
     at_ms: int = 0
     """About when it will begin, in milliseconds since 1970, UTC; 0: nobody knows."""
+
+
+class Later(msgspec.Struct, frozen=True, kw_only=True):
+    """A match that can't be played yet: its teams or its draw are not known, or it has to wait."""
+
+    pairing: str
+    stage: str
+    fixture: Phrase
+    """What it is: "Semi-final 1"."""
+    who: tuple[Phrase, Phrase]
+    """Who plays, as far as that is known: "winner of Quarter-final 2"."""
+    court: str = ""
+    at_ms: int = 0
+    """Where and about when it will begin, as in `Coming`."""
 
 
 class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
@@ -56,6 +72,12 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """The games that are on a court now."""
     coming: tuple[Coming, ...]
     """The games that can be played next, in their order."""
+    later: tuple[Later, ...]
+    """All other matches that are still to come, in their order."""
+    day: Day
+    """Whether games are called now."""
+    announced: Announced | None
+    """The organiser's line to all; None: there is none."""
     decided: tuple[Decided, ...]
     """What people decided, the newest first."""
     ratings: tuple[Rating, ...]
@@ -93,6 +115,8 @@ def sheet(
     """
     games = [game for view in contest.stages for match in view.matches for game in match.games]
     rated = ratings(Rated(*game.teams, game.winner) for game in games)
+    ready = playable(contest)
+    at_once = {match.pairing.id for match in ready}
     return ContestSheet(
         name=name,
         teams=contest.teams,
@@ -113,9 +137,23 @@ def sheet(
                 court=expected.get(match.pairing.id, _UNKNOWN)[0],
                 at_ms=expected.get(match.pairing.id, _UNKNOWN)[1],
             )
-            for match in playable(contest)
+            for match in ready
             if match.next_seats is not None
         ),
+        later=tuple(
+            Later(
+                pairing=one.pairing.id,
+                stage=stage_of(one.pairing.id),
+                fixture=one.fixture,
+                who=one.who,
+                court=expected.get(one.pairing.id, _UNKNOWN)[0],
+                at_ms=expected.get(one.pairing.id, _UNKNOWN)[1],
+            )
+            for one in foreseen(contest, FORMATS)
+            if one.pairing.id not in at_once
+        ),
+        day=contest.day,
+        announced=contest.announced,
         decided=decided(contest)[::-1],
         ratings=rated.teams,
         side_elo=rated.side_elo,

@@ -261,7 +261,7 @@ class Office:
 
 def _draws(contest: Contest) -> list[AnyFact]:
     """Return the next draw, if the office makes it by itself."""
-    draw = None if waits_for_organiser(contest) else due(contest, FORMATS)
+    draw = None if waits_for_organiser(contest, FORMATS) else due(contest, FORMATS)
     return [] if draw is None else [draw]
 
 

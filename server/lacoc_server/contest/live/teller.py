@@ -7,7 +7,9 @@ from secrets import token_bytes
 from lacoc_server.contest.kept.plans import game
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Planned
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.whereabouts import (
     Courts,
     Pace,
@@ -92,11 +94,13 @@ class Teller:
             self._contest, self._calls, self._looked_ms = contest, calls, now_ms
             usual_ms = game_ms(facts, self._guess_ms(contest))
             self.pace = Pace(now_ms, usual_ms, self._least_rest_ms)
+            coming = foreseen(contest, FORMATS)
+            begins = dict(starts(contest, coming, seen, self.pace))
             self.expected = {
                 pairing: (start.court, full_minute(start.at_ms))
-                for pairing, start in starts(contest, seen, self.pace)
+                for pairing, start in begins.items()
             }
-            found = whereabouts(contest, Courts(seen, self._addresses), self.pace)
+            found = whereabouts(contest, Courts(seen, self._addresses), self.pace, begins)
             here = [(self._token_of(team), there) for team, there in found.items()]
             if self._open_matches is not None:
                 here += self._open_matches.whereabouts(seen, self._addresses)

@@ -170,6 +170,7 @@ def small_files(where: ContestFolder) -> dict[str, Path]:
         "contest": where.file,
         "secrets": where.secrets,
         "code": where.event_code,
+        "contacts": where.contacts,
         "stand-ins": where.stand_ins,
     }
 

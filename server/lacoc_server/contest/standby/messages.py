@@ -14,8 +14,9 @@ from lacoc_shared.words import Phrase
 Kind = Literal["entry", "application", "file"]
 """entry: files of a team, by their hash. application: an entry that waits, by its team. file: one
 of `FILES`, by its name."""
-FILES = ("contest", "secrets", "code", "stand-ins")
-"""The small files: contest file, all tokens, event code, list of courts that stand in."""
+FILES = ("contest", "secrets", "code", "contacts", "stand-ins")
+"""The small files: contest file, all tokens, event code, contacts of teams, list of courts that
+stand in."""
 
 
 class Ask(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="ask"):

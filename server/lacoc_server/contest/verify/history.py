@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.decided import decided
+from lacoc_server.contest.league.draws import by_lot
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
@@ -122,7 +123,7 @@ def _entries(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
         elif isinstance(fact, Drawn) and not closed:
             yield say("verify.never-closed")
             closed = True
-        elif isinstance(fact, Entered) and closed:
+        elif isinstance(fact, Entered) and closed and not fact.reason.strip():
             yield say("verify.entered-late", team=fact.team)
         elif isinstance(fact, FilesChanged) and closed and not fact.reason.strip():
             yield say("verify.no-reason", team=fact.team)
@@ -133,13 +134,22 @@ def _draws(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
     for at, fact in enumerate(facts):
         if isinstance(fact, Drawn | RoundDrawn):
             again = due(compute(facts[:at], FORMATS), FORMATS)
-            if again is None or _content(again) != _content(fact):
+            if again is None or not _is_same(again, fact):
                 yield say("verify.other-draw", fact=fact.id, stage=fact.stage)
 
 
-def _content(draw: Closed | Drawn | RoundDrawn) -> tuple[object, ...]:
-    if isinstance(draw, Drawn):
-        return draw.stage, draw.entries
-    if isinstance(draw, RoundDrawn):
-        return draw.stage, draw.round, draw.pairs
-    return ()
+def _is_same(due: Closed | Drawn | RoundDrawn, drawn: Drawn | RoundDrawn) -> bool:
+    """Return whether a draw is the one that was due, or has the same teams in another order.
+
+    Another order is that of a lot, or the organiser's, who gave a reason.
+    """
+    if isinstance(due, RoundDrawn) and isinstance(drawn, RoundDrawn):
+        return (due.stage, due.round, due.pairs) == (drawn.stage, drawn.round, drawn.pairs)
+    if not (isinstance(due, Drawn) and isinstance(drawn, Drawn) and due.stage == drawn.stage):
+        return False
+    match drawn.how:
+        case "lot":
+            return bool(drawn.lot.strip()) and drawn.entries == by_lot(due.entries, drawn.lot)
+        case "hand":
+            return bool(drawn.reason.strip()) and sorted(due.entries) == sorted(drawn.entries)
+    return due.entries == drawn.entries

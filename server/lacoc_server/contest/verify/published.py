@@ -30,6 +30,8 @@ from lacoc_shared.words import Phrase, say
 
 _MOST_BYTES = 1 << 25
 """Largest file of facts, sheet or table that is read. 10,000 games have 4 MB."""
+_TIES_SINCE = 4
+"""Version of the sheet since which teams that tie share a rank."""
 
 
 def read(path: Path) -> tuple[AnyFact, ...]:
@@ -74,13 +76,18 @@ def _check_facts(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
 
 def other_sheet(folder: Path) -> Phrase | None:
     """Return why the sheet can't be compared: another version wrote its layout; None: it can be."""
-    try:
-        found = msgspec.json.decode(_sheet(folder), type=_Layout).version
-    except (UserError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
-        return None  # it is told as one that can't be read
+    found = _version(folder)
     if found == sheets.VERSION:
         return None
     return say("unchecked.sheet", file=SHEET, there=found, here=sheets.VERSION)
+
+
+def _version(folder: Path) -> int:
+    """Return the version of the sheet's layout; ours if it can't be read: that is told later."""
+    try:
+        return msgspec.json.decode(_sheet(folder), type=_Layout).version
+    except (UserError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+        return sheets.VERSION
 
 
 class _Layout(msgspec.Struct):
@@ -106,7 +113,7 @@ def _check_tables(folder: Path, contest: Contest) -> Iterator[Phrase]:
 
 def _as_written(folder: Path, contest: Contest) -> Contest:
     """Return a contest with the ranks that the version of the folder gave: before 4 none shared."""
-    if other_sheet(folder) is None:
+    if _version(folder) >= _TIES_SINCE:
         return contest
     return replace(
         contest,

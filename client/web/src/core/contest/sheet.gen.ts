@@ -2,12 +2,13 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 4;
+export const VERSION = 5;
 
 export interface Team {
   name: string;
   files: string;
   bot: string;
+  club: string;
   withdrawn: boolean;
   disqualified: boolean;
 }
@@ -30,12 +31,17 @@ export interface Planned {
   id: string;
   number: number;
   at_ms?: number;
+  by?: string;
   stage: string;
   format: string;
   settings?: Settings;
   after?: string;
   title?: Record<"en" | "ja", string>;
   draw?: "at-once" | "organiser";
+  apart?: boolean;
+  break_s?: number;
+  final_court?: string;
+  final_break_s?: number;
   teams?: number;
   arena?: string;
   arena_settings?: Record<string, unknown>;
@@ -47,6 +53,7 @@ export interface Called {
   id: string;
   number: number;
   at_ms?: number;
+  by?: string;
   pairing: string;
   game: number;
   teams: [string, string];
@@ -151,6 +158,7 @@ export interface Decided {
   what: Phrase;
   pairing: string;
   reason: string;
+  by: string;
 }
 
 export interface Rating {
@@ -178,6 +186,9 @@ export interface ContestSheet {
   planned: Planned[];
   running: Called[];
   coming: Coming[];
+  later: unknown[];
+  day: unknown;
+  announced: unknown | null;
   decided: Decided[];
   ratings: Rating[];
   side_elo: number;

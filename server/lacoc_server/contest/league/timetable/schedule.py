@@ -4,10 +4,12 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
-from lacoc_server.contest.league.contest import Contest, next_round
-from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new
-from lacoc_server.contest.league.formats.format import Format
+from lacoc_server.contest.league.contest import Contest, StageView, next_round
+from lacoc_server.contest.league.draws import apart
+from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new, stage_of
+from lacoc_server.contest.league.formats.format import Format, Stage
 from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import Entry
 
 
 class Assignment(msgspec.Struct, frozen=True, kw_only=True):
@@ -24,14 +26,17 @@ def playable(contest: Contest) -> list[Match]:
     """Return the matches whose next game can be played, in the order in which to play them.
 
     A match that has begun goes on before others begin. Earlier stages and rounds come before later
-    ones. A match that was moved before another match comes directly before it.
+    ones. A match that was moved before another match comes directly before it. A final waits for
+    all other matches of its stage: the match for third place is played before it.
     """
     running = {call.pairing for call in contest.running}
     matches = [
         match
         for view in contest.stages
         for match in view.matches
-        if match.state == "open" and match.pairing.id not in running
+        if match.state == "open"
+        and match.pairing.id not in running
+        and not (is_final(match) and waits_for_others(view, match))
     ]
     matches.sort(key=lambda match: not match.games)
     there = {match.pairing.id: match for match in matches}
@@ -41,6 +46,45 @@ def playable(contest: Contest) -> list[Match]:
             matches.remove(match)
             matches.insert(matches.index(before), match)
     return matches
+
+
+def is_final(match: Match) -> bool:
+    """Return whether a match decides who wins its stage."""
+    return match.pairing.winner_place == 1
+
+
+def waits_for_others(view: StageView, final: Match) -> bool:
+    """Return whether a final has to wait for other matches of its stage."""
+    return not all(match.decided or is_final(match) for match in view.matches)
+
+
+def court_of(contest: Contest, match: Match) -> str:
+    """Return the only court on which a match is played; "": any court."""
+    moved = next((move.court for move in contest.moves if move.pairing == match.pairing.id), "")
+    return moved or (_plan(contest, match).final_court if is_final(match) else "")
+
+
+def not_before_ms(contest: Contest, match: Match) -> int:
+    """Return the earliest time of a match, in milliseconds since 1970, UTC; 0: any time.
+
+    A match that has begun goes on without a break of its stage. The rest of teams is not counted.
+    """
+    name, plan = stage_of(match.pairing.id), _plan(contest, match)
+    before = [view.name for view in contest.stages]
+    ended = contest.stages_ended_ms
+    earliest = [contest.day.until_ms]
+    earliest += [move.not_before_ms for move in contest.moves if move.pairing == match.pairing.id]
+    before = before[: before.index(name)] if name in before else before
+    if name not in ended and (ends := [ended.get(one, 0) for one in before]):
+        earliest.append(max(ends) + round(1000 * plan.break_s))
+    if is_final(match) and not match.games and plan.final_break_s:
+        earliest.append(ended.get(name, 0) + round(1000 * plan.final_break_s))
+    return max(earliest)
+
+
+def _plan(contest: Contest, match: Match) -> Planned:
+    plans = [*(view.plan for view in contest.stages), *contest.planned]
+    return next(plan for plan in plans if plan.stage == stage_of(match.pairing.id))
 
 
 def assign(
@@ -76,8 +120,9 @@ def _assigned(
     least_rest_ms: int,
     without: Collection[tuple[str, int]],
 ) -> Iterator[Assignment]:
+    if contest.day.is_held(now_ms):
+        return
     busy = {team for call in contest.running for team in call.teams}
-    moves = {move.pairing: move for move in contest.moves}
     for match in playable(contest):
         if not free:
             return
@@ -86,9 +131,8 @@ def _assigned(
             continue
         if rested_ms(contest, match, least_rest_ms, now_ms) > now_ms:
             continue
-        move = moves.get(match.pairing.id)
-        court = move.court if move is not None and move.court else free[0]
-        if court not in free or (move is not None and move.not_before_ms > now_ms):
+        court = court_of(contest, match) or free[0]
+        if court not in free or not_before_ms(contest, match) > now_ms:
             continue
         busy |= {*teams}
         free.remove(court)
@@ -124,24 +168,42 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | Rou
         if view.may_draw:
             pairs = next_round(contest, view.name, formats)
             return new(RoundDrawn, stage=view.name, round=len(view.stage.drawn) + 1, pairs=pairs)
-    draw = _next_stage(contest)
+    draw = _next_stage(contest, formats)
     return draw if draw is None or contest.closed else new(Closed)
 
 
-def waits_for_organiser(contest: Contest) -> Drawn | None:
+def waits_for_organiser(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None:
     """Return the draw that only the organiser can make now; None: there is none."""
     if not (contest.closed and contest.planned and contest.planned[0].draw == "organiser"):
         return None
-    return _next_stage(contest)
+    return _next_stage(contest, formats)
 
 
-def _next_stage(contest: Contest) -> Drawn | None:
+def _next_stage(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None:
     """Return the draw of the next stage; None: there is none, or its teams are not known yet."""
     if not contest.planned:
         return None
     plan = contest.planned[0]
     teams = _teams(contest, plan)
-    return None if teams is None else new(Drawn, stage=plan.stage, entries=teams)
+    if teams is None:
+        return None
+    if plan.apart and plan.format in formats:
+        teams = kept_apart(contest, plan, teams, formats[plan.format])
+    return new(Drawn, stage=plan.stage, entries=teams)
+
+
+def kept_apart(
+    contest: Contest, plan: Planned, teams: tuple[str, ...], how: Format
+) -> tuple[str, ...]:
+    """Return the teams of a stage in an order in which those of one club meet late (`apart`)."""
+
+    def met(order: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+        for pairing in how.pairings(Stage(name="", settings=plan.settings, entries=order)):
+            first, second = pairing.sources
+            if isinstance(first, Entry) and isinstance(second, Entry):
+                yield first.team, second.team
+
+    return apart(teams, {team.name: team.club for team in contest.teams}, met)
 
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:

@@ -12,6 +12,7 @@ from lacoc_server.contest.league.facts import (
     RoundDrawn,
 )
 from lacoc_server.contest.league.fixture import named
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import Seen
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
 from lacoc_server.contest.league.timetable.whereabouts import Known
@@ -52,7 +53,7 @@ class Ticker:
             if (pairing, game) not in self._held:
                 yield say("news.refused", match=named(contest, pairing, game), why=why)
         self._held = {*known.held}
-        waiting = waits_for_organiser(contest)
+        waiting = waits_for_organiser(contest, FORMATS)
         to_draw = "" if waiting is None else waiting.stage
         if to_draw and to_draw != self._to_draw:
             yield say("news.to-draw", stage=title(contest, to_draw))

@@ -7,14 +7,22 @@ It assumes that every game takes as long as games took so far, so it is right on
 from bisect import bisect_left, insort
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
+from string import ascii_lowercase
 from typing import NamedTuple
 
 from lacoc_server.contest.league.contest import Contest, StageView
-from lacoc_server.contest.league.facts import AnyFact, Called, Played
+from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played, stage_of
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
 from lacoc_server.contest.league.timetable.calling import Seen, present
-from lacoc_server.contest.league.timetable.schedule import playable
+from lacoc_server.contest.league.timetable.foreseen import Foreseen
+from lacoc_server.contest.league.timetable.schedule import (
+    court_of,
+    is_final,
+    not_before_ms,
+    playable,
+)
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import Phrase, say
@@ -91,10 +99,18 @@ def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
     return round(median(lengths[-_COUNTED:])) if lengths else otherwise_ms
 
 
-def whereabouts(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Whereabouts]:
-    """Say of each team where it plays, or what it waits for."""
+def whereabouts(
+    contest: Contest, courts: Courts, pace: Pace, begins: Mapping[str, Start]
+) -> dict[str, Whereabouts]:
+    """Say of each team where it plays, or what it waits for.
+
+    Args:
+        contest: the contest.
+        courts: its courts.
+        pace: how fast it goes.
+        begins: when matches begin, by pairing (`starts`).
+    """
     calls = {team: call for call in contest.running for team in call.teams}
-    begins = dict(starts(contest, courts.seen, pace))
     coming = _coming(contest)
     found: dict[str, Whereabouts] = {}
     for team in contest.teams:
@@ -160,10 +176,14 @@ def _waits(
         said = say("team.awaits-opponent", fixture=about)
         return Whereabouts(team=team, state="waits", said=said, opponent=opponent, fixture=about)
     about_s = _rounded_s(start.at_ms - pace.now_ms)
+    if opponent:
+        said = say("team.next", court=start.court, when=_when(about_s), opponent=opponent)
+    else:
+        said = say("team.later", fixture=about, court=start.court, when=_when(about_s))
     return Whereabouts(
         team=team,
         state="waits",
-        said=say("team.next", court=start.court, when=_when(about_s), opponent=opponent),
+        said=said,
         court=start.court,
         opponent=opponent,
         fixture=about,
@@ -215,41 +235,85 @@ def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
     return coming
 
 
-def starts(contest: Contest, seen: Mapping[str, Seen], pace: Pace) -> Iterator[tuple[str, Start]]:
-    """Estimate when and where each open match begins; yield the id of its pairing and its start.
+def starts(
+    contest: Contest, coming: Sequence[Foreseen], seen: Mapping[str, Seen], pace: Pace
+) -> Iterator[tuple[str, Start]]:
+    """Estimate when and where each match to come begins; yield its pairing's id and its start.
 
-    A court that has been silent for `LOST_MS` gets no match.
+    The matches are given to the courts in their order. A court that has been silent for `LOST_MS`
+    gets none. A pause without an end is taken as over now.
+
+    Args:
+        contest: the contest.
+        coming: its matches to come (`foreseen`).
+        seen: the courts, in the order in which they are filled.
+        pace: how fast it goes.
     """
     now_ms, game, rest_ms = pace
-    matches = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
+    plans = {view.name: view.plan for view in contest.stages}
+    plans |= {plan.stage: plan for plan in contest.planned}
     court_ms = dict.fromkeys(present(seen, now_ms), now_ms)
     # What happened in the future did not: the machine's clock was set back since.
     team_ms = {t: end + rest_ms for t, (_, end) in contest.ended_ms.items() if end <= now_ms}
+    opens = dict.fromkeys((view.name for view in contest.stages), 0)
+    """When each stage begins, at the earliest."""
+    ends: dict[str, int] = {}
+    """When each match on a court, and each one yielded, probably ends."""
     for call in contest.running:
-        view, match = matches[call.pairing]
-        end_ms = max(now_ms, min(call.at_ms, now_ms) + game) + (_games(view, match) - 1) * game
+        view, match = _match(contest, call.pairing)
+        end_ms = max(now_ms, min(call.at_ms, now_ms) + game)
+        end_ms += (_games(view.plan, match) - 1) * game
+        ends[call.pairing] = end_ms
         if call.court in court_ms:
             court_ms[call.court] = end_ms
         team_ms |= dict.fromkeys(call.teams, end_ms + rest_ms)
     begun: list[int] = []
-    moves = {move.pairing: move for move in contest.moves}
-    for match in playable(contest):
-        if not court_ms or match.next_seats is None:
+    for one in coming:
+        if not court_ms:
             return
-        last = {contest.ended_ms.get(team, ("", 0))[0] for team in match.next_seats}
-        goes_on = last == {match.pairing.id}
-        rested = 0 if goes_on else max(team_ms.get(team, 0) for team in match.next_seats)
-        move = moves.get(match.pairing.id)
-        court = min(court_ms, key=court_ms.__getitem__)
-        if move is not None and move.court in court_ms:
-            court = move.court
-        at_ms = max(court_ms[court], rested, 0 if move is None else move.not_before_ms)
-        yield match.pairing.id, Start(court, at_ms, bisect_left(begun, at_ms))
-        count = _games(matches[match.pairing.id][0], match)
+        match, name = one.match, stage_of(one.pairing.id)
+        teams = [team for team in match.teams if team]
+        last = {contest.ended_ms.get(team, ("", 0))[0] for team in teams}
+        rested = [] if last == {one.pairing.id} else [team_ms.get(team, 0) for team in teams]
+        plan = plans[name]
+        if name not in opens:  # a stage that is not drawn comes after all before it
+            opens[name] = max(ends.values(), default=now_ms) + round(1000 * plan.break_s)
+        before = [ends[pairing] for pairing in _needed(one, ends)]
+        pause_ms = max(rest_ms, round(1000 * plan.final_break_s) if is_final(match) else 0)
+        waited = max([opens[name], *(end + pause_ms for end in before)])
+        court = court_of(contest, match)
+        if court not in court_ms:
+            court = min(court_ms, key=court_ms.__getitem__)
+        appointed_ms = not_before_ms(contest, match)
+        at_ms = max(court_ms[court], waited, appointed_ms, *rested)
+        yield one.pairing.id, Start(court, at_ms, bisect_left(begun, at_ms))
+        count = _games(plan, match)
         for number in range(count):
             insort(begun, at_ms + number * game)
-        court_ms[court] = at_ms + count * game
-        team_ms |= dict.fromkeys(match.next_seats, court_ms[court] + rest_ms)
+        ends[one.pairing.id] = court_ms[court] = at_ms + count * game
+        team_ms |= dict.fromkeys(teams, court_ms[court] + rest_ms)
+
+
+def _needed(one: Foreseen, ends: Mapping[str, int]) -> Iterator[str]:
+    """Yield the matches of its stage, to come or on a court, that must end before a match begins.
+
+    Of rounds that are drawn one by one, each waits for all earlier ones.
+    """
+    pairing = one.pairing
+    sources = {s.pairing for s in pairing.sources if isinstance(s, WinnerOf | LoserOf)}
+    waits_for_round = one.match.state == "waits" and not sources
+    for earlier in ends:
+        if stage_of(earlier) == stage_of(pairing.id) and (
+            earlier in sources
+            or is_final(one.match)
+            or (waits_for_round and _round(earlier) < pairing.round)
+        ):
+            yield earlier
+
+
+def _round(pairing: str) -> int:
+    """Return the round of a pairing, from its id."""
+    return int(pairing.rpartition(".")[0].rpartition(":")[2].lstrip(ascii_lowercase))
 
 
 def full_minute(at_ms: int) -> int:
@@ -257,10 +321,10 @@ def full_minute(at_ms: int) -> int:
     return -(-at_ms // _MINUTE_MS) * _MINUTE_MS
 
 
-def _games(view: StageView, match: Match) -> int:
+def _games(plan: Planned, match: Match) -> int:
     """Return how many games a match takes from now on, if whoever leads wins the rest."""
     wins = [sum(game.winner == team for game in match.games) for team in match.teams]
-    return max(1, view.stage.settings.games // 2 + 1 - max(wins))
+    return max(1, plan.settings.games // 2 + 1 - max(wins))
 
 
 def _may_come(contest: Contest, team: str) -> bool:

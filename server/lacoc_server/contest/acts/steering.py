@@ -1,0 +1,185 @@
+"""Steers the day: moves matches, pauses, shifts, takes draws back, lets substitutes in; tells all.
+
+Each function returns the facts to append, so that it can first be shown what they would change.
+"""
+
+from collections.abc import Collection
+
+from lacoc_server.contest.acts.deciding import match_of
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import (
+    Announced,
+    AnyFact,
+    Moved,
+    Paused,
+    Resumed,
+    Shifted,
+    Substituted,
+    Undrawn,
+    new,
+    stage_of,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.timetable.foreseen import foreseen
+from lacoc_server.contest.league.titles import title
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
+
+MINUTE_MS = 60_000
+
+
+def moving(
+    contest: Contest,
+    courts: Collection[str],
+    pairing: str,
+    court: str = "",
+    before: str = "",
+    not_before_ms: int = 0,
+) -> Moved:
+    """Move a match to another court, before another match, or to a later time.
+
+    Args:
+        contest: the contest.
+        courts: names of its courts.
+        pairing: the match; its teams need not be known yet.
+        court: the only court for it; "": any court.
+        before: the match before which it comes; "": the order of the schedule.
+        not_before_ms: when it is called at the earliest, in milliseconds since 1970, UTC; 0: at any
+            time.
+
+    Raises:
+        UserError: if there is no such match or court, the match is decided, or it would have to be
+            played before itself.
+    """
+    coming = {one.pairing.id for one in foreseen(contest, FORMATS)}
+    for one in filter(None, (pairing, before)):
+        if one not in coming and match_of(contest, one).decided and one == pairing:
+            raise UserError(say("desk.match-over", pairing=pairing))
+    if before == pairing:
+        raise UserError(say("desk.before-itself"))
+    if court and court not in courts:
+        raise UserError(say("desk.no-court", court=court, courts=[*courts]))
+    return new(Moved, pairing=pairing, court=court, before=before, not_before_ms=not_before_ms)
+
+
+def pausing(contest: Contest, until_ms: int, reason: str, now_ms: int) -> Paused:
+    """Call no more games.
+
+    Args:
+        contest: the contest.
+        until_ms: when it goes on by itself, in milliseconds since 1970, UTC; 0: when somebody says
+            so.
+        reason: why; everybody can read it.
+        now_ms: the time.
+
+    Raises:
+        UserError: if it is paused already, or would go on before now.
+    """
+    if contest.day.paused and not until_ms:
+        raise UserError(say("day.paused-already"))
+    if until_ms and until_ms <= now_ms:
+        raise UserError(say("day.in-the-past"))
+    return new(Paused, until_ms=until_ms, reason=reason)
+
+
+def resuming(contest: Contest, now_ms: int) -> Resumed:
+    """Let the contest go on.
+
+    Raises:
+        UserError: if nothing holds it.
+    """
+    if not contest.day.is_held(now_ms):
+        raise UserError(say("day.not-paused"))
+    return new(Resumed)
+
+
+def shifting(by_ms: int, reason: str) -> Shifted:
+    """Make all that is to come later by so much."""
+    return new(Shifted, by_ms=by_ms, reason=reason)
+
+
+def announcing(text: str) -> Announced:
+    """Show a line on all pages; "" takes it away."""
+    return new(Announced, text=" ".join(text.split()))
+
+
+def substituting(contest: Contest, team: str, substitute: str, reason: str) -> Substituted:
+    """Let a team take the place of another one that has not played.
+
+    Raises:
+        UserError: if a team is not in the contest, the substitute has a place of its own in each
+            stage, there is no place to give up, or the reason is missing.
+    """
+    teams = {one.name: one for one in contest.teams}
+    for name in (team, substitute):
+        if name not in teams:
+            raise UserError(say("contest.not-in", team=name, teams=[*teams] or None))
+    if teams[substitute].gone or substitute == team:
+        raise UserError(say("league.no-substitute", team=substitute))
+    if not [stage for stage in places(contest, team) if substitute not in stage]:
+        raise UserError(say("day.no-place", team=team, substitute=substitute))
+    if not reason.strip():
+        raise UserError(say("decide.needs-reason"))
+    return new(Substituted, team=team, substitute=substitute, reason=reason)
+
+
+def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
+    """Return the teams of each stage that is not over, in which a team has a place and no game."""
+    return [
+        view.stage.entries
+        for view in contest.stages
+        if team in view.stage.entries
+        and not view.over
+        and not any(team in game.teams for match in view.matches for game in match.games)
+    ]
+
+
+def undrawable(contest: Contest) -> str:
+    """Return the newest stage, if nobody has played in it; "" if its draw stays."""
+    newest = contest.stages[-1].name if contest.stages else ""
+    busy = any(stage_of(call.pairing) == newest for call in contest.running)
+    return "" if newest in contest.stages_ended_ms or busy else newest
+
+
+def undrawing(contest: Contest, stage: str, reason: str) -> Undrawn:
+    """Take the draw of a stage back.
+
+    Raises:
+        UserError: if it is not drawn, somebody has played in it, another stage was drawn since, a
+            court has a game of it, or the reason is missing.
+    """
+    drawn = [view.name for view in contest.stages]
+    if stage not in drawn:
+        raise UserError(say("league.not-drawn", stage=stage))
+    if stage != undrawable(contest):
+        raise UserError(say("day.draw-stays", stage=title(contest, stage)))
+    if not reason.strip():
+        raise UserError(say("decide.needs-reason"))
+    return new(Undrawn, stage=stage, reason=reason)
+
+
+def done(contest: Contest, fact: AnyFact) -> Phrase:
+    """Say what was done with a fact of this module.
+
+    Args:
+        contest: the contest as it was before.
+        fact: the fact.
+    """
+    match fact:
+        case Moved():
+            known = {one.pairing.id: one.fixture for one in foreseen(contest, FORMATS)}
+            what = known.get(fact.pairing) or say("fixture.named", name=fact.pairing)
+            return say("desk.moved", match=what, court=fact.court or None)
+        case Paused():
+            return say("day.paused")
+        case Resumed():
+            return say("day.goes-on")
+        case Shifted():
+            return say("day.shifted", minutes=round(fact.by_ms / MINUTE_MS))
+        case Announced():
+            return say("day.announced") if fact.text else say("day.announced-nothing")
+        case Substituted():
+            return say("decided.substituted", team=fact.team, substitute=fact.substitute)
+        case Undrawn():
+            return say("decided.undrawn", stage=title(contest, fact.stage))
+    raise TypeError(type(fact).__name__)

@@ -1,0 +1,287 @@
+"""Tests of a day that is steered: what is to come, pauses, shifts, breaks, draws, substitutes."""
+
+from collections import Counter
+from random import Random
+
+import pytest
+from chance_event import Event
+from cup import Cup
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_server.contest.league.draws import apart, by_lot
+from lacoc_server.contest.league.facts import (
+    Announced,
+    Closed,
+    Drawn,
+    Entered,
+    Moved,
+    Paused,
+    Planned,
+    Resumed,
+    Settings,
+    Shifted,
+    Substituted,
+    Undrawn,
+)
+from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.foreseen import foreseen
+from lacoc_server.contest.league.timetable.schedule import assign, due
+from lacoc_server.contest.league.timetable.whereabouts import Pace, starts
+from lacoc_shared.words import render
+
+MINUTE_MS = 60_000
+COURTS = ["north", "south"]
+
+
+def called(cup: Event, courts: list[str] = COURTS) -> list[tuple[str, str]]:
+    """Return the games that are called now: the pairing and the court of each."""
+    return [(one.pairing, one.court) for one in assign(cup.contest, courts, cup.now_ms)]
+
+
+def play_open(cup: Cup, *pairings: str) -> None:
+    """Let the left team win matches that are open, in their order."""
+    for pairing in pairings:
+        (match,) = (
+            one for view in cup.contest.stages for one in view.matches if one.pairing.id == pairing
+        )
+        assert match.next_seats is not None
+        cup.won(pairing, match.next_seats)
+
+
+@pytest.mark.parametrize(
+    ("how", "settings"),
+    [
+        ("single-knockout", {"third_place": True}),
+        ("double-knockout", {"reset": False}),
+        ("round-robin", {"groups": 2}),
+        ("swiss", {"rounds": 3}),
+    ],
+)
+@pytest.mark.parametrize("teams", [4, 5, 7, 8, 11])
+def test_what_is_played_was_foreseen(how: str, settings: dict[str, object], teams: int) -> None:
+    """Before a stage is drawn, the timetable has exactly the matches that it will have."""
+    event = Event(teams, 2, Random(1))
+    event.add(Planned, stage="cup", format=how, settings=Settings(**settings))
+    early = foreseen(event.contest, FORMATS)
+    assert all(one.match.teams == (None, None) for one in early)
+    assert all(render(who) for one in early for who in one.who)
+    event.add(Drawn, stage="cup", entries=tuple(event.names))
+    for _ in event.play("cup"):
+        pass
+    (view,) = event.contest.stages
+    played = [match.pairing.id for match in view.matches if match.how not in ("bye", "")]
+    assert sorted(one.pairing.id for one in early) == sorted(played)
+    assert foreseen(event.contest, FORMATS) == ()
+
+
+def test_a_match_to_come_says_who_it_waits_for() -> None:
+    """A bracket that is not drawn has seeds, then winners and losers of its matches, by name."""
+    event = Event(6, 2, Random(1))
+    event.add(Planned, stage="cup", format="single-knockout", settings=Settings(third_place=True))
+    told = {
+        render(one.fixture): tuple(map(render, one.who)) for one in foreseen(event.contest, FORMATS)
+    }
+    assert told == {
+        "Quarter-final 2": ("seed 4", "seed 5"),
+        "Quarter-final 4": ("seed 3", "seed 6"),
+        "Semi-final 1": ("seed 1", "winner of Quarter-final 2"),
+        "Semi-final 2": ("seed 2", "winner of Quarter-final 4"),
+        "Match for third place": ("loser of Semi-final 1", "loser of Semi-final 2"),
+        "Final": ("winner of Semi-final 1", "winner of Semi-final 2"),
+    }
+
+
+def test_the_final_comes_last() -> None:
+    """With two free courts, the match for third place is played first, then the final."""
+    cup = Cup("single-knockout", third_place=True)
+    play_open(cup, "cup:w1.1", "cup:w1.2")
+    assert called(cup) == [("cup:p1.1", "north")]
+    play_open(cup, "cup:p1.1")
+    assert called(cup) == [("cup:w2.1", "north")]
+
+
+def test_a_break_a_court_and_a_later_stage() -> None:
+    """A stage begins after its break, and its final after another one, on its own court."""
+    event = Cup("round-robin", teams=4)
+    event.add(
+        Planned,
+        stage="finals",
+        format="single-knockout",
+        after="cup",
+        break_s=600.0,
+        final_court="south",
+        final_break_s=120.0,
+    )
+    coming = foreseen(event.contest, FORMATS)
+    seen = {court: Seen(event.now_ms) for court in COURTS}
+    early = dict(starts(event.contest, coming, seen, Pace(event.now_ms, MINUTE_MS)))
+    rounds = [start.at_ms for pairing, start in early.items() if pairing.startswith("cup:")]
+    semi, final = early["finals:w1.1"], early["finals:w2.1"]
+    assert semi.at_ms == max(rounds) + MINUTE_MS + 600_000
+    assert final.at_ms == semi.at_ms + MINUTE_MS + 120_000
+    assert final.court == "south"
+
+    for match in event.contest.stages[0].matches:
+        play_open(event, match.pairing.id)
+    draw = due(event.contest, FORMATS)
+    assert isinstance(draw, Closed)
+    event.append(draw)
+    draw = due(event.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    event.append(draw)
+    assert called(event) == []
+    event.now_ms += 599_999
+    assert called(event) == []
+    event.now_ms += 1
+    assert [pairing for pairing, _ in called(event)] == ["finals:w1.1", "finals:w1.2"]
+    play_open(event, "finals:w1.1", "finals:w1.2")
+    assert called(event) == []
+    event.now_ms += 120_000
+    assert called(event) == [("finals:w2.1", "south")]
+    assert called(event, ["north"]) == []
+
+
+def test_a_match_is_moved_before_its_stage_is_drawn() -> None:
+    """A move that comes early counts later; until then it is no fact that changes nothing."""
+    event = Event(4, 2, Random(1))
+    event.add(Planned, stage="cup", format="single-knockout")
+    event.add(Moved, pairing="cup:w1.2", court="south", not_before_ms=5_000)
+    assert event.contest.unused == ()
+    event.add(Drawn, stage="cup", entries=tuple(event.names))
+    assert called(event) == [("cup:w1.1", "north")]
+    event.now_ms = 5_000
+    assert called(event) == [("cup:w1.1", "north"), ("cup:w1.2", "south")]
+
+
+def test_a_pause_holds_all_games() -> None:
+    """Nothing is called in a pause; it ends when somebody says so, or at its time."""
+    cup = Cup()
+    assert len(called(cup)) == 2
+    cup.add(Paused, reason="a cable")
+    assert called(cup) == []
+    assert (cup.contest.day.paused, cup.contest.day.reason) == (True, "a cable")
+    cup.add(Resumed)
+    assert len(called(cup)) == 2
+    cup.add(Paused, until_ms=cup.now_ms + 10)
+    assert called(cup) == []
+    cup.now_ms += 10
+    assert len(called(cup)) == 2
+
+
+def test_all_that_is_to_come_is_shifted() -> None:
+    """After a shift nothing is called for so long, and appointed times are as much later."""
+    cup = Cup()
+    first, second = (match.pairing.id for match in cup.contest.stages[0].matches[:2])
+    cup.add(Moved, pairing=first, not_before_ms=cup.now_ms + MINUTE_MS)
+    cup.add(Moved, pairing=second, not_before_ms=cup.now_ms - MINUTE_MS)
+    cup.add(Shifted, by_ms=15 * MINUTE_MS, reason="a speech")
+    moved = {move.pairing: move.not_before_ms for move in cup.contest.moves}
+    assert moved == {first: cup.now_ms + 16 * MINUTE_MS, second: cup.now_ms - MINUTE_MS}
+    assert called(cup) == []
+    cup.now_ms += 15 * MINUTE_MS
+    assert first not in dict(called(cup))
+    assert second in dict(called(cup))
+
+
+def test_the_newest_line_is_shown() -> None:
+    """A line to all stands until another one, or none, takes its place."""
+    cup = Cup()
+    for text in ("Lunch", "Lunch is over"):
+        cup.add(Announced, text=text)
+        assert cup.contest.announced is not None
+        assert cup.contest.announced.text == text
+    cup.add(Announced, text="")
+    assert cup.contest.announced is None
+
+
+def test_a_substitute_takes_a_place_that_nobody_has_played_in() -> None:
+    """A substitute sits where its team would have sat; a team that has played keeps its place."""
+    cup = Cup("single-knockout")
+    cup.add(Entered, team="late", reason="a reserve", files="x")
+    play_open(cup, "cup:w1.1")  # t001 against t004
+    cup.add(Substituted, team="t002", substitute="late", reason="ill")
+    (view,) = cup.contest.stages
+    assert view.stage.entries == ("t001", "late", "t003", "t004")
+    assert view.matches[1].teams == ("late", "t003")
+    assert view.matches[1].state == "open"
+    assert [team.name for team in cup.contest.teams if team.gone] == ["t002"]
+    cup.add(Substituted, team="t001", substitute="t003", reason="no")
+    (view,) = cup.contest.stages
+    assert view.stage.entries == ("t001", "late", "t003", "t004")
+
+
+@pytest.mark.parametrize("substitute", ["t002", "nobody", "t001"])
+def test_who_can_be_no_substitute_is_none(substitute: str) -> None:
+    """A team that has left, is not there, or is the team itself takes no place."""
+    cup = Cup("single-knockout")
+    cup.add(Substituted, team="t002", substitute="t003", reason="ill")
+    fact = cup.add(Substituted, team="t001", substitute=substitute, reason="no")
+    assert [(one.fact, one.why.code) for one in cup.contest.unused] == [
+        (fact.id, "league.no-substitute")
+    ]
+
+
+def test_a_draw_is_taken_back_until_somebody_has_played() -> None:
+    """After that the stage waits to be drawn again, also with a late team; later it stays."""
+    cup = Cup("single-knockout")
+    cup.add(Undrawn, stage="cup", reason="a late team")
+    cup.add(Entered, team="late", reason="a late train", files="x")
+    assert cup.contest.stages == ()
+    cup.add(Closed)
+    draw = due(cup.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    assert draw.entries == (*cup.names, "late")
+    cup.append(draw)
+    play_open(cup, next(one.pairing.id for one in cup.contest.stages[0].matches if one.next_seats))
+    fact = cup.add(Undrawn, stage="cup", reason="no")
+    assert [(one.fact, one.why.code) for one in cup.contest.unused] == [
+        (fact.id, "league.played-already")
+    ]
+    assert len(cup.contest.stages) == 1
+
+
+def test_a_lot_gives_the_same_order_to_everybody() -> None:
+    """The order follows from the lot alone; another lot gives another order, each as often."""
+    teams = ["Ants", "Bees", "Crabs", "Dogs"]
+    assert by_lot(teams, "3 1 4") == by_lot(reversed(teams), " 3 1 4 ")
+    first = Counter(by_lot(teams, str(lot))[0] for lot in range(4000))
+    assert all(900 < number < 1100 for number in first.values())
+
+
+@given(
+    st.lists(st.sampled_from(["", "red", "blue"]), min_size=2, max_size=12),
+    st.integers(1, 4),
+)
+def test_teams_of_one_club_are_kept_apart(clubs: list[str], groups: int) -> None:
+    """Never do more of one club meet than before; nobody is lost, and no order changes for nothing."""
+    names = tuple(f"t{number}" for number in range(len(clubs)))
+    club_of = dict(zip(names, clubs, strict=True))
+
+    def met(order: tuple[str, ...]) -> list[tuple[str, str]]:
+        dealt = [order[at::groups] for at in range(groups)]
+        return [(one, two) for group in dealt for one in group for two in group if one < two]
+
+    def clash(order: tuple[str, ...]) -> int:
+        return sum(club_of[one] == club_of[two] != "" for one, two in met(order))
+
+    found = apart(names, club_of, met)
+    assert sorted(found) == sorted(names)
+    assert clash(found) <= clash(names)
+    if not clash(names):
+        assert found == names
+
+
+def test_the_best_of_two_schools_meet_late() -> None:
+    """In a bracket of two schools with two teams each, nobody meets the own school in round 1."""
+    event = Event(0, 2, Random(1))
+    for team, club in (("a1", "a"), ("b1", "b"), ("b2", "b"), ("a2", "a")):
+        event.add(Entered, team=team, club=club, files=team)
+    event.add(Planned, stage="cup", format="single-knockout", apart=True)
+    event.add(Closed)
+    draw = due(event.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    event.append(draw)
+    pairs = [match.teams for match in event.contest.stages[0].matches[:2]]
+    assert {tuple(sorted(team[0] for team in pair if team)) for pair in pairs} == {("a", "b")}
