@@ -34,7 +34,7 @@ RUNTIME_POOLS = (
 delay everybody's commands for ten seconds."""
 
 MAX_SESSIONS = 1100
-"""Most sessions of a court: 1,000 spectators, which it can serve (docs/reliability.md), and some
+"""Most sessions of a court: 1,000 spectators, which it can serve (docs/measured.md), and some
 for seats, referees and gateways. More pages need gateways; each gateway is one session."""
 
 _HEADERS_BYTES = 2048
