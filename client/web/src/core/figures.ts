@@ -42,7 +42,9 @@ export function decisive(events: readonly Event[], winner: number): Event | null
 
 function scored(events: readonly Event[]): Event[] {
   const gone = goneEvents(events);
-  return events.filter((event) => pointsOf(event) > 0 && event.seat >= 0 && !gone.has(event.number));
+  return events.filter(
+    (event) => pointsOf(event) > 0 && event.seat >= 0 && !gone.has(event.number),
+  );
 }
 
 function pointsOf({ data }: Event): number {
