@@ -18,6 +18,7 @@ from lacoc_server.contest.league.facts import (
     Moved,
     Paused,
     Planned,
+    Recalled,
     Resumed,
     Settings,
     Shifted,
@@ -240,6 +241,19 @@ def test_a_draw_is_taken_back_until_somebody_has_played() -> None:
         (fact.id, "league.played-already")
     ]
     assert len(cup.contest.stages) == 1
+
+
+def test_a_draw_stays_while_a_court_has_a_game_of_it() -> None:
+    """Also if both were decided in the same moment; when the game is taken back, it can go."""
+    cup = Cup("single-knockout")
+    match = cup.contest.stages[0].matches[0]
+    assert match.next_seats is not None
+    cup.call(match.pairing.id, "north", match.next_seats)
+    cup.add(Undrawn, stage="cup", reason="late")
+    assert [one.why.code for one in cup.contest.unused] == ["league.played-already"]
+    cup.add(Recalled, pairing=match.pairing.id, game=1)
+    cup.add(Undrawn, stage="cup", reason="late")
+    assert cup.contest.stages == ()
 
 
 def test_a_lot_gives_the_same_order_to_everybody() -> None:

@@ -227,3 +227,25 @@ def test_readers_on_windows_are_told_how() -> None:
         text = (FOLDER / name).read_text("utf-8")
         assert "PowerShell" in text
         assert ".venv\\Scripts\\lacoc demo" in text
+
+
+@pytest.mark.parametrize("language", words.LANGUAGES)
+def test_without_words_each_role_sees_where_to_begin(
+    language: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`lacoc` alone prints at most 12 lines, and only commands and pages that exist."""
+    monkeypatch.setenv("LACOC_LANGUAGE", language)
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit) as stop:
+        cli.main([])
+    words.use("en")
+    help_text.translate_typer()
+    lines = capsys.readouterr().out.splitlines()
+    assert stop.value.code == 0
+    assert len(lines) <= 12
+    named = [name for line in lines for name in re.findall(r"lacoc (\w+(?: \w+)?)", line)]
+    assert len(named) >= 9
+    for name in named:
+        first, _, second = name.partition(" ")
+        assert f"lacoc {first}" in COMMANDS
+        assert second in ("", "python") or f"lacoc {name}" in COMMANDS or not second.islower()

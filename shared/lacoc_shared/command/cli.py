@@ -191,6 +191,7 @@ def _print_version(wanted: bool) -> None:
 
 
 def _options(
+    context: typer.Context,
     version: Annotated[
         bool,
         typer.Option(
@@ -198,7 +199,16 @@ def _options(
         ),
     ] = False,
 ) -> None:
-    pass
+    if context.invoked_subcommand is None:
+        for role in (
+            say("start.contestant"),
+            say("start.referee"),
+            say("start.organiser"),
+            say("start.teacher"),
+            say("start.science"),
+            say("start.more"),
+        ):
+            screen.show(role)
 
 
 app = lazy_group(
@@ -207,7 +217,7 @@ app = lazy_group(
     "New here? See a match with 'lacoc demo', then walk your own with 'lacoc practice'.",
     listing=listing.COMMANDS,
 )
-app.callback()(_options)
+app.callback(invoke_without_command=True, no_args_is_help=False)(_options)
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -270,12 +270,6 @@ export const play = {
     "A Japanese input method is on. Keys still steer. If a key does not work, turn it off (半角/全角).",
     "日本語入力がオンです。キー操作はできますが、効かないときは「半角/全角」でオフにしてください。",
   ],
-  "count.go": ["Go!", "スタート！"],
-  "end.win": ["You win", "あなたの勝ち"],
-  "end.lose": ["{team} wins", "{team} の勝ち"],
-  "end.draw": ["A draw", "引き分け"],
-  "end.void": ["The match is void", "無効試合"],
-  "end.by": ["by {points}", "{points} 点差"],
   "end.save": ["Save Pos-data.txt", "Pos-data.txt を保存"],
 
   // Footer

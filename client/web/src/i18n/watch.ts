@@ -61,6 +61,13 @@ export const watch = {
   "result.byRules": ["By the rules", "規則による結果"],
   "result.official": ["Official result", "公式結果"],
   "result.void": ["No result", "結果なし"],
+  "result.youWin": ["You win", "あなたの勝ち"],
+  "result.by": ["by {points}", "{points} 点差"],
+  "result.figure.moves": ["scoring moves", "得点した回数"],
+  "result.figure.largest": ["largest move", "最大の得点"],
+  "result.figure.restarts": ["restarts", "リスタート"],
+  "result.decisive": ["Decisive, at {time}: {what}", "決め手（{time}）：{what}"],
+  "result.seeIt": ["See it", "その場面を見る"],
   "result.ended": ["{reason} · {time} played", "{reason}・試合時間 {time}"],
   "result.time": ["{time} played", "試合時間 {time}"],
   "result.declared": [

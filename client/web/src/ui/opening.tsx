@@ -5,8 +5,8 @@ import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
 import { Phase, SeatFlag, type Sheet } from "../core/wire";
 import { catalogue, type MessageName, t } from "../i18n";
-import { BEATS_PER_S, clock, hint, played, team } from "../i18n/words";
-import { SeatMark } from "./score";
+import { BEATS_PER_S, clock, clockTicks, hint, played, team } from "../i18n/words";
+import { isLast, SeatMark } from "./score";
 import "./opening.css";
 
 const WAITING = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
@@ -61,7 +61,7 @@ function Side({ sheet, index, flags }: { sheet: Sheet; index: number; flags: num
   );
 }
 
-/** The seconds to the start, large; then "Go". */
+/** The seconds to the start, large; then "Go"; and the last ten seconds of play. */
 export function Countdown({ match }: { match: Match }) {
   const shown = useMemo(
     () =>
@@ -70,16 +70,27 @@ export function Countdown({ match }: { match: Match }) {
         if (frame?.phase === Phase.COUNTDOWN) {
           return String(Math.max(1, Math.ceil(frame.countdown_beats / BEATS_PER_S)));
         }
-        if (frame?.phase !== Phase.PLAYING) return "";
+        const sheet = match.sheet.value;
+        if (frame?.phase !== Phase.PLAYING || !sheet) return "";
+        if (isLast(frame, sheet)) {
+          return `last ${Math.max(1, Math.ceil(clockTicks(frame, sheet) / BEATS_PER_S))}`;
+        }
         const begun = match.events.value.findLast(({ data }) => data.after === "PLAYING");
         return begun && frame.beat >= begun.beat && frame.beat - begun.beat < GO_TICKS ? "go" : "";
       }),
     [match],
   ).value;
   if (!shown) return null;
+  const last = shown.startsWith("last ");
   return (
-    <div class="countdown" role="status" key={shown}>
-      {shown === "go" ? t("countdown.go") : shown}
+    // The clock beside it says the last seconds to a screen reader, at its own times.
+    <div
+      class={last ? "countdown last" : "countdown"}
+      role="status"
+      aria-hidden={last || undefined}
+      key={shown}
+    >
+      {shown === "go" ? t("countdown.go") : shown.replace("last ", "")}
     </div>
   );
 }

@@ -5,14 +5,23 @@ import { useEffect, useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
 import type { Odds } from "../core/odds";
 import { listed, oddsOf, replayAddress } from "../core/record_files";
-import { Phase } from "../core/wire";
+import { BEATS_PER_S, Phase } from "../core/wire";
 import { t } from "../i18n";
 import { OddsCurve } from "./odds";
 
 const FIRST_MS = 700;
 const MOST_MS = 30_000;
 
-export function ReplayLink({ match }: { match: Match }) {
+/** How long before a moment the replay of it begins [s]. */
+const BEFORE_S = 4;
+
+interface Props {
+  match: Match;
+  /** The moment to which it leads; without it, it leads to the whole match and its odds. */
+  beat?: number;
+}
+
+export function ReplayLink({ match, beat }: Props) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const isOver = phase === Phase.OFFICIAL || phase === Phase.VOID;
   const id = match.sheet.value?.match_id ?? "";
@@ -48,6 +57,10 @@ export function ReplayLink({ match }: { match: Match }) {
     };
   }, [file, odds, isOver, id]);
   if (!file.value) return null;
+  if (beat !== undefined) {
+    const from_s = Math.max(0, beat / BEATS_PER_S - BEFORE_S).toFixed(1);
+    return <a href={`${replayAddress(file.value)}&t=${from_s}`}>{t("result.seeIt")}</a>;
+  }
   const moments = odds.value?.moments;
   return (
     <>

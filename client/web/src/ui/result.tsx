@@ -1,6 +1,8 @@
 /** How a match ended: by the rules first, then officially. */
 
+import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
+import { decisive, figures } from "../core/figures";
 import { type Match, phaseOf, scoresOf } from "../core/match";
 import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedTicks } from "../core/rulings";
@@ -15,12 +17,16 @@ const SHOWN = new Set<number>([Phase.FINISHED, Phase.OFFICIAL, Phase.VOID]);
 
 interface Props {
   match: Match;
+  /** Index of the reader's own seat; less than 0: the reader watches. */
+  own?: number;
   /** Closes the card; without it there is no button for that. */
   onClose?: () => void;
   /** Whether the card leads to the recording, once there is one. */
   withReplay?: boolean;
   /** Whether no other match follows, because the court has closed. */
   isLast?: boolean;
+  /** Further buttons. */
+  children?: ComponentChildren;
 }
 
 /** What comes next; in a contest the office opens the matches. */
@@ -30,17 +36,36 @@ function nextOf(phase: number, inContest: boolean): MessageName {
 }
 
 /** Nothing until the match is over. */
-export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
+export function ResultCard({ match, own = -1, onClose, withReplay, isLast, children }: Props) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const scores = useMemo(() => scoresOf(match), [match]).value;
   const sheet = match.sheet.value;
   const winner = winnerOf(match);
   const isVoid = phase === Phase.VOID;
   if (!SHOWN.has(phase) || !sheet || !scores || (!isVoid && winner === null)) return null;
+  const winnerIndex = isVoid ? -1 : sheet.seats.findIndex((seat) => seat.id === winner);
+  const points = scores.split(" ").map(Number);
+  const rest = points.filter((_, index) => index !== winnerIndex);
+  const ahead = (points[winnerIndex] ?? 0) - Math.max(0, ...rest); // less than 0: declared
   return (
-    <section class="result" data-phase={phase} aria-label={t("result.title")} aria-live="polite">
+    <section
+      class="result"
+      data-phase={phase}
+      data-seat={winnerIndex}
+      aria-label={t("result.title")}
+      aria-live={own < 0 ? "polite" : undefined}
+    >
       <Kicker match={match} />
-      <h1>{isVoid ? t("hint.void") : title(sheet, winner)}</h1>
+      <h1>
+        {isVoid
+          ? t("hint.void")
+          : own >= 0 && own === winnerIndex
+            ? t("result.youWin")
+            : title(sheet, winner)}
+      </h1>
+      {winnerIndex >= 0 && rest.length > 0 && ahead > 0 && (
+        <p class="by">{t("result.by", { points: ahead })}</p>
+      )}
       {sheet.seats.length > 1 && (
         <div class="final">
           {scores.split(" ").map((score, index) => (
@@ -59,9 +84,11 @@ export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
         </div>
       )}
       <Explained match={match} />
+      {!isVoid && <Compared match={match} winner={winnerIndex} withReplay={withReplay} />}
       {!isLast && <p class="next">{t(nextOf(phase, !!sheet.fixture))}</p>}
       <p class="row">
         {withReplay && <ReplayLink match={match} />}
+        {children}
         {onClose && (
           <button class="button quiet" type="button" onClick={onClose}>
             {t("result.close")}
@@ -72,6 +99,46 @@ export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
   );
 }
 
+interface ComparedProps {
+  match: Match;
+  /** Index of the winner's seat; less than 0: nobody has won. */
+  winner: number;
+  withReplay: boolean | undefined;
+}
+
+const FIGURES = ["moves", "largest", "restarts"] as const;
+
+/** What people compare: figures of both teams, and the decisive moment. */
+function Compared({ match, winner, withReplay }: ComparedProps) {
+  const sheet = match.sheet.value!;
+  const events = match.events.value;
+  const each = figures(events, sheet.seats.length);
+  const [left, right] = each;
+  const moment = decisive(events, winner);
+  if (!left || !right) return null;
+  return (
+    <>
+      <table class="figures">
+        <tbody>
+          {FIGURES.filter((one) => left[one] || right[one]).map((one) => (
+            <tr key={one}>
+              <td>{left[one]}</td>
+              <th scope="row">{t(`result.figure.${one}`)}</th>
+              <td>{right[one]}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {moment && (
+        <p class="why">
+          {t("result.decisive", { time: logClock(moment.clock_ticks), what: said(moment.said) })}{" "}
+          {withReplay && <ReplayLink match={match} beat={moment.beat} />}
+        </p>
+      )}
+    </>
+  );
+}
+
 function title(sheet: Sheet, winner: string | null): string {
   if (winner === "draw") return t("hint.draw");
   const index = sheet.seats.findIndex((seat) => seat.id === winner);
@@ -79,7 +146,7 @@ function title(sheet: Sheet, winner: string | null): string {
 }
 
 /** Who decided the result, the rules or the referee, and whether it is final. */
-export function Kicker({ match }: { match: Match }) {
+function Kicker({ match }: { match: Match }) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const kicker =
     phase === Phase.VOID
@@ -93,7 +160,7 @@ export function Kicker({ match }: { match: Match }) {
 }
 
 /** Why play ended, why this team has won, and what the referee corrected. */
-export function Explained({ match }: { match: Match }) {
+function Explained({ match }: { match: Match }) {
   const sheet = match.sheet.value;
   const events = match.events.value;
   const phase = useMemo(() => phaseOf(match), [match]).value;

@@ -112,7 +112,7 @@ export function Hint({ match }: { match: Match }) {
   return <span class="hint">{text}</span>;
 }
 
-function isLast(frame: Frame, sheet: Sheet): boolean {
+export function isLast(frame: Frame, sheet: Sheet): boolean {
   const playing = frame.phase === Phase.PLAYING;
   return playing && sheet.duration_s > 0 && clockTicks(frame, sheet) <= LAST_TICKS;
 }

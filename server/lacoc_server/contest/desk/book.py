@@ -62,7 +62,11 @@ class Book:
         Raises:
             UserError: if they can't be read.
         """
-        return self._newest.of(self.facts)
+        return self.contest_of(self.facts)
+
+    def contest_of(self, facts: tuple[AnyFact, ...]) -> Contest:
+        """Return the contest that follows from facts."""
+        return self._newest.of(facts)
 
     @property
     def event(self) -> EventInfo:

@@ -1,9 +1,10 @@
 """What the organiser and the staff ask the desk; `acts` does it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from lacoc_server.contest.acts import deciding, organiser, steering
 from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, new
 from lacoc_shared.messages.desk import (
     Announce,
@@ -108,10 +109,12 @@ def take_out(book: Book, asked: TakeOut) -> Effect:
     Raises:
         UserError: if the team has not entered.
     """
-    leaving = organiser.leaving(
-        book.contest, asked.team, asked.reason, disqualified=asked.disqualify
+    team, reason, expels = asked.team, asked.reason, asked.disqualify
+    return _decided(
+        book,
+        lambda contest: organiser.leaving(contest, team, reason, disqualified=expels),
+        asked.really,
     )
-    return _decided(book, leaving, asked.really)
 
 
 def rule(book: Book, asked: Rule) -> Effect:
@@ -123,41 +126,47 @@ def rule(book: Book, asked: Rule) -> Effect:
     wanted = deciding.Wanted(
         asked.kind, asked.pairing, asked.game, asked.team, asked.scores, asked.reason
     )
-    return _decided(book, [deciding.decision(book.contest, wanted)], asked.really)
+    return _decided(book, lambda contest: [deciding.decision(contest, wanted)], asked.really)
 
 
 def undraw(book: Book, asked: Undraw) -> Effect:
     """Take the draw of a stage back, or say what that would change; errors as `undrawing`."""
     return _decided(
-        book, [steering.undrawing(book.contest, asked.stage, asked.reason)], asked.really
+        book,
+        lambda contest: [steering.undrawing(contest, asked.stage, asked.reason)],
+        asked.really,
     )
 
 
 def substitute(book: Book, asked: Substitute) -> Effect:
     """Let a substitute in, or say what that would change; errors as `substituting`."""
-    fact = steering.substituting(book.contest, asked.team, asked.substitute, asked.reason)
-    return _decided(book, [fact], asked.really)
+    teams, reason = (asked.team, asked.substitute), asked.reason
+    return _decided(
+        book, lambda contest: [steering.substituting(contest, *teams, reason)], asked.really
+    )
 
 
 def steer(book: Book, asked: Move | Pause | Resume | Shift | Announce, now_ms: int) -> Said:
     """Move a match, pause, go on, shift or tell all; errors as in `acts.steering`."""
-    contest = book.contest
-    fact: AnyFact
-    match asked:
-        case Move():
-            courts = book.where.contest.courts
-            where = (asked.court, asked.before, asked.not_before_ms)
-            fact = steering.moving(contest, courts, asked.pairing, *where)
-        case Pause():
-            fact = steering.pausing(contest, asked.until_ms, asked.reason, now_ms)
-        case Resume():
-            fact = steering.resuming(contest, now_ms)
-        case Shift():
-            fact = steering.shifting(asked.by_ms, asked.reason)
-        case Announce():
-            fact = steering.announcing(asked.text)
-    book.store.append(fact)
-    return Said(said=(steering.done(contest, fact),))
+
+    def act(contest: Contest) -> AnyFact:
+        match asked:
+            case Move():
+                courts = book.where.contest.courts
+                where = (asked.court, asked.before, asked.not_before_ms)
+                return steering.moving(contest, courts, asked.pairing, *where)
+            case Pause():
+                return steering.pausing(contest, asked.until_ms, asked.reason, now_ms)
+            case Resume():
+                return steering.resuming(contest, now_ms)
+            case Shift():
+                return steering.shifting(asked.by_ms, asked.reason)
+            case Announce():
+                return steering.announcing(asked.text)
+
+    before = book.contest
+    book.store.decide(lambda facts: [act(book.contest_of(facts))])
+    return Said(said=(steering.done(before, act(before)),))
 
 
 def staff(book: Book, asked: Staff) -> Said:
@@ -202,10 +211,15 @@ def tokens(book: Book, by: str) -> TokenList:
     )
 
 
-def _decided(book: Book, facts: Iterable[AnyFact], really: bool) -> Effect:
-    """Say what the given facts would change; append the facts if `really`."""
-    more = [*facts]
-    lines = deciding.effect(book.facts, more)
+def _decided(book: Book, act: Callable[[Contest], Iterable[AnyFact]], really: bool) -> Effect:
+    """Say what an act would change; append its facts if `really`.
+
+    Args:
+        book: the contest.
+        act: returns the facts for the contest as it is when they are appended.
+        really: whether they are appended.
+    """
+    lines = deciding.effect(book.facts, act(book.contest))
     if really:
-        book.store.append(*more)
+        book.store.decide(lambda facts: act(book.contest_of(facts)))
     return Effect(lines=lines, done=really)

@@ -7,6 +7,7 @@ import msgspec
 
 from lacoc_server.contest.league.facts import (
     AnyFact,
+    Called,
     Closed,
     Disqualified,
     Drawn,
@@ -14,6 +15,7 @@ from lacoc_server.contest.league.facts import (
     FilesChanged,
     Planned,
     Played,
+    Recalled,
     RoundDrawn,
     Substituted,
     Undrawn,
@@ -104,7 +106,13 @@ def drawn_stages(
     stages: dict[str, tuple[Planned, Stage]] = {}
     played: set[tuple[str, str]] = set()
     """Each stage with each team that has played in it."""
+    called: set[tuple[str, int]] = set()
+    """The games that a court has: pairing and number."""
     for fact in facts:
+        if isinstance(fact, Called):
+            called.add((fact.pairing, fact.game))
+        elif isinstance(fact, Recalled | Played):
+            called.discard((fact.pairing, fact.game))
         if isinstance(fact, Played):
             played |= {(stage_of(fact.pairing), team) for team in fact.teams}
         elif isinstance(fact, Substituted) and fact.id not in unused:
@@ -114,7 +122,11 @@ def drawn_stages(
         elif isinstance(fact, Undrawn):
             if fact.stage not in stages:
                 unused[fact.id] = say("league.not-drawn", stage=fact.stage)
-            elif fact.stage != [*stages][-1] or any(name == fact.stage for name, _ in played):
+            elif (
+                fact.stage != [*stages][-1]
+                or any(name == fact.stage for name, _ in played)
+                or any(stage_of(pairing) == fact.stage for pairing, _ in called)
+            ):
                 unused[fact.id] = say("league.played-already", stage=fact.stage)
             else:
                 del stages[fact.stage]

@@ -1,18 +1,17 @@
 /** The field and what lies over it. */
 
-import { type Signal, useComputed, useSignal, useSignalEffect } from "@preact/signals";
+import { type Signal, useComputed, useSignal } from "@preact/signals";
 import type { Ref } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
-import { phaseOf, scoresOf } from "../../core/match";
+import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
 import { quality } from "../../core/settings";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
-import { BEATS_PER_S, team, winnerOf } from "../../i18n/words";
 import { View } from "../../scene/View";
-import { ReplayLink } from "../../ui/replay_link";
-import { Explained, Kicker } from "../../ui/result";
+import { Countdown } from "../../ui/opening";
+import { ResultCard } from "../../ui/result";
 import { ScoreBug } from "../../ui/score";
 import { Thirds } from "../../ui/thirds";
 import { nextStep } from "./steps";
@@ -20,7 +19,6 @@ import { nextStep } from "./steps";
 export const VIEWS = ["arena", "top", "chase"] as const;
 export type ViewName = (typeof VIEWS)[number];
 
-const GO_MS = 900;
 /** The arena is fitted between the score bug above and the badge below. */
 const INSET = { top: 118, bottom: 40 };
 const INSET_NARROW = { top: 88, bottom: 6 };
@@ -85,8 +83,16 @@ export function Field(props: Props) {
           <div class="on-stage">
             <ScoreBug match={court} />
             <NextStep {...props} />
-            {!alone && <Countdown court={court} />}
-            {!alone && <ResultCard {...props} />}
+            {!alone && <Countdown match={court} />}
+            {!alone && (
+              <ResultCard match={court} own={player.index.value} withReplay isLast>
+                {player.data && player.data.length > 0 && (
+                  <button class="button" type="button" onClick={props.onSave}>
+                    {t("end.save")}
+                  </button>
+                )}
+              </ResultCard>
+            )}
           </div>
           <button class="badge" type="button" onClick={onView}>
             {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
@@ -112,84 +118,6 @@ function NextStep({ court, player, alone }: Props) {
     <p class={`next ${tone}`} role="status">
       {words.join("|")}
     </p>
-  );
-}
-
-/** 3, 2, 1 over the picture, and a word when play begins. */
-function Countdown({ court }: { court: Court }) {
-  const seconds = useComputed(() => {
-    const frame = court.frame.value;
-    return frame?.phase === Phase.COUNTDOWN ? Math.ceil(frame.countdown_beats / BEATS_PER_S) : 0;
-  });
-  const isGo = useSignal(false);
-  const wasCounting = useSignal(false);
-  useSignalEffect(() => {
-    const counting = seconds.value > 0;
-    const phase = court.frame.peek()?.phase;
-    if (wasCounting.peek() && !counting && phase === Phase.PLAYING) {
-      isGo.value = true;
-      setTimeout(() => {
-        isGo.value = false;
-      }, GO_MS);
-    }
-    wasCounting.value = counting;
-  });
-  if (!seconds.value && !isGo.value) return null;
-  return (
-    <div class="countdown" role="timer" aria-live="assertive">
-      <span key={seconds.value}>{seconds.value || t("count.go")}</span>
-    </div>
-  );
-}
-
-function ResultCard({ court, player, onSave }: Props) {
-  const phase = useMemo(() => phaseOf(court), [court]).value;
-  const points = useMemo(() => scoresOf(court), [court]).value;
-  if (phase < Phase.FINISHED) return null;
-  const index = player.index.value;
-  const sheet = court.sheet.value;
-  const winner = winnerOf(court);
-  if (!sheet || !points || index < 0) return null;
-  const scores = points.split(" ").map(Number);
-  const winnerIndex = sheet.seats.findIndex((seat) => seat.id === winner);
-  const isMine = winnerIndex === index;
-  const title =
-    phase === Phase.VOID
-      ? t("end.void")
-      : winner === "draw"
-        ? t("end.draw")
-        : winnerIndex < 0
-          ? t("phase.6")
-          : isMine
-            ? t("end.win")
-            : t("end.lose", { team: team(sheet, winnerIndex) });
-  const [own = 0, other = 0] = winnerIndex === 1 ? scores.toReversed() : scores;
-  const ahead = own - other; // less than 0: declared, against the score
-  const decided = phase !== Phase.VOID && winnerIndex >= 0 && ahead > 0;
-  return (
-    <section
-      class={`result${isMine && phase !== Phase.VOID ? " won" : ""}`}
-      data-seat={phase === Phase.VOID ? -1 : winnerIndex}
-      aria-live="polite"
-    >
-      <Kicker match={court} />
-      <h1>{title}</h1>
-      {decided && <p class="by">{t("end.by", { points: ahead })}</p>}
-      <p class="final">
-        <span data-seat="0">{team(sheet, 0)}</span>
-        <b>{scores.join(" : ")}</b>
-        <span data-seat="1">{team(sheet, 1)}</span>
-      </p>
-      <Explained match={court} />
-      <div class="acts">
-        <ReplayLink match={court} />
-        {player.data && player.data.length > 0 && (
-          <button class="button" type="button" onClick={onSave}>
-            {t("end.save")}
-          </button>
-        )}
-      </div>
-    </section>
   );
 }
 
