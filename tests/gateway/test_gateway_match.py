@@ -50,7 +50,7 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     left.wait_own(lambda own: own.refused_seq >= refused)
 
     late = venue.page()
-    assert late.order[:4] == [Kind.WELCOME, Kind.LINK, Kind.SHEET, Kind.SCENE]
+    assert late.order[:5] == [Kind.WELCOME, Kind.NOTICE, Kind.LINK, Kind.SHEET, Kind.SCENE]
     assert Kind.FRAME in late.order[: late.order.index(Kind.REPLY)]
     assert [event.number for event in late.events] == [*range(1, len(late.events) + 1)]
     at_once = list(late.events)

@@ -37,10 +37,10 @@ from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.site import PATHS, sheet_route
 from lacoc_client.web.gateway.viewer import Frames, Viewer
 from lacoc_shared.contest.access import Access
-from lacoc_shared.event_log import EventLog
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.event_log import EventLog
 from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 

@@ -9,10 +9,10 @@ import msgspec
 
 from lacoc_shared import codec
 from lacoc_shared.command import screen
-from lacoc_shared.court_view import MAX_BYTES
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.court_view import MAX_BYTES
 from lacoc_shared.network.session import NoReply, NotConnected, Refused, Session, TooLate
 from lacoc_shared.words import Phrase, render, say
 

@@ -6,10 +6,10 @@ from typing import TypeVar
 
 from lacoc_client.play.asking import fetch, understand, understood
 from lacoc_shared.codec import message_hash
-from lacoc_shared.court_view import CourtView, Told
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.court_view import CourtView, Told
 from lacoc_shared.network.session import Mail, NoReply, Question, Refused, Session
 from lacoc_shared.words import say
 

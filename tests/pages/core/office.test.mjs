@@ -70,7 +70,7 @@ test("each team has the place of the last stage that it reached", () => {
     { section: "b", rows: [row("B", 1), row("D", 2, true)] },
   ]);
   const final = stage("final", [{ section: "w", rows: [row("B", 1), row("A", 2)] }]);
-  const sheet = { planned: [], stages: [groups, final] };
+  const sheet = { teams: [], planned: [], stages: [groups, final] };
   assert.deepEqual(
     places(sheet).map(({ team, rank, stage, group, won }) => [team, rank, stage, group, won]),
     [
@@ -88,8 +88,23 @@ test("no team has a place in a bracket before it is out", () => {
     [match(["A", "B"], "open"), match(["A", "C"], "decided", "C", 3)],
   );
   assert.deepEqual(
-    places({ planned: [], stages: [open] }).map(({ team }) => team),
+    places({ teams: [], planned: [], stages: [open] }).map(({ team }) => team),
     ["C"],
+  );
+});
+
+test("who has left without a game has no place, but who was beaten has one", () => {
+  const left = (name) => ({ name, withdrawn: true, disqualified: false });
+  const played = { ...match(["A", "C"], "decided", "C", 2), games: [{ teams: ["A", "C"] }] };
+  const over = stage(
+    "final",
+    [{ section: "w", rows: [row("A", 1), row("C", 2), row("E", 3)] }],
+    [played],
+  );
+  const sheet = { teams: [left("C"), left("E")], planned: [], stages: [over] };
+  assert.deepEqual(
+    places(sheet).map(({ team }) => team),
+    ["A", "C"],
   );
 });
 

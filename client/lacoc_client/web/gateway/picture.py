@@ -5,8 +5,8 @@ import msgspec
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.wire import Kind
 from lacoc_shared.codec import BadMessage, decode, message_hash
-from lacoc_shared.court_view import MAX_BYTES, CourtView, Told
 from lacoc_shared.messages import Event
+from lacoc_shared.network.court_view import MAX_BYTES, CourtView, Told
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
 

@@ -10,8 +10,8 @@ from typing import Generic, TypeVar
 import msgspec
 
 from lacoc_shared.codec import decode, encode, message_hash
-from lacoc_shared.event_log import EventLog
 from lacoc_shared.messages import PROTOCOL, Event
+from lacoc_shared.network.event_log import EventLog
 
 T = TypeVar("T")
 
