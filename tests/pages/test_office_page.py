@@ -1,21 +1,16 @@
 """Tests of /office and /enter: an event from its file until its first games are called."""
 
-import json
-import subprocess
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 from chromium import OpenPage
-from lacoc_process import run_lacoc, started
+from office_event import Event, running
 from playwright.sync_api import Page, expect
-from ports import free_port
 from show import violations
-from waiting import LIMIT_S
 
-from lacoc_robots.library import robot_folder, sample_gait_files
+from lacoc_robots.library import robot_folder
 
 pytestmark = pytest.mark.slow
 
@@ -23,65 +18,6 @@ LAPTOP = {"width": 1366, "height": 768}
 PHONE = {"width": 390, "height": 844}
 TEAMS = ("Ants", "六脚の会", "Crabs & <b>Co</b>", "Dogs")
 FIRST = TEAMS[0]
-
-
-class Event(NamedTuple):
-    """An event with open entries, and files of a team."""
-
-    url: str
-    office: str
-    code: str
-    facts: Path
-    right: tuple[Path, Path]
-    wrong: Path
-    cut: Path
-    """A workbook that is cut off."""
-
-
-@contextmanager
-def running(folder: Path, *teams: str, waits: bool = False) -> Iterator[Event]:
-    """Run a contest at two courts whose entries are open.
-
-    Args:
-        folder: an empty folder.
-        teams: teams that have entered by command.
-        waits: whether the finals wait for the organiser's draw.
-    """
-    file = folder / "contest.toml"
-    run_lacoc("contest", "init", str(file), "--courts", "2")
-    text = file.read_text().replace("0.0.0.0:", "127.0.0.1:").replace("groups = 2", "groups = 1")
-    for port in ("7447", "7448"):
-        text = text.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")
-    if waits:
-        text = text.replace("# draw =", "draw =")
-    file.write_text(text)
-    for team in teams:
-        run_lacoc("contest", "enter", team, "--contest", str(file))
-    given = [one for one in sample_gait_files("hexapod") if one is not None]
-    paths = [folder / one.name for one in given]
-    for path, one in zip(paths, given, strict=True):
-        path.write_bytes(one.data)
-    wrong = folder / "LocoTra-wrong.txt"
-    wrong.write_bytes(given[1].data.replace(b"0", b"x", 3))
-    cut = folder / "Loco-data.xlsx"
-    cut.write_bytes((robot_folder("hexapod") / "Loco-data.xlsx").read_bytes()[:4000])
-    words = ("contest", "run", str(file), "--entries", "--json")
-    with started(*words, stdout=subprocess.PIPE, text=True) as run:
-        try:
-            assert run.stdout is not None
-            opened = json.loads(run.stdout.readline())
-            yield Event(
-                opened["url"],
-                opened["office"],
-                opened["code"],
-                folder / "contest.db",
-                (paths[0], paths[1]),
-                wrong,
-                cut,
-            )
-        finally:
-            run.terminate()
-            run.wait(LIMIT_S)
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,94 @@
+"""Tests of the day on /office: pause, later, a line to all, staff, publishing."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from chromium import OpenPage
+from office_event import Event, running
+from playwright.sync_api import Page, expect
+from show import violations
+
+pytestmark = pytest.mark.slow
+
+LAPTOP = {"width": 1366, "height": 768}
+PHONE = {"width": 390, "height": 844}
+TEAMS = ("Ants", "Bees", "Crabs", "Dogs")
+
+
+@pytest.fixture(scope="module")
+def event(built_pages: object, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Event]:
+    """Give a contest of four teams of people, whose entries are open."""
+    with running(tmp_path_factory.mktemp("day"), *TEAMS) as event:
+        yield event
+
+
+def press(page: Page, name: str) -> None:
+    """Press a button of the page itself."""
+    page.locator("main").get_by_role("button", name=name, exact=True).click()
+
+
+def confirm(page: Page, name: str) -> None:
+    """Press a button of the open dialog, which closes it."""
+    page.locator("dialog[open]").get_by_role("button", name=name, exact=True).click()
+    expect(page.locator("dialog[open]")).to_have_count(0)
+
+
+def say(page: Page, label: str, text: str) -> None:
+    page.locator("dialog").get_by_label(label).fill(text)
+
+
+def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None:
+    """The organiser steers the day; everybody reads it, and the staff decide under their names."""
+    office = open_page(viewport=LAPTOP)
+    office.goto(event.office)
+    press(office, "Close entries and draw")
+    confirm(office, "Close and draw with 4 teams")
+    expect(office.locator(".slot")).not_to_have_count(0)
+    expect(office.locator(".slot", has_text="Final").first).to_be_visible()
+    expect(office.locator(".slot", has_text="winner of Semi-final 1").first).to_be_visible()
+    assert violations(office) == []
+
+    contest = open_page(viewport=PHONE)
+    contest.goto(f"{event.url}/contest")
+    watch = open_page(viewport=LAPTOP)
+    watch.goto(f"{event.url}/watch")
+    press(office, "Line to all")
+    say(office, "All pages show this line", "Lunch until one")
+    confirm(office, "Show it")
+    for page in (contest, watch):
+        expect(page.locator(".banner")).to_contain_text("Lunch until one")
+
+    press(office, "Pause")
+    say(office, "Reason, if you like (everybody can read it)", "a cable")
+    confirm(office, "Pause now")
+    expect(office.locator(".day [role=status]")).to_contain_text("no game is called now (a cable)")
+    expect(watch.locator(".banner")).to_contain_text("a cable")
+    watch.locator(".banner button").click()
+    expect(watch.locator(".banner")).to_have_count(0)
+    press(office, "Go on")
+    expect(office.locator(".day [role=status]")).to_have_count(0)
+
+    press(office, "All later")
+    confirm(office, "15 minutes later")
+    expect(office.locator(".day [role=status]")).to_contain_text("No game is called before")
+    assert violations(office) == []
+    press(office, "Go on")
+
+    press(office, "Staff")
+    say(office, "Name", "Aiko")
+    office.locator("dialog").get_by_role("button", name="Make a link").click()
+    link = office.locator("dialog .staff a")
+    expect(link).to_have_text(re.compile(r"/office#token="))
+    helper = open_page(viewport=PHONE)
+    helper.goto(link.inner_text())
+    expect(helper.locator(".day")).to_contain_text("You decide as Aiko.")
+    expect(helper.get_by_role("button", name="Staff")).to_have_count(0)
+    assert violations(helper) == []
+    office.keyboard.press("Escape")
+
+    press(helper, "Publish")
+    published = helper.get_by_role("link", name="The published contest")
+    published.click()
+    expect(helper.locator("h1")).to_be_visible()
+    assert "/published/" in helper.url
