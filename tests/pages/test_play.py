@@ -374,11 +374,13 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.key_stands(1)
     page.press("Numpad3")
     page.key_stands(3)
+    other.wait(lambda: other.frame and other.frame.seats[0].key == 3)
     seq = other.own().applied_seq, other.frame.seats[0].applied_seq  # type: ignore[union-attr]
     page.page.keyboard.down("2")
     page.page.keyboard.down("2")  # the repeat of a held key
     page.page.keyboard.up("2")
     page.key_stands(2)
+    other.wait(lambda: other.frame and other.frame.seats[0].key == 2)
     assert other.frame is not None
     assert other.frame.seats[0].applied_seq == seq[1] + 1
     page.find('.key[data-key="1"]').click()

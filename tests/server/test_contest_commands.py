@@ -67,7 +67,7 @@ def test_a_contest_of_open_matches_is_written(tmp_path: Path) -> None:
     assert plans(contest, file) == []
     stage = open_stage(contest, file)
     assert stage is not None
-    assert (stage.name, stage.arena) == ("friendly", "flag-strike")
+    assert stage.arena == "flag-strike"
 
 
 @pytest.mark.parametrize(
