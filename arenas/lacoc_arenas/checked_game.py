@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from lacoc_arenas.game import DOWN, AnyGame, Claim, GameEvent, NoSuchState, Observation, Place
-from lacoc_shared.messages import MARKER_STATES, MarkerInfo
+from lacoc_shared.messages import MARKER_STATES, Gains, MarkerInfo
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import Phrase, say
 
@@ -90,6 +90,8 @@ def checked(source: Source, game: Any) -> AnyGame:
     held.board(state)
     held.winner(state, held.score(state))
     held.over(state)
+    for seat in range(len(game.starts)):
+        held.gains(state, seat)
     return held
 
 
@@ -99,6 +101,7 @@ class CheckedGame:
     def __init__(self, source: Source, game: AnyGame) -> None:
         self._source = source
         self._game = game
+        self.rule = getattr(game, "rule", None)
         self.state_type = game.state_type
         self.markers = game.markers
         self.starts = game.starts
@@ -171,6 +174,16 @@ class CheckedGame:
             raise self._wrong("winner", found, say("game-expects.winner", last=self._seats - 1))
         return found
 
+    def gains(self, state: Any, seat: int) -> Gains:
+        """Return what a robot would gain next (`Game.gains`), checked; a game may leave it out."""
+        rule = getattr(self._game, "gains", None)
+        if rule is None:
+            return Gains()
+        found: Gains = self._source.call("gains", rule, state, seat)
+        if not (isinstance(found, Gains) and found.points.keys() <= self._names):
+            raise self._wrong("gains", found, say("game-expects.gains"))
+        return found
+
     def set(self, state: Any, marker: int, value: int) -> Any:
         """Set a marker, as a referee decides (`Game.set`), and check the new state."""
         rule = self._game.set
@@ -215,6 +228,8 @@ def _check_values(source: Source, game: AnyGame) -> None:
             shown = printable(repr(getattr(game, name)), 120)
             raise source.wrong(say("game.value", name=name, found=shown, expected=expected))
 
+    rule = getattr(game, "rule", None)
+    require(rule is None or isinstance(rule, Phrase), "rule", say("game-expects.rule"))
     kind: object = game.state_type
     is_struct = isinstance(kind, type) and issubclass(kind, msgspec.Struct)
     require(is_struct, "state_type", say("game-expects.struct"))

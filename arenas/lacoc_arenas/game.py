@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 import msgspec
 
-from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.messages import Gains, MarkerInfo
 from lacoc_shared.words import Phrase, render, say
 
 NEUTRAL, LEFT, RIGHT, DOWN = range(4)
@@ -106,6 +106,9 @@ S = TypeVar("S", bound=msgspec.Struct)
 class Game(Protocol[S]):
     """The rules of a game, made by its arena's `rules.make(settings)`."""
 
+    rule: Phrase | None
+    """What the game is about and how one scores, in a sentence for players and spectators
+    (`rule.*`); None: no page says it."""
     state_type: type[S]
     """The struct that holds the state of a match; msgpack must be able to encode it."""
     markers: tuple[MarkerInfo, ...]
@@ -156,6 +159,14 @@ class Game(Protocol[S]):
 
         Returns:
             The seat's index, or None for a draw.
+        """
+
+    def gains(self, state: S, seat: int) -> Gains:
+        """Say what a robot would gain next, for its player's page; it judges nothing.
+
+        Args:
+            state: the present state.
+            seat: the robot's seat.
         """
 
     def set(self, state: S, marker: int, value: int) -> S:

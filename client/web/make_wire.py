@@ -79,6 +79,7 @@ STRUCTS = (
     messages.SceneBody,
     messages.SceneGeom,
     messages.Scene,
+    messages.Gains,
     messages.SeatHealth,
     messages.LinkVerdict,
     messages.HealthVerdict,

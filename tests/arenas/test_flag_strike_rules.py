@@ -1,6 +1,7 @@
 """Flag-Strike, rule by rule (workshop 5-2, rules 6)."""
 
 import math
+import random
 
 import pytest
 
@@ -349,3 +350,53 @@ def test_nothing_happens() -> None:
     before = tick(START)[0]
     assert tick(before, view((0.1, 0.1)), view((-0.3, 0.3))) == (before, ())
     assert tick(before)[0] is before
+
+
+# What a page says of them
+
+
+def test_rule_follows_the_settings() -> None:
+    """The sentence on the pages has the points of a corner, and what all four are worth."""
+    assert GAME.rule == say("rule.flag-strike", corner=5)
+    game = arena.load("flag-strike", {"game": {"corner_points": 7, "all_corners_win": True}}).game
+    assert game.rule == say("rule.flag-strike-corners", corner=7)
+
+
+def test_gains_are_what_scores_now() -> None:
+    """A marker is marked if and only if going there now brings it, and with its points."""
+    draws = random.Random(7)
+    for _ in range(200):
+        corners = [draws.choice((NEUTRAL, LEFT, RIGHT)) for _ in range(4)]
+        flags = [draws.choice((NEUTRAL, NEUTRAL, LEFT, RIGHT, DOWN)) for _ in range(20)]
+        inside = draws.choice((NO_CORNER, 0, 1, 2, 3))
+        void = tuple((0, flag) for flag in range(4, 24) if draws.random() < 0.1)
+        before = State((*corners, *flags), (inside, NO_CORNER), void)
+        here = MIDDLE if inside == NO_CORNER else CORNERS[inside]
+        held = tuple(GAME.markers[flag].name for _, flag in void)
+        points = GAME.gains(before, 0).points
+        for index, marker in enumerate(GAME.markers):
+            there = CORNERS[index] if index < 4 else here
+            touched = held if index < 4 else tuple({*held, marker.name})
+            _, events = tick(before, view(there, touched))
+            assert [(event.marker, event.points) for event in events] == (
+                [(marker.name, points[marker.name])] if marker.name in points else []
+            )
+
+
+@pytest.mark.parametrize(
+    ("corners", "flags", "inside", "code"),
+    [
+        ((LEFT, LEFT, LEFT, RIGHT), NEUTRAL, NO_CORNER, "last-corner"),
+        ((LEFT, RIGHT, NEUTRAL, NEUTRAL), NEUTRAL, 0, "flags"),
+        ((LEFT, RIGHT, NEUTRAL, NEUTRAL), NEUTRAL, 1, "enter-again"),
+        ((LEFT, RIGHT, NEUTRAL, NEUTRAL), DOWN, NO_CORNER, "corners"),
+    ],
+)
+def test_player_is_told_what_scores(
+    corners: tuple[int, ...], flags: int, inside: int, code: str
+) -> None:
+    """The sentence names the corner that ends the match, and one that must be entered again."""
+    said = GAME.gains(State((*corners, *[flags] * 20), (inside, NO_CORNER)), 0).said
+    assert said is not None
+    assert said.code == f"gains.{code}"
+    assert faults(said) == []

@@ -1,6 +1,7 @@
 """Robot-Othello, rule by rule (workshop 5-1, rules 5)."""
 
 import math
+import random
 
 import pytest
 
@@ -17,7 +18,7 @@ from lacoc_arenas.game import (
     RobotView,
 )
 from lacoc_arenas.othello.rules import NO_CELL, Othello, State
-from lacoc_shared.words import faults, say
+from lacoc_shared.words import Phrase, faults, say
 
 GAME: Othello = arena.load("othello").game
 INDEX = {marker.name: index for index, marker in enumerate(GAME.markers)}
@@ -501,3 +502,52 @@ def test_event_says_what_happened() -> None:
     _, events = tick(state(board("LRRRL."), "c0r5"), "c1r5")
     assert events[0].said == say("event.flip", team="", marker="c1r5", also=["c2r5", "c3r5"])
     assert not faults(events[0].said)
+
+
+# What a page says of them
+
+
+def test_rule_follows_the_settings() -> None:
+    """The sentence on the pages leaves out rows where they do not flip."""
+    assert GAME.rule == say("rule.othello")
+    assert with_settings(flank=False).rule == say("rule.othello-single")
+
+
+@pytest.mark.parametrize("flank", [True, False])
+def test_gains_are_what_the_next_step_flips(flank: bool) -> None:
+    """A disc is marked if and only if walking onto it now flips discs, and with their number."""
+    game = with_settings(flank=flank)
+    draws = random.Random(7)
+    marked = 0
+    for _ in range(300):
+        cells = tuple(draws.choice((NEUTRAL, LEFT, LEFT, RIGHT, RIGHT)) for _ in range(36))
+        last = tuple(draws.sample(range(36), 2))
+        before = State(cells, (last[0], last[1]))
+        seat = draws.randrange(2)
+        points = game.gains(before, seat).points
+        for disc in game.markers:
+            views = [view(game.markers[cell].name, game=game) for cell in last]
+            views[seat] = view(disc.name, game=game)
+            _, events = game.step(before, tuple(views), 0.02)
+            assert [event.points for event in events] == (
+                [points[disc.name]] if disc.name in points else []
+            )
+        marked += len(points)
+    assert marked > 100
+
+
+@pytest.mark.parametrize(
+    ("cells", "said"),
+    [
+        (board("RL....", "RR...."), say("gains.their-disc", marker="c0r5")),
+        (board(".L....", "RR...."), say("gains.neutral-disc", marker="c0r5")),
+        (board("LL....", "LR...."), say("gains.inside", marker="c0r5")),
+        (board("LL....", "RR...."), say("gains.flip", marker="c0r5")),
+    ],
+)
+def test_player_is_told_what_its_last_disc_allows(cells: tuple[int, ...], said: Phrase) -> None:
+    """From a disc that is not its own nothing flips, and the player is told what to do first."""
+    gains = GAME.gains(state(cells, "c0r5"), 0)
+    assert gains.said == said
+    assert faults(said) == []
+    assert bool(gains.points) == (said.code == "gains.flip")

@@ -155,6 +155,13 @@ WRONG = {
         "2",
         "winner returned 2. Expected the index",
     ),
+    "rule": ("rules.py", "rule = RULE", "rule = 3", "rule is 3. Expected a Phrase"),
+    "gains": (
+        "rules.py",
+        "    def winner",
+        "    def gains(self, state, seat):\n        return 3\n\n    def winner",
+        "gains returned 3. Expected a Gains",
+    ),
     "state": ("rules.py", "return State()", "return 3", "start returned 3. Expected a State"),
     "markers": (
         "rules.py",

@@ -49,6 +49,10 @@ class Contestant:
         if text is not None:
             expect(found).to_contain_text(text)
 
+    def sees_text(self, selector: str, text: str) -> None:
+        """Wait until an element that nobody needs to see contains the text."""
+        expect(self.find(selector).first).to_contain_text(text)
+
     def misses(self, selector: str) -> None:
         """Wait until no element matches the selector."""
         expect(self.find(selector)).to_have_count(0)

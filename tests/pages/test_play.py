@@ -354,7 +354,8 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.page.click(".ready.said button")
     page.is_told("Press Ready when you are ready")
     other = playing(venue, page)
-    page.is_told("Walk over discs")
+    page.is_told("All discs next to disc A3 are yours: walk on to where theirs begin.")
+    page.misses(".view-worth")
 
     page.press("2")
     page.key_stands(2)
@@ -368,8 +369,8 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
     page.press("7")
     page.is_toasted("[7] Your gait file has no such key")
-    page.press("Tab")
-    page.is_toasted("In this arena only level B is open")
+    page.press("Tab")  # only level B is open: Tab leads out of the field, and keys still steer
+    page.sees(".stage .badge:focus")
     page.press("ArrowLeft")
     page.key_stands(1)
     page.press("Numpad3")
@@ -479,6 +480,65 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
     page.page.focus(".key[data-key='3']")
     page.press("Enter")
     page.key_stands(3)
+    other.close()
+
+
+def test_a_newcomer_is_told_what_matters(venue: Venue, sit: Sit) -> None:
+    """Before play the page says which robot is one's own, how one scores, and what keys do."""
+    page = seated(venue, sit)
+    page.sees(".brief .own", "Your robot stands on the left")
+    page.sees(".brief", "Walk straight from a disc of your own onto the next one")
+    page.sees(".brief", "Press a key once: the robot goes on until you press another.")
+    for digit, does in enumerate(("stand", "turn left", "forward", "turn right")):
+        page.sees(f'.key[data-key="{digit}"] small', does)
+    page.press("?")
+    page.sees("dialog .key-help", "put the robot back at its start")
+    page.press("?")
+    page.misses("dialog")
+    other = playing(venue, page)
+    page.misses(".brief")
+    page.sees(".view-tag.own", "You")
+    referee = venue.referee()
+    referee.ask("take_over")
+    # The disc under its feet becomes the other team's: from there nothing flips.
+    referee.ask("decide", decision={"type": "halt"}, reason="")
+    for disc, state in (("c0r2", "right"), ("c0r3", "right")):
+        decision = {"type": "set", "marker": disc, "state": state}
+        referee.ask("decide", decision=decision, reason="for the test")
+    referee.ask("decide", decision={"type": "resume"}, reason="")
+    page.is_told("From disc A3, which is theirs, nothing flips: step onto one of yours first.")
+    page.misses(".view-worth")
+    referee.ask("decide", decision={"type": "halt"}, reason="")
+    decision = {"type": "set", "marker": "c0r2", "state": "left"}
+    referee.ask("decide", decision=decision, reason="for the test")
+    referee.ask("decide", decision={"type": "resume"}, reason="")
+    page.is_told("From disc A3, which is yours: walk straight onto a marked disc, and it flips.")
+    page.sees('.view-worth[data-marker="c0r3"]', "+1")
+    heard = page.find(".heard[role=log]").inner_text()
+    assert "Ants 17, Bees 19" in heard
+    other.close()
+
+
+def test_a_screen_reader_hears_the_time(venue: Venue, sit: Sit) -> None:
+    """One live region of the page says the time at 60, 30 and 10 seconds, and each new score."""
+    page = seated(venue, sit, "--seconds", "11")
+    other = playing(venue, page)
+    page.sees_text(".heard", "10 seconds left")
+    live = "[aria-live=polite], [role=log], [role=status]"
+    assert page.find(f".stage :is({live}):not(.countdown)").count() == 0
+    other.close()
+
+
+def test_files_are_told_once(venue: Venue, sit: Sit) -> None:
+    """Who comes back into a match is not told again that no files were sent."""
+    page = seated(venue, sit, "--seconds", "60")
+    page.is_toasted("You sent no files.")
+    other = playing(venue, page)
+    page.page.reload()
+    page.stands("seated")
+    page.phase(Phase.PLAYING)
+    page.steer(2)
+    assert "You sent no files." not in page.find(".toasts").inner_text()
     other.close()
 
 
@@ -645,13 +705,20 @@ def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
     page.find(".badge").tap()
     page.sees(".badge", "View 2/3")
     assert page.page.evaluate("document.documentElement.scrollWidth") <= phone["width"]
-    for digit in range(10):
+    for digit in range(4):
         box = page.find(f'.key[data-key="{digit}"]').bounding_box()
         assert box is not None
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= phone["width"]
         assert box["y"] + box["height"] <= phone["height"]
         assert min(box["width"], box["height"]) >= 44
+    assert page.find('.key[data-key="7"]').is_hidden()  # it does nothing
+    box = page.find(".map .board").bounding_box()
+    foot = page.find(".foot").bounding_box()
+    assert box is not None
+    assert foot is not None
+    assert box["height"] >= 120
+    assert box["y"] + box["height"] <= foot["y"]
     other.close()
 
 

@@ -23,7 +23,7 @@ from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.match.entry import Admission
 from lacoc_shared.contest.tokens import hash_token
-from lacoc_shared.decisions import Abort, Next, Start
+from lacoc_shared.decisions import Abort, Halt, Next, Set, Start
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SeatFrame, SentFile, Sheet
 from lacoc_shared.messages.office import open_match
@@ -198,3 +198,22 @@ def test_the_disk_fills_in_the_beat_of_next(room: Room, monkeypatch: pytest.Monk
     deciding.join(10)
     assert not deciding.is_alive()
     assert [seat.team for seat in sheet(left, 2).seats] == ["Team left", "Team right"]
+
+
+def test_health_says_at_once_what_robots_would_gain(room: Room) -> None:
+    """Health names what each robot would gain while robots stand, and comes when that changes."""
+    left = room.controller(0)
+    left.join()
+    until([left], lambda: left.view.health is not None)
+    assert left.view.health is not None
+    assert left.view.health.gains == ()
+    players = playing(room)
+    view = players[0].view
+    until(players, lambda: view.health is not None and len(view.health.gains) == 2)
+    assert view.health is not None
+    first = view.health.gains[0].said
+    assert first == say("gains.inside", marker="c0r2")
+    room.referee.decide(Halt(), "a test", "Kubota")
+    room.referee.decide(Set(marker="c0r2", state="right"), "a test", "Kubota")
+    until(players, lambda: view.health is not None and view.health.gains[0].said != first)
+    assert view.health.gains[0].said == say("gains.their-disc", marker="c0r2")

@@ -22,7 +22,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.record.commands import app as record_app
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import FORMAT, Header, Setup
-from lacoc_shared.words import render
+from lacoc_shared.words import Phrase, render, say
 
 SECONDS = 6.0
 FORGERIES = 50
@@ -202,6 +202,21 @@ def test_a_model_may_have_other_last_bits(
             record.events[at] = structs.replace(event, data=data)
     assert record.result is not None
     record.results = [structs.replace(record.result, model="f" * 16)]
+    found = Prover().verdict(record)
+    assert isinstance(found, Verdict)
+    assert found.kind is kind, render(found.said)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("rule", "kind"), [(None, Kind.SAME), (say("rule.practice"), Kind.DIFFERS)]
+)
+def test_a_sheet_of_an_earlier_version_says_no_rule(
+    rule: Phrase | None, kind: Kind, paths: Sequence[Path]
+) -> None:
+    """A record whose sheets lack the rule is the same; one with another rule differs."""
+    record = Record.read(paths[0])
+    record.sheets = [(b, structs.replace(sheet, rule=rule)) for b, sheet in record.sheets]
     found = Prover().verdict(record)
     assert isinstance(found, Verdict)
     assert found.kind is kind, render(found.said)

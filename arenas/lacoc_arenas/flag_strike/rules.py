@@ -34,7 +34,7 @@ from lacoc_arenas.game import (
     leader,
 )
 from lacoc_arenas.layout import opposite
-from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.messages import Gains, MarkerInfo
 from lacoc_shared.words import Phrase, say
 
 from .settings import Settings
@@ -61,6 +61,12 @@ class FlagStrike:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
+        corner = settings.corner_points
+        self.rule = (
+            say("rule.flag-strike-corners", corner=corner)
+            if settings.all_corners_win
+            else say("rule.flag-strike", corner=corner)
+        )
         self.size_m = settings.size_m
         self.markers = (
             *(
@@ -222,6 +228,27 @@ class FlagStrike:
     def _holder(state: State) -> int | None:
         first, *others = state.board[:CORNERS]
         return first - 1 if first != NEUTRAL and others == [first] * len(others) else None
+
+    def gains(self, state: State, seat: int) -> Gains:
+        """Return the flags that stand, and the corners that the robot would take by walking in."""
+        own, inside = seat + 1, state.inside[seat]
+        flags = [
+            flag
+            for flag, owner in enumerate(state.board)
+            if flag >= CORNERS and owner == NEUTRAL and (seat, flag) not in state.void
+        ]
+        lacking = [corner for corner in range(CORNERS) if state.board[corner] != own]
+        corners = [corner for corner in lacking if corner != inside]
+        points = {self.markers[marker].name: self._points[marker] for marker in corners + flags}
+        if inside in lacking:
+            said = say("gains.enter-again", marker=self.markers[inside].name)
+        elif len(lacking) == 1:
+            said = say("gains.last-corner", marker=self.markers[lacking[0]].name)
+        elif flags:
+            said = say("gains.flags", flags=len(flags), points=sum(self._points[f] for f in flags))
+        else:
+            said = say("gains.corners")
+        return Gains(said=said, points=points)
 
     def set(self, state: State, marker: int, value: int) -> State:
         """Set a corner or a flag, as a referee decides; see `Game.set`."""

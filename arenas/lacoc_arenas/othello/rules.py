@@ -30,7 +30,7 @@ from lacoc_arenas.game import (
     leader,
 )
 from lacoc_arenas.layout import Length, opposite
-from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.messages import Gains, MarkerInfo
 from lacoc_shared.words import Phrase, say
 
 SIDE = 6
@@ -83,6 +83,7 @@ class Othello:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
+        self.rule = say("rule.othello") if settings.flank else say("rule.othello-single")
         self._pitch_m = settings.pitch_m
         self._half_m = SIDE / 2 * settings.pitch_m
         self._radius2_m2 = settings.disc_radius_m**2
@@ -240,6 +241,24 @@ class Othello:
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
         """Return the seat with more points; None for a draw (workshop 5-1 rule 7)."""
         return leader(scores)
+
+    def gains(self, state: State, seat: int) -> Gains:
+        """Return the discs that flip if the robot walks onto them from its last cell."""
+        last = state.last[seat]
+        if last == NO_CELL:
+            return Gains()
+        disc, owner = self.markers[last].name, state.cells[last]
+        if owner == NEUTRAL:
+            return Gains(said=say("gains.neutral-disc", marker=disc))
+        if owner != seat + 1:
+            return Gains(said=say("gains.their-disc", marker=disc))
+        points = {
+            self.markers[cell].name: len(flipped)
+            for cell in self.neighbours[last]
+            if (flipped := self.flips(state.cells, seat, last, cell))
+        }
+        said = say("gains.flip", marker=disc) if points else say("gains.inside", marker=disc)
+        return Gains(said=said, points=points)
 
     def set(self, state: State, marker: int, value: int) -> State:
         """Set the colour of a disc, as a referee decides; see `Game.set`."""

@@ -8,7 +8,7 @@ import msgspec
 
 from lacoc_arenas.game import Claim, GameEvent, NoSuchState, Observation, Place, WrongSetting
 from lacoc_arenas.layout import Length, Point
-from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.messages import Gains, MarkerInfo
 from lacoc_shared.words import Phrase, say
 
 
@@ -32,6 +32,7 @@ class State(msgspec.Struct, frozen=True):
 class Practice:
     """The rules for one choice of settings."""
 
+    rule = say("rule.practice")
     state_type = State
     markers: tuple[MarkerInfo, ...] = ()
 
@@ -68,6 +69,10 @@ class Practice:
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
         """Return None: nobody wins in practice."""
         return None
+
+    def gains(self, state: State, seat: int) -> Gains:
+        """Return no gains: nothing scores in practice."""
+        return Gains()
 
     def set(self, state: State, marker: int, value: int) -> State:
         """Raise an error: there is no marker to set.

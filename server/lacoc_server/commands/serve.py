@@ -15,6 +15,7 @@ from lacoc_robots.limits import Limits
 from lacoc_server.court.assigning import Preparation
 from lacoc_server.court.copying import Copying
 from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.court.key_trials import KeyTrials
 from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.court.renewal import Renewal
 from lacoc_server.court.weighing import Weighing
@@ -156,7 +157,7 @@ def serve_command(
             copying = Copying(folder, name, weighing.aside)
             office = OfficeDesk(hash_token(plan.secrets.office), seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
-        outlooks = Outlooks(weighing.aside)
+        outlooks, key_trials = Outlooks(weighing.aside), KeyTrials(weighing.aside)
         pair = plan.public.pair
         renewal = None if pair is None else opened.enter_context(Renewal(pair, name))
         network = opened.enter_context(
@@ -171,7 +172,7 @@ def serve_command(
                 TeamDesk(alone(name, settings.assigned)),
             )
         )
-        running = Court(settings, network, left or over, office, outlooks)
+        running = Court(settings, network, left or over, office, outlooks, key_trials)
         if exporter is not None:
             exporter.registry.register(running.metrics)
         stop = _stop_on_signal()

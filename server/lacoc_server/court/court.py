@@ -18,6 +18,7 @@ from lacoc_server.court import unjudged
 from lacoc_server.court.archive import Archive
 from lacoc_server.court.assigning import Prepared, staying
 from lacoc_server.court.health import MatchHealth
+from lacoc_server.court.key_trials import KeyTrials
 from lacoc_server.court.log import CourtLog
 from lacoc_server.court.metrics import CourtMetrics
 from lacoc_server.court.outlooks import Outlooks
@@ -32,7 +33,7 @@ from lacoc_shared.command.priority import go_first, take_turns
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Abort, Halt
 from lacoc_shared.inputs import THE_COURT, Advice, Decide, Input, JoinSeat
-from lacoc_shared.messages import Health, HealthVerdict, Outcome
+from lacoc_shared.messages import Gains, Health, HealthVerdict, Outcome
 from lacoc_shared.messages.office import WAITING, Assigned
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
@@ -95,9 +96,11 @@ class Court:
         left: Unfinished | None = None,
         office: OfficeDesk[Prepared] | None = None,
         outlooks: Outlooks | None = None,
+        key_trials: KeyTrials | None = None,
     ) -> None:
         self._office = office
         self._outlooks = outlooks
+        self._key_trials = key_trials
         self._settings = settings
         self._network = network
         self._log = CourtLog(settings.name)
@@ -114,6 +117,8 @@ class Court:
         """The newest published frame, encoded; empty before the first."""
         self._trouble: Phrase | None = None
         """The problem with the record's disk (`record.*`); None: there is none."""
+        self._told_gains: tuple[Gains, ...] = ()
+        """What the newest health message said that each robot would gain."""
         self._waits = 0
         """Number of beats skipped in a row because the disk refuses writes."""
         if left is None:
@@ -237,8 +242,24 @@ class Court:
             network.publish_scene(match.physics.scene)
         if beat.sheet_changed:
             network.publish_sheet(match.sheet())
-        if match.beats % HEALTH_BEATS == 0:
+        if match.beats % HEALTH_BEATS == 0 or self._gains() != self._told_gains:
             self._say_health(now_s)
+
+    def _gains(self) -> tuple[Gains, ...]:
+        """Ask the game what each robot would gain next; if its code is wrong, the match goes on."""
+        try:
+            return self._journal.match.gains()
+        except UserError as wrong:
+            self._log.rules(self.match_id, wrong.phrase)
+            return ()
+
+    def _moves(self) -> tuple[tuple[str, ...], ...]:
+        """Say what each seat's keys do; while two robots may play, no other key is tried."""
+        match, trials = self._journal.match, self._key_trials
+        if trials is None:
+            return ()
+        may_begin = match.phase <= Phase.LOBBY or len(match.seats) == 1
+        return tuple(trials(seat, may_begin) for seat in match.seats)
 
     def _open_next(self) -> None:
         # Making a match takes longer than a beat: while the disk fails, try it twice a second.
@@ -331,6 +352,7 @@ class Court:
 
     def _say_health(self, now_s: float) -> None:
         pace, match = self._pace, self._journal.match
+        self._told_gains = self._gains()
         health = Health(
             match=match.setup.match,
             beat=match.beats,
@@ -345,6 +367,8 @@ class Court:
             input_delay_ms=self._network.input_delay_ms,
             events=self._network.newest_event,
             sheet=self._network.sheet_hash,
+            gains=self._told_gains,
+            moves=self._moves(),
         )
         self._network.publish_health(health)
         self._log.health(self.match_id, health)

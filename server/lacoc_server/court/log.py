@@ -34,6 +34,8 @@ class CourtLog:
         self._slow_told = (0, 0)
         """Match and beat of the last report of slow beats."""
         self._trouble: Phrase | None = None
+        self._wrong: Phrase | None = None
+        """What was wrong with the game's code when it was last logged."""
 
     def event(self, match_id: str, event: Event, duration_ticks: int = 0) -> None:
         """Log an event; `duration_ticks` is the length of its match, 0 if it has no end."""
@@ -78,6 +80,12 @@ class CourtLog:
         """Log a disk error in the record of a finished match, if there was one."""
         if trouble:
             _write(self._log.warning, trouble, match_id=match_id, kind="record")
+
+    def rules(self, match_id: str, wrong: Phrase) -> None:
+        """Log once what is wrong with the code of the game, beside what it judges."""
+        if wrong != self._wrong:
+            self._wrong = wrong
+            _write(self._log.warning, wrong, match_id=match_id, kind="rules")
 
     def not_packed(self, match_id: str, error: OSError) -> None:
         """Log that a record could not be packed; nothing is lost by that."""

@@ -354,10 +354,14 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
-    """Return whether two sheets are equal, apart from the versions of software and protocol."""
+    """Return whether two sheets are equal, apart from the versions of software and protocol.
+
+    Sheets of earlier versions do not say the rule.
+    """
     if recorded is None:
         return False
-    return replace(recorded, version=again.version, protocol=again.protocol) == again
+    rule = recorded.rule or again.rule
+    return replace(recorded, version=again.version, protocol=again.protocol, rule=rule) == again
 
 
 def _frame_differences(recorded: Frame, again: Frame) -> list[str]:

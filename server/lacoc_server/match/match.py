@@ -31,7 +31,7 @@ from lacoc_shared.inputs import (
     ReadySeat,
     SilentSeat,
 )
-from lacoc_shared.messages import Done, Event, Frame, Outcome
+from lacoc_shared.messages import Done, Event, Frame, Gains, Outcome
 from lacoc_shared.record.schema import Result, Setup, Touch
 from lacoc_shared.seat import RESTART_KEY, Phase
 from lacoc_shared.words import Phrase, say
@@ -68,10 +68,26 @@ class Match(MatchState):
         self._touch: Touch | None = None
         self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
         """The last game state that was packed, its board as in frames, and each seat's points."""
+        self._gains: tuple[Any, tuple[Gains, ...]] = (None, ())
+        """The last game state that was asked for gains, and each seat's."""
 
     def legality(self) -> dict[str, Phrase | None]:
         """List every decision by name: None if it is legal now, else why not."""
         return referee.legality(self)
+
+    def gains(self) -> tuple[Gains, ...]:
+        """Say what each robot would gain next; empty while no robot stands on the field.
+
+        Raises:
+            UserError: if the code of somebody else's game is wrong.
+        """
+        if not Phase.READY <= self.phase <= Phase.HALTED:
+            return ()
+        state = self.history.state
+        if state is not self._gains[0]:
+            seats = range(len(self.seats))
+            self._gains = (state, tuple(self.game.gains(state, seat) for seat in seats))
+        return self._gains[1]
 
     def save(self) -> bytes:
         """Return all that the match is between two beats, its physics too.

@@ -227,6 +227,7 @@ class MatchState:
             scene=self.physics.scene_hash,
             call=self.assigned.call if self.assigned else "",
             fixture=self.assigned.fixture if self.assigned and self.by_office else None,
+            rule=self.game.rule,
         )
 
     def result(self) -> Result:

@@ -297,6 +297,9 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     fixture: Phrase | None = None
     """What is played, or that the court waits for the office (`fixture.*`); None: the court has no
     office."""
+    rule: Phrase | None = None
+    """What the game is about and how one scores (`rule.*`); None: the arena does not say, or the
+    sheet is of an earlier version."""
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -341,6 +344,15 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True):
 
     bodies: tuple[SceneBody, ...]
     geoms: tuple[SceneGeom, ...]
+
+
+class Gains(msgspec.Struct, frozen=True, kw_only=True):
+    """What a robot would gain next, where it is now."""
+
+    said: Phrase | None = None
+    """Where its robot comes from and what it can do next, for its player (`gains.*`)."""
+    points: dict[str, int] = {}
+    """Points that each marker would bring if the robot went there now, by the marker's name."""
 
 
 class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
@@ -406,7 +418,7 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of the court; sent twice a second."""
+    """The state of the court; sent twice a second, and at once when `gains` changes."""
 
     match: int
     beat: int
@@ -434,3 +446,8 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     """Hash of the newest sheet: 8 bytes of BLAKE2. A client that has another sheet asks for this
     one.
     """
+    gains: tuple[Gains, ...] = ()
+    """For each seat what its robot would gain next; empty while no robot stands on the field."""
+    moves: tuple[tuple[str, ...], ...] = ()
+    """For each seat what its keys of level B do, from key 0 on as far as they were tried: a name of
+    `move.*`, or "" if it is not known."""

@@ -14,6 +14,7 @@ import {
 import type { Refused } from "./connection";
 import type { Court } from "./court";
 import { checkSizes, chosenFiles, chosenNames, chosenSequences } from "./files";
+import { gainsOf } from "./gains";
 import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
@@ -21,6 +22,7 @@ import { tab } from "./storage";
 import {
   BEAT_S,
   type Frame,
+  type Gains,
   type HeldSeat,
   Phase,
   REPEATS_HZ,
@@ -39,6 +41,8 @@ const HELD = "held";
 const LOST = "lost";
 /** Seats that are not this page's any more. */
 const TAKEN: ReadonlySet<string> = new Set(["replaced", "refused"]);
+/** Notes that say which files a seat has, because none were sent. */
+const ABOUT_FILES: ReadonlySet<string> = new Set(["note.files-sample", "note.files-kept"]);
 const AGAIN_MS = 1500;
 /** Frames never come in step with the clock: the one that is nearest to its time counts. */
 const SIGN_MS = 1000 / REPEATS_HZ - 500 * BEAT_S;
@@ -70,6 +74,8 @@ export class Player {
   readonly tripMs = signal<number | null>(null);
   /** The newest keys that were sent, the newest last. */
   readonly pressed = signal<readonly { level: number; key: number }[]>([]);
+  /** What the robot would gain next; null while it can't gain anything. */
+  readonly gains: ReadonlySignal<Gains | null>;
   /** What comes after this match, as the office says; null: the court goes on with the team. */
   readonly next = signal<Phrase | null>(null);
   /** How many keys were sent. */
@@ -102,6 +108,7 @@ export class Player {
       return !welcome || welcome.court === wish?.court ? wish : null;
     });
     this.index = computed(() => (this.isHeld() ? (court.seat.value?.index ?? -1) : -1));
+    this.gains = gainsOf(court, this.index);
     this.standing = computed(() => this.stand());
     this.isWaiting = computed(
       () => this.wishHere.value !== null && this.claim.value.state === "joining",
@@ -320,11 +327,18 @@ export class Player {
       const fields = { seat, token, name, ...files, sequences: chosenSequences() };
       const joined = await this.court.ask<{ notes: Phrase[]; index: number }>("join", fields);
       this.tell({ is: "granted", wish, index: joined.index });
-      for (const note of this.alone ? [] : joined.notes) this.say({ said: note, tone: "plain" });
+      for (const note of this.alone ? [] : joined.notes) this.sayNote(note);
     } catch (error) {
       const broke = !this.court.connection.state.peek().open;
       this.tell({ is: "failed", refusal: error as Refused, broke });
     }
+  }
+
+  /** Say a note on a join; which files a seat has is no news in a match that goes on with them. */
+  private sayNote(note: Phrase): void {
+    const phase = this.court.frame.peek()?.phase ?? Phase.LOBBY;
+    const isOn = phase > Phase.READY && phase < Phase.FINISHED;
+    if (!isOn || !ABOUT_FILES.has(note.code)) this.say({ said: note, tone: "plain" });
   }
 
   private begin(seat: string, index: number): void {

@@ -178,6 +178,7 @@ export interface Sheet {
   scene: Uint8Array;
   call: string;
   fixture: Phrase | null;
+  rule: Phrase | null;
 }
 
 export interface SceneBody {
@@ -205,6 +206,11 @@ export interface SceneGeom {
 export interface Scene {
   bodies: SceneBody[];
   geoms: SceneGeom[];
+}
+
+export interface Gains {
+  said: Phrase | null;
+  points: Record<string, number>;
 }
 
 export interface SeatHealth {
@@ -253,6 +259,8 @@ export interface Health {
   input_delay_ms: number;
   events: number;
   sheet: Uint8Array;
+  gains: Gains[];
+  moves: string[][];
 }
 
 export interface DecisionReply {

@@ -1,5 +1,7 @@
 /** Messages of the page of a contest: English, Japanese. */
 export const contest = {
+  "contest.keyTurn": ["the table before or after", "前後の表に切り替える"],
+  "contest.keyStill": ["stay with this table, or go on", "この表で止める・進む"],
   "contest.title": ["The contest", "大会"],
   "contest.loading": ["Getting the contest …", "大会を読み込んでいます…"],
   "contest.trouble.missing": [

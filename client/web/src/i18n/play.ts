@@ -137,11 +137,6 @@ export const play = {
     "両チームの準備が完了しました。審判の開始を待っています",
   ],
   "next.countdown": ["Fingers on the keys!", "キーに指を置いてください！"],
-  "next.othello": ["Walk over discs to turn them", "ディスクを踏んで自分の色に変えよう"],
-  "next.flag-strike": ["Take corners, knock flags down", "コーナーを獲得し、フラッグを倒そう"],
-  "next.steer": ["Steer with the keys", "キーでロボットを動かそう"],
-  "next.ahead": ["You lead by {points}. {goal}", "{points} 点リード。{goal}"],
-  "next.behind": ["You are behind by {points}. {goal}", "{points} 点ビハインド。{goal}"],
   "next.locked": [
     "Restarted: your keys work again in {seconds} s",
     "再スタート：あと {seconds} 秒でキーが使えます",
@@ -170,6 +165,21 @@ export const play = {
   ],
   "next.rejoin": ["Taking your seat again …", "席に戻っています…"],
 
+  // Before the match
+  "brief.label": ["Your match", "この試合"],
+  "brief.own": ["Your robot stands on the {seat}", "あなたのロボットは{seat}側です"],
+  "brief.rule": ["How you score", "得点のしかた"],
+  "brief.keys": ["How you steer", "動かし方"],
+  "brief.once": [
+    "Press a key once: the robot goes on until you press another. 0 stops it, x puts it back at its start.",
+    "キーを 1 回押すと、次のキーまで動き続けます。0 で停止、x でスタート位置に戻ります。",
+  ],
+  "brief.postures": [
+    "At level A each key is one posture: press several, one after another, to walk.",
+    "レベル A ではキーごとに 1 つの姿勢です。続けて押すと歩きます。",
+  ],
+  "tag.own": ["You", "あなた"],
+
   // Ready
   "ready.say": ["Ready", "準備完了"],
   "ready.said": ["You are ready", "準備完了です"],
@@ -180,7 +190,8 @@ export const play = {
   "pad.level": ["Level of control", "操作レベル"],
   "pad.levelA": ["A posture", "A 姿勢"],
   "pad.levelB": ["B locomotion", "B 移動動作"],
-  "pad.only": ["Level {level}", "レベル {level}"],
+  "pad.onlyA": ["Each key is one posture", "キーごとに 1 つの姿勢"],
+  "pad.onlyB": ["A key goes on until the next one", "次のキーを押すまで続きます"],
   "pad.tab": [
     "Tab changes the level (the robot does not move)",
     "Tab でレベルを切り替え（それだけでは動きません）",
@@ -208,9 +219,35 @@ export const play = {
   "views.chase": ["behind the robot", "ロボットの後ろ"],
   "views.label": ["The field in 3D", "フィールドの 3D 表示"],
   "field.label": [
-    "Field. Digits steer, Tab changes the level, Space changes the view, x restarts, z leaves (hold it in a match). Escape moves to the buttons.",
-    "フィールド。数字で操作、Tab でレベル、スペースで視点、x で再スタート、z で退出（試合中は長押し）。Esc でボタンへ移動。",
+    "Field. Digits steer, Space changes the view, x restarts, z leaves (hold it in a match). ? lists all keys. Tab or Escape leave the field.",
+    "フィールド。数字で操作、スペースで視点、x で再スタート、z で退出（試合中は長押し）。? でキー一覧。Tab か Esc でフィールドの外へ。",
   ],
+  "field.labelLevels": [
+    "Field. Digits steer, Tab changes the level, Space changes the view, x restarts, z leaves (hold it in a match). ? lists all keys. Escape leaves the field.",
+    "フィールド。数字で操作、Tab でレベル、スペースで視点、x で再スタート、z で退出（試合中は長押し）。? でキー一覧。Esc でフィールドの外へ。",
+  ],
+  "field.outByTab": ["Tab: to the buttons", "Tab：ボタンへ"],
+  "field.outByEscape": ["Esc: to the buttons", "Esc：ボタンへ"],
+
+  // For screen readers
+  "heard.label": ["The match in words", "試合の経過"],
+  "heard.score": [
+    "{left} {leftPoints}, {right} {rightPoints}",
+    "{left} {leftPoints} 点、{right} {rightPoints} 点",
+  ],
+  "heard.left": ["{seconds} seconds left", "残り {seconds} 秒"],
+
+  // All keys
+  "keys.digits": ["steer: what each digit does stands on its key", "操作（動きは各キーに表示）"],
+  "keys.arrows": ["the same as 0, 1, 2, 3", "0、1、2、3 と同じ"],
+  "keys.arrowsB": ["the same as 0, 1, 2, 3 of level B", "レベル B の 0、1、2、3 と同じ"],
+  "keys.level": ["change the level of control", "操作レベルを切り替える"],
+  "keys.restart": ["put the robot back at its start", "ロボットをスタート位置に戻す"],
+  "keys.view": ["change the view", "視点を切り替える"],
+  "keys.ready": ["say ready", "準備完了にする"],
+  "keys.leave": ["leave; in a match hold it", "退出（試合中は長押し）"],
+  "keys.leavePractice": ["end practice", "練習を終了する"],
+  "keys.out": ["from the field to the buttons", "フィールドからボタンへ移る"],
 
   // Leave
   "leaving.hold": ["Hold z to leave the match", "退出するには z を長押し"],
@@ -256,10 +293,6 @@ export const play = {
   "toast.arrows": [
     "Arrows are for level B; Tab changes the level",
     "矢印キーはレベル B 用です。Tab で切り替えます",
-  ],
-  "toast.oneLevel": [
-    "In this arena only level {level} is open",
-    "この競技ではレベル {level} だけが使えます",
   ],
   "toast.level": ["Level {level}: press a digit", "レベル {level}：数字を押してください"],
 

@@ -65,11 +65,9 @@ export const referee = {
   "referee.view": ["View", "表示"],
   "referee.seat": ["Seat {seat}", "{seat}の席"],
   "referee.health": ["Court and links", "コートと通信の状態"],
-  "referee.shortcuts": ["Keys", "ショートカット"],
-  "referee.shortcutsTitle": ["Keyboard shortcuts", "キーボードショートカット"],
   "referee.shortcutsText": [
-    "All need Ctrl (on a Mac also ⌘), so that nothing happens by accident.",
-    "誤操作を防ぐため、すべて Ctrl（Mac では ⌘ も可）と一緒に押します。",
+    "All but ? need Ctrl (on a Mac also ⌘), so that nothing happens by accident.",
+    "誤操作を防ぐため、? 以外は Ctrl（Mac では ⌘ も可）と一緒に押します。",
   ],
   "referee.keyNext": [
     "the big button: start, halt, resume, official, next",
@@ -77,7 +75,6 @@ export const referee = {
   ],
   "referee.keyRobot": ["act on the left or right robot", "左・右のロボットを操作"],
   "referee.keyTakeBack": ["take back the newest event", "直近のイベントを取り消す"],
-  "referee.keyHelp": ["these shortcuts", "この一覧"],
   "decide.ready": ["Say ready", "代理で準備完了"],
   "decide.start": ["Start", "開始"],
   "referee.haltFor": ["Halt because of", "理由を付けて中断"],

@@ -1,5 +1,11 @@
 /** Messages of recordings: English, Japanese. */
 export const replay = {
+  "replay.keyPlay": ["play or pause", "再生・一時停止"],
+  "replay.keySkip": ["5 seconds back or on", "5 秒戻る・進む"],
+  "replay.keyStep": ["one picture back or on", "1 コマ戻る・進む"],
+  "replay.keyJump": ["the next event, the one before", "次・前のイベント"],
+  "replay.keyEnds": ["to the start, to the end", "最初・最後へ"],
+  "replay.keySpeed": ["slower, faster", "遅く・速く"],
   "replay.title": ["Replays", "リプレイ"],
   "replay.choose": ["Open a recording on this machine", "この端末の記録ファイルを開く"],
   "replay.dropHint": [

@@ -39,6 +39,7 @@ export const watch = {
   "camera.right": ["Right", "右"],
   "camera.chase": ["Robot", "ロボット"],
   "camera.map": ["Map", "平面図"],
+  "camera.row": ["camera: {name}", "カメラ：{name}"],
   "camera.key": ["{name} (key {key})", "{name}（キー {key}）"],
   "thirds.label": ["Just now", "直前の出来事"],
   "thirds.flip": ["{team} flips {marker}", "{team} が {marker} を反転"],
@@ -49,14 +50,6 @@ export const watch = {
   "opening.joined": ["joined, not ready yet", "参加済み・準備中"],
   "opening.ready": ["ready", "準備完了"],
   "countdown.go": ["GO!", "スタート！"],
-  "game.othello": [
-    "Walk from your own disc onto the next one. It turns to your colour. The team with more discs wins.",
-    "自分のディスクから隣のディスクへ歩くと自分の色に変わります。ディスクの多いチームの勝ちです。",
-  ],
-  "game.flag-strike": [
-    "Flags and corners give points. All four corners end the match. The team with more points wins.",
-    "フラッグとコーナーで得点します。四隅をすべて取ると試合終了。得点の多いチームの勝ちです。",
-  ],
   "result.title": ["Result", "試合結果"],
   "result.byRules": ["By the rules", "規則による結果"],
   "result.official": ["Official result", "公式結果"],

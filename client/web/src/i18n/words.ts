@@ -42,6 +42,11 @@ export function played(sheet: Sheet): string {
   return sheet.call && sheet.fixture ? `${said(sheet.fixture)} · ${sheet.title}` : sheet.title;
 }
 
+/** What the game is about and how one scores; "" if its arena does not say. */
+export function ruleOf(sheet: Sheet | null): string {
+  return sheet?.rule ? said(sheet.rule) : "";
+}
+
 /** A seat's name in the reader's language. */
 export function seatName(id: string): string {
   return id === "left" || id === "right" || id === "solo" ? t(`seat.${id}`) : id;

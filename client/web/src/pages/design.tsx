@@ -5,6 +5,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
 import { Dropping, useDrop } from "../ui/drop";
+import { KeyHelp, type KeyRow } from "../ui/key_help";
 import { isNarrow } from "../ui/screen";
 import { Settings } from "../ui/settings";
 import { Toasts, toast } from "../ui/toasts";
@@ -117,6 +118,7 @@ export default function Design() {
       <ConflictDialog files={files} />
       <TroubleDialog gateway={gateway} robot={robot} sheet={sheet} />
       <Dropping dragging={dragging}>{t("design.drop")}</Dropping>
+      <KeyHelp rows={keyRows} />
       <Toasts />
     </main>
   );
@@ -131,6 +133,15 @@ function Waiting({ studio }: { studio: Studio }) {
   if (text) return <Banner>{text}</Banner>;
   const offered = studio.sheet.table.value && studio.handed.offered.value;
   return offered ? <Offer handed={studio.handed} offered={offered} /> : null;
+}
+
+function keyRows(): readonly KeyRow[] {
+  return [
+    [["Ctrl+Enter"], t("design.keyTry")],
+    [["Ctrl+S"], t("design.keySave")],
+    [["Ctrl+Z"], t("design.keyUndo")],
+    [["Ctrl+Y", "Ctrl+Shift+Z"], t("design.keyRedo")],
+  ];
 }
 
 /** Keys that work wherever the focus is. */

@@ -9,7 +9,7 @@ import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
 import { played } from "../i18n/words";
 import { LinkBanner } from "../ui/banner";
-import { Dialog } from "../ui/dialog";
+import { KeyHelp, type KeyRow, showKeys } from "../ui/key_help";
 import { ScoreBug } from "../ui/score";
 import { Settings } from "../ui/settings";
 import { Toasts, toast } from "../ui/toasts";
@@ -33,25 +33,17 @@ followColours(court);
 
 export default function Referee() {
   const settings = useSignal(false);
-  const help = useSignal(false);
   const picked = useSignal<Picked | null>(null);
   useTitle();
-  useShortcuts(
-    (seat) => {
-      const card = document.querySelector(`.seat[data-seat="${seat}"]`)?.getBoundingClientRect();
-      if (card) picked.value = { seat, leftPx: card.left, topPx: card.top - 60 };
-    },
-    () => {
-      help.value = !help.value;
-    },
-  );
+  useShortcuts((seat) => {
+    const card = document.querySelector(`.seat[data-seat="${seat}"]`)?.getBoundingClientRect();
+    if (card) picked.value = { seat, leftPx: card.left, topPx: card.top - 60 };
+  }, showKeys);
   return (
     <main class="referee" data-phase={desk.phase.value} data-live={court.live.value}>
       <LinkBanner court={court} />
       <TopBar
-        onHelp={() => {
-          help.value = true;
-        }}
+        onHelp={showKeys}
         onSettings={() => {
           settings.value = true;
         }}
@@ -73,13 +65,7 @@ export default function Referee() {
         </div>
       </div>
       <AskDialog desk={desk} />
-      {help.value && (
-        <Shortcuts
-          onClose={() => {
-            help.value = false;
-          }}
-        />
-      )}
+      <KeyHelp rows={keyRows} also="Ctrl+/" text={t("referee.shortcutsText")} />
       {settings.value && (
         <Settings
           onClose={() => {
@@ -110,7 +96,7 @@ function TopBar({ onHelp, onSettings }: { onHelp: () => void; onSettings: () => 
       <ScoreBug match={court} />
       <nav>
         <button class="button quiet" type="button" onClick={onHelp}>
-          {t("referee.shortcuts")}
+          {t("keys.title")}
         </button>
         <button class="button quiet" type="button" onClick={onSettings}>
           {t("settings.title")}
@@ -120,30 +106,12 @@ function TopBar({ onHelp, onSettings }: { onHelp: () => void; onSettings: () => 
   );
 }
 
-function Shortcuts({ onClose }: { onClose: () => void }) {
-  return (
-    <Dialog title={t("referee.shortcutsTitle")} onClose={onClose}>
-      <p class="muted">{t("referee.shortcutsText")}</p>
-      <dl class="shortcuts">
-        <dt>
-          <kbd>Ctrl+Enter</kbd>
-        </dt>
-        <dd>{t("referee.keyNext")}</dd>
-        <dt>
-          <kbd>Ctrl+←</kbd> <kbd>Ctrl+→</kbd>
-        </dt>
-        <dd>{t("referee.keyRobot")}</dd>
-        <dt>
-          <kbd>Ctrl+Z</kbd>
-        </dt>
-        <dd>{t("referee.keyTakeBack")}</dd>
-        <dt>
-          <kbd>Ctrl+/</kbd>
-        </dt>
-        <dd>{t("referee.keyHelp")}</dd>
-      </dl>
-    </Dialog>
-  );
+function keyRows(): readonly KeyRow[] {
+  return [
+    [["Ctrl+Enter"], t("referee.keyNext")],
+    [["Ctrl+←", "Ctrl+→"], t("referee.keyRobot")],
+    [["Ctrl+Z"], t("referee.keyTakeBack")],
+  ];
 }
 
 /** The tab's title shows the state too. */

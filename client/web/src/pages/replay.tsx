@@ -15,6 +15,7 @@ import { View } from "../scene/View";
 import { Board } from "../ui/board";
 import { Dropping, useDrop } from "../ui/drop";
 import { Icon, IconButton } from "../ui/icons";
+import { KeyHelp, type KeyRow } from "../ui/key_help";
 import { Countdown } from "../ui/opening";
 import { PlayButton, SpeedChooser } from "../ui/playback";
 import { ResultCard } from "../ui/result";
@@ -30,8 +31,8 @@ import { ForkHere } from "./replay/fork_here";
 import { ReplayLog } from "./replay/log";
 import { ChancesNow, Highlights } from "./replay/odds";
 import { Player, SPEEDS } from "./replay/player";
-import { Cameras, cameraKeys } from "./watch/cameras";
-import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
+import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
+import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
 import { cameraOfAddress, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 import "./replay/replay.css";
@@ -297,6 +298,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         </aside>
       )}
       <CornerSettings />
+      <KeyHelp rows={() => rowsOf(player)} />
       {server !== null && forking.value !== null && (
         <ForkHere
           recording={recording}
@@ -418,4 +420,17 @@ function shortcutsOf(player: Player): Record<string, () => void> {
     NumpadAdd: () => player.faster(1),
     ...cornerKeys(panel),
   };
+}
+
+function rowsOf({ recording }: Player): readonly KeyRow[] {
+  return [
+    [["Space", "K"], t("replay.keyPlay")],
+    [["←", "→"], t("replay.keySkip")],
+    [[",", "."], t("replay.keyStep")],
+    [["N", "P"], t("replay.keyJump")],
+    [["Home", "End"], t("replay.keyEnds")],
+    [["-", "+"], t("replay.keySpeed")],
+    ...cameraRows(recording.sheet.value),
+    ...cornerRows(),
+  ];
 }

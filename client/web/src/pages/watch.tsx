@@ -12,6 +12,7 @@ import { played, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
+import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
@@ -21,8 +22,8 @@ import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
 import { Aside } from "./watch/aside";
-import { Cameras, cameraKeys } from "./watch/cameras";
-import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
+import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
+import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
 import { EventCard, useBetween } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
@@ -93,6 +94,7 @@ export default function Watch() {
       {hud && isShown && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
       <CornerSettings />
+      <KeyHelp rows={() => [...cameraRows(court.sheet.value), ...cornerRows()]} />
     </main>
   );
 }

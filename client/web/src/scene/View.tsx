@@ -8,7 +8,9 @@ import type { CameraName } from "./cameras";
 import type { FloorMarks } from "./marks";
 import type { Hit } from "./picking";
 import type { Shutter } from "./shutter";
+import type { OwnSeat } from "./tags";
 import { type Inset, type Options, type Source, Viewer, type ViewHook } from "./viewer";
+import type { Worth } from "./worths";
 import "./view.css";
 
 export type { CameraName } from "./cameras";
@@ -43,6 +45,10 @@ interface Props {
   ghost?: Source["sample"] | null;
   /** Marks on the floor, asked for with each picture. */
   marks?: () => FloorMarks | null;
+  /** The reader's own robot. */
+  own?: OwnSeat | null;
+  /** What markers would bring the reader's robot now. */
+  worth?: Worth | null;
   /** Says when to draw, for a film. Must not change. */
   shutter?: Shutter;
   /** The label for screen readers. */
@@ -107,6 +113,8 @@ function optionsOf(props: Props): Options {
     lit: props.lit ?? NONE,
     ghost: props.ghost ?? null,
     marks: props.marks ?? null,
+    own: props.own ?? null,
+    worth: props.worth ?? null,
     shutter: props.shutter ?? null,
   };
 }

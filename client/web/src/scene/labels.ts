@@ -77,7 +77,8 @@ function label(text: string): HTMLElement {
   return element;
 }
 
-function put(element: HTMLElement, at: ReturnType<Placing>): void {
+/** Put the middle of an element at a place of the picture; without a place it is hidden. */
+export function put(element: HTMLElement, at: ReturnType<Placing>): void {
   if (element.hidden !== !at) element.hidden = !at;
   // On whole pixels, as the teams' names; the style puts its middle there.
   if (at) element.style.translate = `${Math.round(at.x)}px ${Math.round(at.y)}px`;

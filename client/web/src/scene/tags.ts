@@ -14,6 +14,13 @@ export type Placing = (
   z: number,
 ) => { x: number; y: number; far: number } | null;
 
+/** The reader's own robot. */
+export interface OwnSeat {
+  seat: number;
+  /** Above it, in place of its team's name. */
+  name: string;
+}
+
 export class Tags {
   private readonly layer: HTMLElement;
   private tags: HTMLElement[] = [];
@@ -25,8 +32,8 @@ export class Tags {
     host.append(this.layer);
   }
 
-  /** Take the teams' names. */
-  name(sheet: Sheet): void {
+  /** Take the teams' names; a name may stand for its team's. */
+  name(sheet: Sheet, own: OwnSeat | null): void {
     const letters = seatLetters(sheet);
     this.tags = sheet.seats.map((seat, index) => {
       const tag = document.createElement("div");
@@ -38,7 +45,9 @@ export class Tags {
       mark.style.backgroundColor = seat.colour;
       mark.style.color = luma(rgb(seat.colour)) > 0.5 ? "#16100a" : "#fff";
       const name = document.createElement("span");
-      name.textContent = seat.team || seat.id;
+      const isOwn = index === own?.seat;
+      name.textContent = isOwn ? own.name : seat.team || seat.id;
+      tag.classList.toggle("own", isOwn);
       tag.append(mark, name);
       return tag;
     });

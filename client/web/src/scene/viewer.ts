@@ -12,8 +12,9 @@ import { type Hit, pick, pickFlat, project, rayAt } from "./picking";
 import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
 import type { Exposed, Shutter } from "./shutter";
 import type { Ring, Stage } from "./stage";
-import { Tags } from "./tags";
+import { type OwnSeat, Tags } from "./tags";
 import { type Plan, planOf, TopView } from "./topview";
+import { type Worth, Worths } from "./worths";
 
 /** What is drawn. */
 export type Source = Pick<Match, "sheet" | "scene" | "sample">;
@@ -44,6 +45,8 @@ export interface Options {
   ghost: Source["sample"] | null;
   /** Marks on the floor, now. */
   marks: (() => FloorMarks | null) | null;
+  own: OwnSeat | null;
+  worth: Worth | null;
   /** Says when to draw; null: whenever the browser shows a picture. Can't change later. */
   shutter: Shutter | null;
 }
@@ -93,6 +96,7 @@ export class Viewer implements Exposed {
   private readonly times = new FrameTimes();
   private readonly tags: Tags;
   private readonly labels: Labels;
+  private readonly worths: Worths;
   private readonly observer: ResizeObserver;
   private model: Model | null = null;
   private ghost: Model | null = null;
@@ -121,6 +125,7 @@ export class Viewer implements Exposed {
   ) {
     this.options = options;
     this.labels = new Labels(host);
+    this.worths = new Worths(host);
     this.tags = new Tags(host);
     this.observer = new ResizeObserver(() => this.measure());
     this.observer.observe(host);
@@ -139,6 +144,10 @@ export class Viewer implements Exposed {
       this.drop();
     }
     if (before.source !== options.source) this.model = null;
+    const [own, was] = [options.own, before.own];
+    if (this.model && (own?.seat !== was?.seat || own?.name !== was?.name)) {
+      this.tags.name(this.model.sheet, own);
+    }
   }
 
   /** Stop and take everything away. */
@@ -150,6 +159,7 @@ export class Viewer implements Exposed {
     this.drop();
     this.tags.end();
     this.labels.end();
+    this.worths.end();
   }
 
   readonly hook: ViewHook = (() => {
@@ -345,7 +355,7 @@ export class Viewer implements Exposed {
       if (elsewhere) this.rig.cut();
       this.model = new Model(scene, sheet);
       this.stage?.setModel(this.model);
-      this.tags.name(sheet);
+      this.tags.name(sheet, this.options.own);
       this.labels.name(sheet);
     }
     const moment = source.sample(nowMs);
@@ -384,6 +394,7 @@ export class Viewer implements Exposed {
     this.tags.draw(named, (x, y, z) => this.place(x, y, z));
     // The map has them in its drawing.
     this.labels.draw(this.map ? null : named, (x, y, z) => this.place(x, y, z));
+    this.worths.draw(model, this.options.worth, (x, y, z) => this.place(x, y, z));
   }
 
   /** The robots of the other trial now; null without one, and where it belongs to another scene. */

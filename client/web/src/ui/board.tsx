@@ -13,6 +13,8 @@ interface Props {
   match: Match;
   /** Something was clicked: a marker's or a seat's index. */
   onPick?: (what: { marker?: number; seat?: number }) => void;
+  /** Points that markers would bring now, by name: they are marked. */
+  worth?: Readonly<Record<string, number>> | null;
   /** Index of the marker or seat that is chosen. */
   picked?: { marker?: number; seat?: number } | null;
 }
@@ -32,7 +34,7 @@ const SHADE = "rgb(0 0 0 / 30%)";
 const NEUTRAL = "#5d6674";
 const DOWN = "#3b424d";
 
-export function Board({ match, onPick, picked }: Props) {
+export function Board({ match, onPick, picked, worth }: Props) {
   const states = useMemo(() => markerStates(match), [match]).value;
   const robots = useRobots(match);
   const stop = useSignal(0);
@@ -99,6 +101,7 @@ export function Board({ match, onPick, picked }: Props) {
               cloth={clothOf(match.scene.value, index)}
               picked={picked?.marker === index}
               named={onPick !== undefined}
+              isOpen={worth?.[marker.name] !== undefined}
             />
           </g>
         ))}
@@ -205,9 +208,11 @@ interface MarkerProps {
   picked: boolean;
   /** Whether its name is shown. */
   named: boolean;
+  /** Whether it would bring points now. */
+  isOpen: boolean;
 }
 
-function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
+function Marker({ marker, state, sheet, cloth, picked, named, isOpen }: MarkerProps) {
   const radius = Math.max(LEAST_MARKER_M, marker.radius_m);
   const fits = radius >= NAME_FITS_M;
   const label = named ? markerLabel(marker.name) || marker.name : ownLabel(marker);
@@ -234,8 +239,9 @@ function Marker({ marker, state, sheet, cloth, picked, named }: MarkerProps) {
       <circle
         r={radius}
         fill={fill}
-        stroke={picked ? "#fff" : "rgb(255 255 255 / 25%)"}
-        stroke-width={picked ? 0.025 : 0.008}
+        stroke={picked || isOpen ? "#fff" : "rgb(255 255 255 / 25%)"}
+        stroke-width={picked || (isOpen && fits) ? 0.025 : isOpen ? 0.013 : 0.008}
+        stroke-dasharray={isOpen ? "0.05 0.03" : undefined}
       />
       <text
         y={radius * (label && fits ? 0.2 : 0.36)}

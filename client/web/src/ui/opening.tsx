@@ -4,8 +4,8 @@ import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
 import { Phase, SeatFlag, type Sheet } from "../core/wire";
-import { catalogue, type MessageName, t } from "../i18n";
-import { BEATS_PER_S, clock, clockTicks, hint, played, team } from "../i18n/words";
+import { t } from "../i18n";
+import { BEATS_PER_S, clock, clockTicks, hint, played, ruleOf, team } from "../i18n/words";
 import { isLast, SeatMark } from "./score";
 import "./opening.css";
 
@@ -30,7 +30,7 @@ export function OpeningCard({ match }: { match: Match }) {
   const next = useMemo(() => computed(() => hint(match)), [match]).value;
   const sheet = match.sheet.value;
   if (!shown || !sheet || !flags) return null;
-  const game = `game.${sheet.arena}`;
+  const rule = ruleOf(sheet);
   return (
     <section class="opening" aria-label={t("opening.title")}>
       <p class="kicker">
@@ -43,7 +43,7 @@ export function OpeningCard({ match }: { match: Match }) {
         ))}
       </div>
       <p class="next">{next}</p>
-      {game in catalogue && <p class="rules">{t(game as MessageName)}</p>}
+      {rule && <p class="rules">{rule}</p>}
     </section>
   );
 }

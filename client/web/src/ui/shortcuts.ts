@@ -27,6 +27,12 @@ export function useShortcuts(keys: Keys): void {
   });
 }
 
+/** Whether a key goes into a field for text. */
+export function isTyping({ target }: Event): boolean {
+  if (!(target instanceof Element)) return false;
+  return Boolean(target.closest("input, select, textarea, [contenteditable], [role=textbox]"));
+}
+
 function takesKey({ target, code }: KeyboardEvent): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog")) return true;

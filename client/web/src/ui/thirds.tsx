@@ -16,11 +16,17 @@ const MOST = 3;
 const TOLD_ELSEWHERE = new Set(["start", "resume", "official", "next", "ready", "declare"]);
 const KINDS_TOLD = new Set(["restart", "silent", "fault"]);
 
+interface Props {
+  match: Match;
+  /** Another part of the page tells a screen reader of events. */
+  toldElsewhere?: boolean;
+}
+
 /**
  * The events of the last seconds. By beats, not by wall time: so it is right for a late comer,
  * with a delay, and at any place and speed of a recording.
  */
-export function Thirds({ match }: { match: Match }) {
+export function Thirds({ match, toldElsewhere }: Props) {
   const shown = useMemo(
     () =>
       computed(() => {
@@ -38,7 +44,7 @@ export function Thirds({ match }: { match: Match }) {
   const numbers = shown.value ? shown.value.split(" ").map(Number) : [];
   const events = match.events.peek();
   return (
-    <ol class="thirds" aria-live="polite" aria-label={t("thirds.label")}>
+    <ol class="thirds" aria-live={toldElsewhere ? "off" : "polite"} aria-label={t("thirds.label")}>
       {numbers.map((number) => {
         const event = events.find((one) => one.number === number);
         return event && <Third key={number} match={match} event={event} />;

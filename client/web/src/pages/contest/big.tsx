@@ -8,6 +8,7 @@ import { podium } from "../../core/contest/places";
 import type { ContestSheet, NextGame } from "../../core/contest/sheet";
 import { type Slide, slides } from "../../core/contest/slides";
 import { said, t } from "../../i18n";
+import { KeyHelp, type KeyRow } from "../../ui/key_help";
 import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
 import { BracketView } from "./bracket";
@@ -85,6 +86,7 @@ function Slides({ sheet }: { sheet: ContestSheet }) {
       <div class="slide" data-slide={slide.is}>
         <Shown sheet={sheet} slide={slide} />
       </div>
+      <KeyHelp rows={keyRows} />
     </main>
   );
 }
@@ -196,4 +198,12 @@ function Podium({ sheet }: { sheet: ContestSheet }) {
       )}
     </div>
   );
+}
+
+function keyRows(): readonly KeyRow[] {
+  return [
+    [["←", "→"], t("contest.keyTurn")],
+    [["Space"], t("contest.keyStill")],
+    [["F"], t("keys.fullscreen")],
+  ];
 }

@@ -21,16 +21,19 @@ import {
   WHY_NO,
 } from "../../core/wire";
 import { said, sentence, t } from "../../i18n";
-import { clockTicks, logClock } from "../../i18n/words";
+import { clockTicks, logClock, played } from "../../i18n/words";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
 import { useDrop } from "../../ui/drop";
+import { hideKeys, KeyHelp, showKeys } from "../../ui/key_help";
 import { Settings } from "../../ui/settings";
 import { Toasts, toast } from "../../ui/toasts";
 import { Entrance } from "./card";
 import { Field, VIEWS, type ViewName } from "./field";
 import { canChange, dragging, FilePicker, take } from "./files";
 import { Footer } from "./footer";
+import { Heard } from "./heard";
+import { keyRows } from "./key_rows";
 import { useKeyboard, useWindowFocus } from "./keyboard";
 import { KeyTest } from "./keytest";
 import { Leaving, LeavingBar } from "./leaving";
@@ -51,10 +54,12 @@ export function Cockpit({ alone }: { alone: boolean }) {
   const hasInputMethod = useSignal(false);
   const field = useRef<HTMLDivElement>(null);
 
+  // Once a dialog is gone: nothing beneath it takes the focus before.
+  const focusField = () =>
+    requestAnimationFrame(() => field.current?.focus({ preventScroll: true }));
   const close = () => {
     open.value = "";
-    // Once the dialog is gone: nothing beneath it takes the focus before.
-    requestAnimationFrame(() => field.current?.focus({ preventScroll: true }));
+    focusField();
   };
   /** A match is on: nothing may take the keyboard from who plays it. */
   const isMatchOn = () => {
@@ -83,11 +88,6 @@ export function Cockpit({ alone }: { alone: boolean }) {
   };
   const press = (key: number, atMs: number) => void player.press(key, atMs);
   const changeLevel = (to?: number) => {
-    const levels = court.sheet.peek()?.levels ?? [];
-    if (levels.length < 2) {
-      toast(t("toast.oneLevel", { level: LEVEL_LETTERS[player.level.peek()] ?? "" }), "no");
-      return;
-    }
     player.changeLevel(to);
     toast(t("toast.level", { level: LEVEL_LETTERS[player.level.peek()] ?? "" }));
   };
@@ -124,6 +124,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
     field,
     {
       isOn: () => player.standing.peek() === "seated",
+      hasLevels: () => (court.sheet.peek()?.levels.length ?? 0) > 1,
       act,
       leaveReleased: () => leaving.release(),
       leaveField: () =>
@@ -147,7 +148,10 @@ export function Cockpit({ alone }: { alone: boolean }) {
   useSignalEffect(() => {
     const isBegun =
       phase.value === Phase.COUNTDOWN && !alone && player.standing.peek() === "seated";
-    if (isBegun && ["leave", "files", "linktest"].includes(open.peek())) close();
+    if (isBegun) {
+      hideKeys();
+      if (["leave", "files", "linktest"].includes(open.peek())) close();
+    }
     if (phase.value < Phase.COUNTDOWN || phase.value > Phase.HALTED) leaving.end();
   });
 
@@ -173,10 +177,12 @@ export function Cockpit({ alone }: { alone: boolean }) {
       <LeavingBar leaving={leaving} onStay={close} />
       {isIn ? (
         <>
+          {court.sheet.value && <h1 class="hidden-text">{played(court.sheet.value)}</h1>}
           <Rail {...{ court, player, alone }} {...controls} onLinkTest={openLinkTest} />
           <Footer
             court={court}
             player={player}
+            onKeys={showKeys}
             onFiles={() => {
               open.value = "files";
             }}
@@ -214,6 +220,8 @@ export function Cockpit({ alone }: { alone: boolean }) {
         </Settings>
       )}
       {open.value === "linktest" && <LinkTestDialog court={court} onClose={close} />}
+      <KeyHelp rows={() => keyRows(court.sheet.value, alone)} onClose={focusField} />
+      {isIn && <Heard court={court} player={player} alone={alone} />}
       <Toasts />
     </main>
   );

@@ -14,6 +14,7 @@ import { Countdown } from "../../ui/opening";
 import { ResultCard } from "../../ui/result";
 import { ScoreBug } from "../../ui/score";
 import { Thirds } from "../../ui/thirds";
+import { Brief } from "./brief";
 import { nextStep } from "./steps";
 
 export const VIEWS = ["arena", "top", "chase"] as const;
@@ -21,7 +22,7 @@ export type ViewName = (typeof VIEWS)[number];
 
 /** The arena is fitted between the score bug above and the badge below. */
 const INSET = { top: 118, bottom: 40 };
-const INSET_NARROW = { top: 88, bottom: 6 };
+const INSET_NARROW = { top: 112, bottom: 6 };
 const NARROW = matchMedia("(max-width: 820px)");
 const INSET_OUTSIDE = {};
 
@@ -57,6 +58,7 @@ export function Field(props: Props) {
   }, [isNarrow]);
   const standing = player.standing.value;
   const isIn = standing === "seated" || standing === "joining";
+  const hasLevels = (court.sheet.value?.levels.length ?? 0) > 1;
   return (
     <div class="stage">
       {/* biome-ignore-start lint/a11y/noNoninteractiveTabindex: the field takes the game's keys */}
@@ -65,7 +67,7 @@ export function Field(props: Props) {
         class="field3d"
         tabIndex={isIn ? 0 : -1}
         role="application"
-        aria-label={t("field.label")}
+        aria-label={t(hasLevels ? "field.labelLevels" : "field.label")}
       >
         <View
           source={source}
@@ -73,16 +75,20 @@ export function Field(props: Props) {
           seat={Math.max(0, player.index.value)}
           quality={quality}
           labels={!alone}
+          own={!alone && isIn ? { seat: player.index.value, name: t("tag.own") } : null}
+          worth={player.gains.value?.points ?? null}
           inset={isIn ? (isNarrow.value ? INSET_NARROW : INSET) : INSET_OUTSIDE}
           label={t("views.label")}
         />
       </div>
       {/* biome-ignore-end lint/a11y/noNoninteractiveTabindex: see above */}
+      {isIn && <p class="way-out">{t(hasLevels ? "field.outByEscape" : "field.outByTab")}</p>}
       {isIn && (
         <>
           <div class="on-stage">
             <ScoreBug match={court} />
             <NextStep {...props} />
+            {!alone && <Brief court={court} player={player} />}
             {!alone && <Countdown match={court} />}
             {!alone && (
               <ResultCard match={court} own={player.index.value} withReplay isLast>
@@ -98,7 +104,7 @@ export function Field(props: Props) {
             {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
             <span>{t(`views.${view.value}`)}</span>
           </button>
-          {!alone && <Thirds match={court} />}
+          {!alone && <Thirds match={court} toldElsewhere />}
           <InputMethodHint {...props} />
           <Curtain {...props} />
         </>
@@ -114,11 +120,7 @@ function NextStep({ court, player, alone }: Props) {
   }).value;
   const [tone, ...words] = text.split("|");
   if (alone && tone === "do") return null; // the coach says it
-  return (
-    <p class={`next ${tone}`} role="status">
-      {words.join("|")}
-    </p>
-  );
+  return <p class={`next ${tone}`}>{words.join("|")}</p>;
 }
 
 function InputMethodHint({ hasInputMethod }: Props) {

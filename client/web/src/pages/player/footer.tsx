@@ -10,11 +10,12 @@ import { canChange } from "./files";
 interface Props {
   court: Court;
   player: Player;
+  onKeys: () => void;
   onFiles: () => void;
   onSettings: () => void;
 }
 
-export function Footer({ court, player, onFiles, onSettings }: Props) {
+export function Footer({ court, player, onKeys, onFiles, onSettings }: Props) {
   const sheet = court.sheet.value;
   const index = player.index.value;
   const seat = sheet?.seats[index];
@@ -62,6 +63,9 @@ export function Footer({ court, player, onFiles, onSettings }: Props) {
       <p class={`link-state${isLinked ? " good" : ""}`}>
         {t(isLinked ? "foot.linked" : "foot.broken")}
       </p>
+      <button class="button quiet small keys-button" type="button" onClick={onKeys}>
+        {t("keys.title")} <kbd>?</kbd>
+      </button>
       <button class="button quiet small" type="button" disabled={!isOpen} onClick={onFiles}>
         {t("files.change")}
       </button>

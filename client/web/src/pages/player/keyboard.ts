@@ -4,18 +4,22 @@
  * Digits, x and z steer wherever the focus is, except in a text field or a dialog: after a click
  * on "Ready" the next digit must count. Tab and Space belong to whatever has the focus, so that
  * the page can be used without a mouse; only on the field, which takes the focus when play begins,
- * do they change the level and the view. Shift+Tab and Escape lead out of it.
+ * does Space change the view, and Tab the level where there are two. Where there is one, Tab leads
+ * out of the field, as Shift+Tab and Escape always do.
  */
 
 import type { Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { isFromInputMethod, type Pressed, readKey } from "../../core/keys";
+import { isTyping } from "../../ui/shortcuts";
 
 const INPUT_METHOD_MS = 8000;
 
 export interface Steering {
   /** Whether keys mean the game now. */
   isOn(): boolean;
+  /** Whether there is another level of control to change to. */
+  hasLevels(): boolean;
   act(pressed: Pressed, atMs: number): void;
   /** The key that leaves goes up, or this window loses the keyboard. */
   leaveReleased(): void;
@@ -33,14 +37,14 @@ export function useKeyboard(
     const take = (event: KeyboardEvent) => {
       if (!steering.isOn() || document.querySelector("dialog[open]")) return;
       const target = event.target as HTMLElement;
-      if (isTyping(target)) return;
+      if (isTyping(event)) return;
       const isOnField = target === document.body || Boolean(field.current?.contains(target));
       if (isOnField && event.code === "Escape") {
         steering.leaveField();
         return;
       }
       const pressed = readKey(event);
-      if (!pressed) return;
+      if (!pressed || (pressed.does === "level" && !steering.hasLevels())) return;
       if (!isOnField && (pressed.does === "level" || pressed.does === "view")) return;
       if (isFromInputMethod(event)) {
         hasInputMethod.value = true;
@@ -87,8 +91,4 @@ export function useWindowFocus(hasFocus: Signal<boolean>): void {
       window.removeEventListener("blur", lost);
     };
   }, [hasFocus]);
-}
-
-function isTyping(target: HTMLElement): boolean {
-  return Boolean(target.closest?.("input, select, textarea, [contenteditable], [role=textbox]"));
 }

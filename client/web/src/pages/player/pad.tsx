@@ -6,7 +6,7 @@ import type { Court } from "../../core/court";
 import { ARROWS } from "../../core/keys";
 import type { Player } from "../../core/player";
 import { Level, Phase, RESTART_KEY, SeatFlag } from "../../core/wire";
-import { t } from "../../i18n";
+import { said, t } from "../../i18n";
 import { BEATS_PER_S } from "../../i18n/words";
 
 export const LEVEL_LETTERS = ["A", "B"] as const;
@@ -105,8 +105,7 @@ function LevelSwitch({ court, player, onLevel }: Props) {
   const levels = court.sheet.value?.levels ?? [];
   const now = player.level.value;
   if (levels.length < 2) {
-    const only = t(levels[0] === Level.POSTURE ? "pad.levelA" : "pad.levelB");
-    return <p class="one-level">{t("pad.only", { level: only })}</p>;
+    return <p class="one-level">{t(levels[0] === Level.POSTURE ? "pad.onlyA" : "pad.onlyB")}</p>;
   }
   return (
     <fieldset class="levels" title={t("pad.tab")}>
@@ -138,13 +137,16 @@ function Digit({ court, player, digit, standing, hinted, onKey }: DigitProps) {
   const does = Boolean(seat?.keys[level as 0 | 1]?.includes(digit));
   const count = seat?.postures[digit] ?? 0;
   const isB = level === Level.LOCOMOTION;
+  const move = useMove(player, digit).value;
   const what = !does
     ? t("pad.nothing")
     : !isB
       ? t("pad.posture")
-      : count === 1
-        ? t("pad.one")
-        : t("pad.many", { count });
+      : move
+        ? said({ code: `move.${move}` })
+        : count === 1
+          ? t("pad.one")
+          : t("pad.many", { count });
   const stands = standing.begun && standing.level === level && standing.key === digit;
   const part = stands && standing.count > 1 ? (standing.posture + 1) / standing.count : 0;
   const classes = ["key", does ? "does" : "none", stands && "on", hinted === digit && "hinted"];
@@ -165,6 +167,11 @@ function Digit({ court, player, digit, standing, hinted, onKey }: DigitProps) {
       {part > 0 && <span class="part" style={{ width: `${part * 100}%` }} />}
     </button>
   );
+}
+
+/** What a key of level B does, as the court tried it; "" while that is not known. */
+function useMove({ court, index }: Player, digit: number) {
+  return useComputed(() => court.health.value?.moves[index.value]?.[digit] ?? "");
 }
 
 function Restart({ player, onKey }: Props) {

@@ -5,7 +5,7 @@ import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
-import { Level, Phase, SeatFlag } from "../../core/wire";
+import { type Event, Level, Phase, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";
 import { Board } from "../../ui/board";
 import { EventLog } from "../../ui/log";
@@ -27,6 +27,11 @@ interface Props {
 /** What the page shows elsewhere already. */
 const QUIET = new Set(["phase", "ready", "key-refused", "heard"]);
 
+/** Whether the log has an event. */
+export function isTold(event: Event): boolean {
+  return !QUIET.has(event.kind);
+}
+
 export function Rail(props: Props) {
   const { court, player, alone } = props;
   const progress = useLessons(court, player);
@@ -35,19 +40,17 @@ export function Rail(props: Props) {
       {alone ? <Coach court={court} player={player} progress={progress} /> : <Before {...props} />}
       <FilesChanged court={court} player={player} alone={alone} />
       <NoKeys court={court} player={player} />
-      <Pad {...props} hinted={alone ? progress.next : null} />
-      <div class="map">
-        <Board match={court} />
+      <div class="hands">
+        <Pad {...props} hinted={alone ? progress.next : null} />
+        <div class="map">
+          <Board match={court} worth={player.gains.value?.points ?? null} />
+        </div>
       </div>
       {!alone && (
-        <div class="events">
-          <EventLog
-            match={court}
-            most={30}
-            only={(event) => !QUIET.has(event.kind)}
-            toldElsewhere
-          />
-        </div>
+        // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached by keys
+        <section class="events" aria-label={t("log.title")} tabIndex={0}>
+          <EventLog match={court} most={30} only={isTold} toldElsewhere />
+        </section>
       )}
     </aside>
   );

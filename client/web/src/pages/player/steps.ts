@@ -3,19 +3,14 @@
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { Phase, SeatFlag } from "../../core/wire";
-import { type MessageName, said, t } from "../../i18n";
-import { BEATS_PER_S, seatName, team } from "../../i18n/words";
+import { said, t } from "../../i18n";
+import { BEATS_PER_S, ruleOf, seatName, team } from "../../i18n/words";
 
 /** A line, and how much it matters. */
 export interface Step {
   text: string;
   tone: "do" | "wait" | "warn";
 }
-
-const GOALS: Record<string, MessageName> = {
-  othello: "next.othello",
-  "flag-strike": "next.flag-strike",
-};
 
 /** The next step; for a `computed`: it reads the newest frame. */
 export function nextStep(court: Court, player: Player, alone: boolean): Step {
@@ -45,7 +40,7 @@ export function nextStep(court: Court, player: Player, alone: boolean): Step {
       }
       if (seconds) return { text: t("next.locked", { seconds }), tone: "warn" };
       if (seat.flags & SeatFlag.SILENT) return { text: t("next.silent"), tone: "warn" };
-      return { text: playing(court, index), tone: "do" };
+      return { text: playing(court, player), tone: "do" };
     }
     case Phase.HALTED:
       return { text: t("next.halted"), tone: "warn" };
@@ -76,14 +71,8 @@ function othersMissing(court: Court, index: number): string {
   return t("next.start");
 }
 
-function playing(court: Court, index: number): string {
-  const frame = court.frame.value!;
-  const goal = t(GOALS[court.sheet.value!.arena] ?? "next.steer");
-  const own = frame.seats[index]!.score;
-  const others = frame.seats.filter((_, other) => other !== index).map((seat) => seat.score);
-  const ahead = own - Math.max(...others);
-  if (!others.length || ahead === 0) return goal;
-  return ahead > 0
-    ? t("next.ahead", { points: ahead, goal })
-    : t("next.behind", { points: -ahead, goal });
+/** What the robot could do next; the rule of the game where its court does not say. */
+function playing(court: Court, player: Player): string {
+  const next = player.gains.value?.said;
+  return next ? said(next) : ruleOf(court.sheet.value);
 }

@@ -4,6 +4,7 @@ import type { Signal } from "@preact/signals";
 import type { Sheet } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
 import type { CameraName } from "../../scene/View";
+import type { KeyRow } from "../../ui/key_help";
 
 const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
 const ALONE: readonly CameraName[] = ["auto", "arena", "top", "chase", "map"];
@@ -18,6 +19,12 @@ export function cameraKeys(
     if (chosen) camera.value = chosen;
   };
   return Object.fromEntries(CHOICE.map((_, index) => [`Digit${index + 1}`, press(index)]));
+}
+
+/** The same in words. */
+export function cameraRows(sheet: Sheet | null): readonly KeyRow[] {
+  const names = choiceOf(sheet).map((name) => t(`camera.${name}` as MessageName));
+  return names.map((name, index) => [[String(index + 1)], t("camera.row", { name })]);
 }
 
 export function Cameras({ camera, sheet }: { camera: Signal<CameraName>; sheet: Sheet | null }) {

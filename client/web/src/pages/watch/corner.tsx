@@ -4,6 +4,7 @@ import { type Signal, signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
+import type { KeyRow } from "../../ui/key_help";
 import { isNarrow, toggleFullscreen } from "../../ui/screen";
 import { Settings } from "../../ui/settings";
 
@@ -51,6 +52,15 @@ export function CornerSettings() {
       }}
     />
   );
+}
+
+/** What these keys do. */
+export function cornerRows(): readonly KeyRow[] {
+  return [
+    [["E"], t("watch.panel")],
+    [["S"], t("settings.title")],
+    [["F"], t("keys.fullscreen")],
+  ];
 }
 
 export function cornerKeys(panel: Signal<boolean>) {
