@@ -207,7 +207,7 @@ export const play = {
   ],
   "pad.standsOne": ["{level} {key}: posture is held", "{level} {key}：姿勢を保持"],
   "pad.none": ["No key yet", "まだキーは押されていません"],
-  "pad.restart": ["Restart", "再スタート"],
+  "pad.restart": ["To the start", "スタートへ"],
   "pad.restartIn": ["in {seconds} s", "あと {seconds} 秒"],
   "pad.view": ["View", "視点"],
   "pad.leave": ["Leave", "退出"],
