@@ -178,6 +178,25 @@ def test_a_knockout_goes_on() -> None:
     assert (found[loser].state, found[loser].rank) == ("over", 3)
 
 
+def test_the_finalists_wait_for_the_match_for_third_place() -> None:
+    """While others play for third place, the finalists hear where and when their final begins."""
+    cup = Cup("single-knockout", third_place=True)
+    first, second = (m for m in cup.contest.stages[0].matches if m.state == "open")
+    assert first.next_seats is not None
+    assert second.next_seats is not None
+    cup.won(first.pairing.id, first.next_seats)
+    cup.won(second.pairing.id, second.next_seats)
+    third = next(m for m in cup.contest.stages[0].matches if m.pairing.section == "p")
+    assert third.next_seats is not None
+    winner, other = first.next_seats[0], second.next_seats[0]
+    for calls in ({}, {"north": cup.call(third.pairing.id, "north", third.next_seats)}):
+        found = where(cup, calls)
+        assert (found[winner].state, found[winner].opponent) == ("waits", other)
+        assert (found[other].state, found[other].about_s) == ("waits", GAME // 1000)
+        assert found[winner].fixture is not None
+        assert render(found[winner].fixture) == "Final"
+
+
 def test_teams_that_are_equal_in_all_share_their_place() -> None:
     """At the end each of them hears whom it shares its place with, in both languages."""
     cup = Cup(teams=2, how="round-robin", rounds=2)
@@ -242,6 +261,8 @@ def test_before_the_first_draw_all_wait() -> None:
     event.add(Planned, stage="cup", format="round-robin", settings=Settings())
     found = found_for(event.contest, Courts({}, {}), Pace(0, GAME))
     assert [there.said.code for there in found.values()] == ["team.awaits-draw"] * 3
+    fixtures = {render(match.fixture) for match in foreseen(event.contest, FORMATS)}
+    assert fixtures == {f"Round robin, round {number}" for number in (1, 2, 3)}
 
 
 def test_the_usual_length_of_a_game() -> None:

@@ -1,6 +1,6 @@
 """What people call the stages of a contest: the organiser's titles, or the usual names; pure."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Planned
@@ -21,8 +21,9 @@ def titles(contest: Contest) -> dict[str, Phrase]:
     Without a title of the organiser it is the usual name of the format; stages of one usual name
     have numbers.
     """
-    plans = [*(view.plan for view in contest.stages), *contest.planned]
-    return {plan.stage: _title(plan, plans) for plan in plans}
+    there = (*(view.plan for view in contest.stages), *contest.planned)
+    plans = {plan.stage: plan for plan in there}  # one to come can be among the stages already
+    return {stage: _title(plan, plans.values()) for stage, plan in plans.items()}
 
 
 def title(contest: Contest, stage: str) -> Phrase:
@@ -30,7 +31,7 @@ def title(contest: Contest, stage: str) -> Phrase:
     return titles(contest).get(stage) or say("stage.titled", en=stage, ja=stage)
 
 
-def _title(plan: Planned, plans: Iterable[Planned]) -> Phrase:
+def _title(plan: Planned, plans: Collection[Planned]) -> Phrase:
     if plan.title:
         return say("stage.titled", en=plan.title["en"], ja=plan.title["ja"])
     alike = [one.stage for one in plans if not one.title and _kind(one) == _kind(plan)]

@@ -224,9 +224,12 @@ def _match(contest: Contest, pairing: str) -> tuple[StageView, Match]:
 
 
 def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
-    """Find the next match of each team: an open one, else one that still lacks an opponent."""
+    """Find the next match of each team: one to be played now, else one that waits.
+
+    A match waits for an opponent, or as a final for the other matches of its stage.
+    """
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
-    waiting = (match for view in contest.stages for match in view.matches if match.state == "waits")
+    waiting = (match for view in contest.stages for match in view.matches if not match.decided)
     coming: dict[str, tuple[StageView, Match]] = {}
     for match in (*playable(contest), *waiting):
         for team in match.teams:
