@@ -68,18 +68,22 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
     expect(watch.locator(".banner")).to_have_count(0)
     press(office, "Go on")
     expect(office.locator(".day [role=status]")).to_have_count(0)
+    expect(contest.locator(".banner")).not_to_contain_text("a cable")
+    expect(watch.locator(".banner")).to_have_count(0)  # the line was read before
 
     press(office, "All later")
     confirm(office, "15 minutes later")
     expect(office.locator(".day [role=status]")).to_contain_text("No game is called before")
     assert violations(office) == []
     press(office, "Go on")
+    expect(office.locator(".day [role=status]")).to_have_count(0)  # the buttons move then
 
     press(office, "Staff")
     say(office, "Name", "Aiko")
     office.locator("dialog").get_by_role("button", name="Make a link").click()
     link = office.locator("dialog .staff a")
     expect(link).to_have_text(re.compile(r"/office#token="))
+    expect(office.locator("dialog .staff").get_by_role("button", name="Copy")).to_be_visible()
     helper = open_page(viewport=PHONE)
     helper.goto(link.inner_text())
     expect(helper.locator(".day")).to_contain_text("You decide as Aiko.")

@@ -166,8 +166,12 @@ def keep_strangers_out(office: Page, event: Event) -> None:
 
 
 def approve_and_draw(office: Page) -> None:
+    """Approve all teams: until the draw, they stand above the timetable; then draw."""
+    expect(office.locator(".head .title")).to_contain_text(f"{len(TEAMS)} wait for you")
     office.get_by_role("button", name=f"Approve all {len(TEAMS)}").click()
     expect(office.locator('.entries li[data-state="in"]')).to_have_count(len(TEAMS))
+    expect(office.locator(".head .title")).not_to_contain_text("wait for you")
+    expect(office.locator(".entries ~ .timetable .slot").first).to_contain_text("seed")
     office.get_by_role("button", name="Close entries and draw").click()
     expect(office.get_by_role("dialog")).to_contain_text("4 teams take part")
     office.get_by_role("button", name="Close and draw with 4 teams").click()
@@ -198,7 +202,7 @@ def decide(office: Page) -> None:
     points = dialog.locator(".points input")
     points.nth(0).fill("3")
     points.nth(1).fill("9")
-    expect(dialog.locator(".effects li").first).to_be_visible()
+    expect(dialog.locator(".effects li").first).to_contain_text("round 1 (")
     expect(go).to_be_disabled()
     assert violations(office) == []
     dialog.get_by_label("Reason").fill("the scores were swapped")

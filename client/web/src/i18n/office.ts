@@ -4,8 +4,8 @@ export const office = {
   "office.open": ["Entries are open", "参加受付中"],
   "office.closed": ["Entries are closed", "参加は締め切り済み"],
   "office.isOver": [
-    "The contest is over: print results and certificates, publish with 'lacoc contest publish'",
-    "大会は終了しました。結果と賞状を印刷し、'lacoc contest publish' で公開できます",
+    "The contest is over: print results and certificates, and publish it",
+    "大会は終了しました。結果と賞状を印刷し、公開できます",
   ],
   "office.closesAt": ["until {time}", "{time} まで"],
   "office.enterAt": ["Teams enter at", "チームの登録ページ"],
@@ -13,8 +13,8 @@ export const office = {
   "office.print": ["Print …", "印刷…"],
   "office.close": ["Close entries and draw", "締め切って組み合わせを決定"],
   "office.close.text": [
-    "{count} teams take part. After this no team can enter, files change only with a reason, and the first games are called to the courts.",
-    "{count} チームが参加します。締め切ると、新しい登録はできず、ファイルの変更には理由が必要になり、最初のゲームがコートに割り当てられます。",
+    "{count} teams take part. After this teams enter late and files change only with a reason, and the first games are called to the courts.",
+    "{count} チームが参加します。締め切ると、遅れての参加とファイルの変更には理由が必要になり、最初のゲームがコートに割り当てられます。",
   ],
   "office.close.left": [
     "Not in, because you have not approved them: {teams}",
@@ -23,8 +23,8 @@ export const office = {
   "office.close.go": ["Close and draw with {count} teams", "{count} チームで組み合わせを決定"],
   "office.closeOnly": ["Close entries", "締め切る"],
   "office.closeOnly.text": [
-    "{count} teams take part. After this no team can enter, and files change only with a reason. You draw the first stage afterwards.",
-    "{count} チームが参加します。締め切ると、新しい登録はできず、ファイルの変更には理由が必要です。組み合わせはその後に決めます。",
+    "{count} teams take part. After this teams enter late and files change only with a reason. You draw the first stage afterwards.",
+    "{count} チームが参加します。締め切ると、遅れての参加とファイルの変更には理由が必要です。組み合わせはその後に決めます。",
   ],
   "office.closeOnly.go": ["Close with {count} teams", "{count} チームで締め切る"],
   "office.draw": ["Draw {stage}", "{stage} の組み合わせを決定"],
@@ -76,8 +76,8 @@ export const office = {
   "office.day.published": ["The published contest", "公開した大会"],
   "office.day.me": ["You decide as {name}.", "{name} として決定します。"],
   "office.staff.text": [
-    "Each of the staff gets a link to this page. With it one may do what you may, but give links; decisions say who made them.",
-    "スタッフ一人ひとりに、このページのリンクを作れます。リンクを配ること以外は主催者と同じことができ、だれが決めたかが記録されます。",
+    "Give each of the staff a link to this page. They can do all that you can, but make no links for the staff. Decisions say who made them.",
+    "スタッフ一人ひとりに、このページのリンクを作れます。スタッフのリンクを作ること以外は主催者と同じことができ、だれが決めたかが記録されます。",
   ],
   "office.staff.name": ["Name", "名前"],
   "office.staff.add": ["Make a link", "リンクを作る"],
@@ -104,6 +104,7 @@ export const office = {
   "office.draw.go": ["Draw with {count} teams", "{count} チームで組み合わせを決定"],
   "office.entries": ["Entries", "参加チーム"],
   "office.waiting": ["Waiting for you", "承認待ち"],
+  "office.waitingCount": ["{count} wait for you", "承認待ち {count} チーム"],
   "office.find": ["Find a team", "チームを探す"],
   "office.noTeams": [
     "No team has entered. Give the teams the address and the event code.",

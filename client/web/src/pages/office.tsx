@@ -63,11 +63,12 @@ export default function Office() {
               <Entries organiser={organiser} view={view} waiting />
             )}
             <DayBar organiser={organiser} view={view} />
+            {!view.drawn && <Entries organiser={organiser} view={view} />}
             {(view.drawn || view.slots.length > 0) && (
               <Timetable organiser={organiser} view={view} />
             )}
             {view.drawn && <Rulings organiser={organiser} />}
-            <Entries organiser={organiser} view={view} />
+            {view.drawn && <Entries organiser={organiser} view={view} />}
           </>
         )}
       </main>

@@ -167,7 +167,7 @@ def staff(
 ) -> None:
     """Print a link to the organiser's page for somebody of the staff.
 
-    Whoever has it may do what you may, but give links. Facts say who decided.
+    Whoever has it can do all that you can, but make no links for the staff. Facts say who decided.
     """
     from lacoc_server.contest.acts.organiser import team_name
 

@@ -15,6 +15,7 @@ from lacoc_server.contest.league.facts import (
     Voided,
     new,
 )
+from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import Match
 from lacoc_server.contest.league.titles import title
@@ -53,7 +54,8 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         for number, fact in enumerate(more, last + 1)
     ]
     then = compute((*facts, *placed), FORMATS)
-    found = changes(compute(facts, FORMATS), then)
+    was = compute(facts, FORMATS)
+    found = changes(was, then)
     here = sum(not team.gone for team in then.teams)
     lines = [say("decide.leaves", team=team, left=here) for team in found.leaving]
     for before, after in found.matches:
@@ -62,7 +64,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         lines.append(
             say(
                 "decide.match",
-                pairing=match.pairing.id,
+                match=named(then if after else was, match.pairing.id),
                 teams=[team or "?" for team in match.teams],
                 state=match.state,
                 winner=match.winner or None,

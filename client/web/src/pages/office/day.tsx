@@ -2,12 +2,13 @@
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { stateOf } from "../../core/contest/sheet";
 import { type Effect, type OfficeView, pictureUrl, TEAM_NAME_MAX } from "../../core/desk";
 import { momentOf } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { noticeText } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
-import { Effects, Reason } from "./dialogs";
+import { CopyButton, Effects, Reason } from "./dialogs";
 import type { Organiser } from "./organiser";
 
 const MINUTE_MS = 60_000;
@@ -21,6 +22,8 @@ interface Props {
 export function DayBar({ organiser, view }: Props) {
   const { day, announced, undrawable } = view;
   const held = noticeText({ text: "", ...day }, Date.now());
+  const sheet = organiser.feed.sheet.value;
+  const goesOn = view.drawn && !(sheet && stateOf(sheet) === "over");
   const over = (is: "pause" | "later" | "line" | "staff") => () => {
     organiser.over.value = { is };
   };
@@ -37,12 +40,12 @@ export function DayBar({ organiser, view }: Props) {
             {t("office.day.resume")}
           </button>
         )}
-        {!held && view.drawn && (
+        {!held && goesOn && (
           <button class="button" type="button" onClick={over("pause")}>
             {t("office.day.pause")}
           </button>
         )}
-        {view.drawn && (
+        {goesOn && (
           <button class="button" type="button" onClick={over("later")}>
             {t("office.day.later")}
           </button>
@@ -299,7 +302,7 @@ export function StaffDialog({ organiser, view }: Props) {
       <div class="asks">
         <p>{t("office.staff.text")}</p>
         <form
-          class="bar"
+          class="asks"
           onSubmit={async (event) => {
             event.preventDefault();
             if (await organiser.do({ do: "staff", name: name.value })) name.value = "";
@@ -328,6 +331,7 @@ export function StaffDialog({ organiser, view }: Props) {
                 <div>
                   <b>{one.name}</b>
                   <a href={one.link}>{one.link}</a>
+                  <CopyButton link={one.link} />
                   <button
                     class="button quiet small"
                     type="button"

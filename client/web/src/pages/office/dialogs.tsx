@@ -13,6 +13,22 @@ interface Props {
   team: string;
 }
 
+/** Copies a link, so that it can be sent. */
+export function CopyButton({ link }: { link: string }) {
+  return (
+    <button
+      class="button"
+      type="button"
+      onClick={() => {
+        void navigator.clipboard?.writeText(link);
+        toast(t("office.copied"), "yes");
+      }}
+    >
+      {t("office.copy")}
+    </button>
+  );
+}
+
 /** A team: its link with the QR code, and what can be done. */
 export function TeamDialog({ organiser, team }: Props) {
   const row = organiser.view.value?.teams.find((one) => one.team === team);
@@ -35,16 +51,7 @@ export function TeamDialog({ organiser, team }: Props) {
             <div>
               <p>{t("office.link")}</p>
               <a href={link.link}>{link.link}</a>
-              <button
-                class="button"
-                type="button"
-                onClick={() => {
-                  void navigator.clipboard?.writeText(link.link);
-                  toast(t("office.copied"), "yes");
-                }}
-              >
-                {t("office.copy")}
-              </button>
+              <CopyButton link={link.link} />
             </div>
           </div>
         )}

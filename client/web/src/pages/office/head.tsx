@@ -17,6 +17,7 @@ export function Head({ organiser, view, onSettings }: Props) {
   const { event, code } = view;
   const sheet = organiser.feed.sheet.value;
   const isOver = sheet !== null && stateOf(sheet) === "over";
+  const waiting = organiser.waiting.value.length;
   const here = view.teams.filter(({ state }) => state === "in" || state === "late").length;
   return (
     <header class="head">
@@ -25,6 +26,7 @@ export function Head({ organiser, view, onSettings }: Props) {
         <p class="muted">
           {t(isOver ? "office.isOver" : event.open ? "office.open" : "office.closed")} ·{" "}
           {t("contest.teamCount", { count: here })}
+          {waiting > 0 && <> · {t("office.waitingCount", { count: waiting })}</>}
           {event.open && event.closes_ms > 0 && (
             <> · {t("office.closesAt", { time: dayTime(event.closes_ms) })}</>
           )}
