@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from chromium import OpenPage
 from lacoc_process import started
@@ -19,6 +20,7 @@ from stand import served
 from lacoc_client.web.gateway.published import write_pages
 from lacoc_server.contest.acts.organiser import enter
 from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.facts import Announced
 from lacoc_server.contest.league.sheet import encode, sheet
 
 sys.path.append(str(Path(__file__).parent / "core"))
@@ -30,6 +32,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.long]
 PROJECTOR = {"width": 1920, "height": 1080}
 SMALL = {"width": 1280, "height": 720}
 TEAMS = ("Ants", "Bees", "九州工業大学ロボット研究会")
+LINE = "Lunch until one o'clock in room 2-104; the robots meet at the north door."
 LEAST_SHARE = 0.028
 """A letter is at least this part of the picture's height: 15 m away it can be read on a screen that
 is 2 m high."""
@@ -94,6 +97,12 @@ def fits(page: Page) -> None:
         LEAST_SHARE,
     )
     assert found == {"over": [0, 0], "small": []}
+    banner = page.locator(".banner")
+    if banner.count():
+        slide, line = page.locator(".slide").bounding_box(), banner.bounding_box()
+        assert slide is not None
+        assert line is not None
+        assert slide["y"] + slide["height"] <= line["y"] + 1
 
 
 def show_all(page: Page) -> list[str]:
@@ -112,22 +121,28 @@ def show_all(page: Page) -> list[str]:
             return shown
 
 
-@pytest.mark.parametrize(("size", "locale"), [(PROJECTOR, "en-GB"), (SMALL, "ja-JP")])
+@pytest.mark.parametrize(
+    ("size", "locale", "line"),
+    [(PROJECTOR, "en-GB", ""), (SMALL, "ja-JP", ""), (SMALL, "en-GB", LINE)],
+)
 def test_every_slide_can_be_read(
     tmp_path: Path,
     built_pages: Path,
     open_page: OpenPage,
     size: ViewportSize,
     locale: str,
+    line: str,
 ) -> None:
-    """Tables, brackets, the next games and the podium fit both projectors, in large letters."""
+    """All slides fit both projectors in large letters, also with a line to all below them."""
+    told = Announced(id="f0", number=0, at_ms=0, text=line) if line else None
     kinds: set[str] = set()
     write_pages(tmp_path)
     with served(tmp_path) as url:
         page = open_page(viewport=size, locale=locale)
         page.clock.install()
         for number, (_, event) in enumerate(sheets()):
-            made = sheet("Robot Cup 2027", event.contest, expected(event.contest))
+            shown = msgspec.structs.replace(event.contest, announced=told)
+            made = sheet("Robot Cup 2027", shown, expected(event.contest))
             file = tmp_path / "contest.json"
             file.write_bytes(encode(made))
             # The server of plain files tells versions apart by their second.

@@ -71,11 +71,11 @@ export function Banner({ role = "status", calm = false, children }: Props) {
   );
 }
 
-/** The notice that this reader has put away. */
-const seen = signal("");
+/** The parts of the notice that this reader has put away. */
+const seen = signal<readonly string[]>([]);
 
-/** The notice as one text; "" if there is none. */
-export function noticeText({ text, paused, until_ms, reason }: Notice, nowMs: number): string {
+/** What the notice says: the line to all, and whether games are called. */
+function noticeParts({ text, paused, until_ms, reason }: Notice, nowMs: number): string[] {
   const held = paused || until_ms > nowMs;
   const why = reason && held ? t("notice.reason", { reason }) : "";
   const day = paused
@@ -83,21 +83,27 @@ export function noticeText({ text, paused, until_ms, reason }: Notice, nowMs: nu
     : held
       ? t("notice.until", { time: timeOf(until_ms) })
       : "";
-  return [text, day && day + why].filter(Boolean).join(" · ");
+  return [text, day && day + why].filter(Boolean);
+}
+
+/** The notice as one text; "" if there is none. */
+export function noticeText(notice: Notice, nowMs: number): string {
+  return noticeParts(notice, nowMs).join(" · ");
 }
 
 /** The notice across the top; whoever has read it can put it away. */
 export function NoticeBanner({ notice }: { notice: Notice | null }) {
-  const text = notice ? noticeText(notice, Date.now()) : "";
-  if (!text || seen.value === text) return null;
+  const parts = notice ? noticeParts(notice, Date.now()) : [];
+  const news = parts.filter((part) => !seen.value.includes(part));
+  if (!news.length) return null;
   return (
     <Banner calm>
-      {text}
+      {news.join(" · ")}
       <button
         class="button small"
         type="button"
         onClick={() => {
-          seen.value = text;
+          seen.value = parts;
         }}
       >
         {t("notice.seen")}

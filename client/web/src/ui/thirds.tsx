@@ -3,7 +3,7 @@
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import type { Match } from "../core/match";
-import type { Event } from "../core/wire";
+import { type Event, type Frame, Phase, SeatFlag } from "../core/wire";
 import { said, t } from "../i18n";
 import { BEATS_PER_S, markerName, team } from "../i18n/words";
 import { SeatMark } from "./score";
@@ -30,10 +30,13 @@ export function Thirds({ match, toldElsewhere }: Props) {
   const shown = useMemo(
     () =>
       computed(() => {
-        const beat = match.frame.value?.beat ?? -1;
+        const frame = match.frame.value;
+        const beat = frame?.beat ?? -1;
         const events = match.events.value;
         const from = events.findLastIndex((event) => event.beat <= beat - SHOWN_BEATS) + 1;
-        const recent = events.slice(from).filter((event) => event.beat <= beat && isTold(event));
+        const recent = events
+          .slice(from)
+          .filter((event) => event.beat <= beat && isTold(event) && isStillTrue(event, frame));
         return recent
           .slice(-MOST)
           .map(({ number }) => number)
@@ -95,6 +98,13 @@ export function sentence(match: Match, event: Event): string {
     default:
       return said(event.said);
   }
+}
+
+/** False for a lost connection that is back, or that nobody needs any more: the game is over. */
+function isStillTrue(event: Event, frame: Frame | null): boolean {
+  if (event.kind !== "silent" || !frame) return true;
+  const flags = frame.seats[event.seat]?.flags ?? 0;
+  return frame.phase < Phase.FINISHED && (flags & SeatFlag.SILENT) !== 0;
 }
 
 /** Whether a third shows an event. */
