@@ -104,6 +104,9 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".result", "Decided by the referee")
     show.sees(".result .side.won", "Bees")
     show.sees(".result .next", "The referee opens the next match")
+    left.close()
+    show.sees(".panel .log li[data-kind=silent]", "The connection to Ants is lost")
+    assert show.find(".third[data-kind=silent]").count() == 0, "the game is over: it is no news"
     show.page.get_by_role("button", name="Look at the field").click()
     show.misses(".result")
     assert "18 : 18" in show.page.title()
@@ -111,7 +114,10 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".brand", "match 2")
     show.sees(".opening .side[data-seat='1']", "Bees")
     assert "Official" not in show.find(".panel").inner_text()
+    left = venue.contestant("left", "Ants")
+    show.sees(".opening .side[data-seat='0'] .ready", "ready")
     left.close()
+    show.sees(".third[data-kind=silent]", "The connection to Ants is lost")
 
 
 @pytest.mark.long
