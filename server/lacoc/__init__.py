@@ -2,7 +2,7 @@
 
     import lacoc
 
-    print(lacoc.walk("Loco-data.txt"))                  # how a robot walks with a table
+    print(lacoc.walk("Loco-data.xlsx"))                  # how a robot walks with a table
     match = lacoc.simulate("planner", "my_bot.py")       # a whole match, as numpy arrays
     env = lacoc.make("Walk-v0")                          # an environment of Gymnasium
 

@@ -129,7 +129,7 @@ def try_court(env: Environment) -> None:
     """Try a court's machine: every module can be imported, and a short match can be played."""
     try_both(env)
     packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
-    walk = "import lacoc; print(lacoc.walk('gaits/Loco-data.txt'))"
+    walk = "import lacoc; print(lacoc.walk('gaits/Loco-data.xlsx'))"
     assert env.run("python", "-c", walk).stdout.startswith("speed forward")
     env.run("python", "-c", IMPORT_ALL.format(packages=packages))
     env.run("lacoc", "contest", "certificate")

@@ -15,7 +15,7 @@ from lacoc_shared.mistakes import UserError
 pytestmark = pytest.mark.slow
 
 PAGE = (Path(__file__).parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
-SAMPLE = robot_folder("hexapod") / "Loco-data.txt"
+SAMPLE = robot_folder("hexapod") / "Loco-data.xlsx"
 
 
 def run(code: str, folder: Path) -> str:
