@@ -18,7 +18,7 @@ def _lines(text: str) -> int:
 
 
 def _words(text: str) -> int:
-    return len(text.split())
+    return sum(any(sign.isalnum() for sign in word) for word in text.split())  # not lines of tables
 
 
 def _is_product(name: str) -> bool:
