@@ -129,6 +129,13 @@ def test_a_substitute_comes_for_a_team_that_is_ill(room: Room) -> None:
     room.ask(Approve(secret=KEY, teams=("Eels",), reason="a reserve"))
     assert [fact.club for fact in room.facts if isinstance(fact, Entered)][-1] == "North"
 
+    assert [row.team for row in room.view.teams if row.reserve] == ["Eels"]
+    assert {row.team for row in room.view.teams if row.substitute} == {
+        "Ants",
+        "Bees",
+        "Crabs",
+        "Dogs",
+    }
     ill = {"team": "Bees", "substitute": "Eels"}
     assert said(room.ask(Substitute(secret=KEY, **ill, reason=" "))) == "decide.needs-reason"
     lines = effect_of(room.ask(Substitute(secret=KEY, **ill, reason="ill")))

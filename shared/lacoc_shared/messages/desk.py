@@ -321,6 +321,9 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
     club: str = ""
     substitute: bool = False
     """Whether another team can still take its place: it has not played in a drawn stage."""
+    reserve: bool = False
+    """Whether it may take another team's place: it takes part, and has no place of its own in a
+    stage that is played."""
 
 
 class CourtRow(msgspec.Struct, frozen=True, kw_only=True):

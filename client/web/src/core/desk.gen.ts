@@ -200,6 +200,7 @@ export interface TeamRow {
   contact: string;
   club: string;
   substitute: boolean;
+  reserve: boolean;
 }
 
 export interface CourtRow {

@@ -88,6 +88,10 @@ export const office = {
     "Another team takes the place of {team} where {team} has not played. {team} leaves the contest.",
     "{team} がまだ試合をしていない枠に、別のチームが入ります。{team} は大会から抜けます。",
   ],
+  "office.substitute.none": [
+    "Every team has a place already. Let the substitute enter on /enter, and approve it with a reason.",
+    "どのチームにもすでに枠があります。代わりのチームに登録ページから申し込んでもらい、理由を付けて承認してください。",
+  ],
   "office.substitute.who": ["Who comes", "代わりに出るチーム"],
   "office.substitute.go": ["Let the substitute in", "代わりを入れる"],
   "office.contact": ["Contact: {contact}", "連絡先：{contact}"],

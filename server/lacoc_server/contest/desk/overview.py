@@ -83,10 +83,15 @@ def _to_draw(contest: Contest) -> ToDraw | None:
 def _teams(book: Book) -> Iterator[TeamRow]:
     """Yield the teams with what they told; those that wait or were refused come first."""
     contest = book.contest
+    played = [view.stage.entries for view in contest.stages if not view.over]
     for row in _rows(book):
         told = book.contacts.of(row.team)
         yield msgspec.structs.replace(
-            row, contact=told.reach, club=told.club, substitute=bool(places(contest, row.team))
+            row,
+            contact=told.reach,
+            club=told.club,
+            substitute=bool(places(contest, row.team)),
+            reserve=row.state in ("in", "late") and not any(row.team in one for one in played),
         )
 
 

@@ -229,7 +229,7 @@ export function UndrawDialog({ organiser, view }: Props) {
 
 /** Another team takes the place of a team that has not played. */
 export function SubstituteDialog({ organiser, view, team }: Props & { team: string }) {
-  const others = view.teams.filter((one) => one.state === "in" && one.team !== team);
+  const others = view.teams.filter((one) => one.reserve && one.team !== team);
   const substitute = useSignal("");
   const reason = useSignal("");
   const effect = useSignal<Effect | null>(null);
@@ -264,6 +264,7 @@ export function SubstituteDialog({ organiser, view, team }: Props & { team: stri
         }}
       >
         <p>{t("office.substitute.text", { team })}</p>
+        {!others.length && <p class="warning">{t("office.substitute.none")}</p>}
         <label class="field">
           <span>{t("office.substitute.who")}</span>
           <select
