@@ -10,9 +10,9 @@ from pathlib import Path
 from contest_tokens import keep_tokens
 from court_process import environment
 from lacoc_process import ALONE, Lacoc
-from page_client import PageClient, Refused
+from page_client import PageClient
 from ports import free_port
-from waiting import LIMIT_S, until
+from waiting import LIMIT_S
 
 TOKENS = {"left": "l" * 26, "right": "r" * 26}
 REFEREE = "w" * 26
@@ -97,7 +97,8 @@ class Venue:
     def referee(self, by: str = "Kim") -> PageClient:
         """Open a page that enters as a referee."""
         page = self.page(token=REFEREE)
-        until(lambda: entered(page, by))  # a gateway that was just started looks for its court
+        page.wait(lambda: page.link.get("connected"))  # a gateway may just have been started
+        page.ask("enter", token=REFEREE, by=by)
         return page
 
     def started(self, *words: str, name: str) -> Process:
@@ -105,14 +106,3 @@ class Venue:
         process = Process(self.folder, *words, name=name)
         self._stack.callback(process.close)
         return process
-
-
-def entered(page: PageClient, by: str) -> bool:
-    """Enter as a referee; False if the gateway says that it may be asked again."""
-    try:
-        page.ask("enter", token=REFEREE, by=by)
-    except Refused as refused:
-        if not refused.again:
-            raise
-        return False
-    return True
