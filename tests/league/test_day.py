@@ -144,6 +144,21 @@ def test_a_break_a_court_and_a_later_stage() -> None:
     assert called(event, ["north"]) == []
 
 
+@pytest.mark.parametrize("break_s", [0.0, 600.0])
+def test_a_clock_that_was_set_back_holds_no_stage(break_s: float) -> None:
+    """Games that ended in the future, by the clock of now, make no stage and no final wait."""
+    event = Cup("round-robin", teams=2)
+    event.add(Closed)
+    breaks = {"break_s": break_s, "final_break_s": break_s}
+    event.add(Planned, stage="finals", format="single-knockout", after="cup", **breaks)
+    play_open(event, event.contest.stages[0].matches[0].pairing.id)
+    draw = due(event.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    event.append(draw)
+    event.now_ms -= 500_000
+    assert [pairing for pairing, _ in called(event)] == ["finals:w1.1"]
+
+
 def test_a_match_is_moved_before_its_stage_is_drawn() -> None:
     """A move that comes early counts later; until then it is no fact that changes nothing."""
     event = Event(4, 2, Random(1))

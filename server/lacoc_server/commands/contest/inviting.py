@@ -3,13 +3,13 @@
 from typing import Annotated
 
 import typer
-from msgspec.structs import replace
 from rich.text import Text
 
 from lacoc_server.commands.contest.playing import Contest
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.file import Contest as Plan
 from lacoc_shared.contest.link import Link
 from lacoc_shared.words import render, say
 
@@ -35,10 +35,7 @@ def invite(
 
     tokens = organiser.tokens(contest, team)
     plan = contests.load(contest)
-    any_host = host or plan.own_host
-    address = plan.public.pages or f"{plan.public.scheme}://{any_host}:{_PAGES_PORT}"
-    link = Link(pages=address, page="play", authority=plan.public.fingerprint)
-    links = {name: replace(link, token=token).text for name, token in tokens.items()}
+    links = {name: link(plan, "play", token, host) for name, token in tokens.items()}
     if json:
         screen.print_json(links)
         return
@@ -46,4 +43,22 @@ def invite(
         screen.show(Text(render(say("contest.for-team", team=name)), style="dim"))
         screen.stdout.print(text, markup=False, soft_wrap=True)  # to be copied whole
     if not plan.public.pages:
-        screen.note(say("contest.invite-pages", pages=address))
+        screen.note(say("contest.invite-pages", pages=_pages(plan, host)))
+
+
+def link(plan: Plan, page: str, token: str, host: str | None = None) -> str:
+    """Return a link to a page of a contest.
+
+    Args:
+        plan: the contest file.
+        page: name of the page.
+        token: token of whom the link is for.
+        host: host in the link, if the contest file does not say where the pages are; None: this
+            machine's.
+    """
+    authority = plan.public.fingerprint
+    return Link(pages=_pages(plan, host), page=page, token=token, authority=authority).text
+
+
+def _pages(plan: Plan, host: str | None) -> str:
+    return plan.public.pages or (f"{plan.public.scheme}://{host or plan.own_host}:{_PAGES_PORT}")

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lacoc_server.commands.contest.deciding import Yes, wanted_so
+from lacoc_server.commands.contest.inviting import link
 from lacoc_server.commands.contest.playing import By, Contest, Reason, Team
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.link import Link
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -177,14 +177,8 @@ def staff(
         plan.secrets.forget_staff(who)
         screen.show(say("desk.staff-removed", name=who))
         return
-    address = plan.public.pages or f"{plan.public.scheme}://{plan.own_host}:8080"
-    link = Link(
-        pages=address,
-        page="office",
-        token=plan.secrets.staff(who),
-        authority=plan.public.fingerprint,
-    )
-    screen.stdout.print(link.text, markup=False, soft_wrap=True)  # to be copied whole
+    text = link(plan, "office", plan.secrets.staff(who))
+    screen.stdout.print(text, markup=False, soft_wrap=True)  # to be copied whole
 
 
 def _steer(

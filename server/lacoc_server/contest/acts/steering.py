@@ -19,6 +19,7 @@ from lacoc_server.contest.league.facts import (
     new,
     stage_of,
 )
+from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.titles import title
@@ -52,9 +53,10 @@ def moving(
             played before itself.
     """
     coming = {one.pairing.id for one in foreseen(contest, FORMATS)}
-    for one in filter(None, (pairing, before)):
-        if one not in coming and match_of(contest, one).decided and one == pairing:
-            raise UserError(say("desk.match-over", pairing=pairing))
+    if pairing not in coming and match_of(contest, pairing).decided:
+        raise UserError(say("desk.match-over", pairing=pairing))
+    if before and before not in coming:
+        match_of(contest, before)
     if before == pairing:
         raise UserError(say("desk.before-itself"))
     if court and court not in courts:
@@ -168,7 +170,7 @@ def done(contest: Contest, fact: AnyFact) -> Phrase:
     match fact:
         case Moved():
             known = {one.pairing.id: one.fixture for one in foreseen(contest, FORMATS)}
-            what = known.get(fact.pairing) or say("fixture.named", name=fact.pairing)
+            what = known.get(fact.pairing) or named(contest, fact.pairing)
             return say("desk.moved", match=what, court=fact.court or None)
         case Paused():
             return say("day.paused")

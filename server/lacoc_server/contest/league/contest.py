@@ -132,7 +132,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """The newest move of each match that was moved, in the order in which they were made."""
     decisions: tuple[OfDecision, ...]
     """What people decided, in the order in which they did."""
-    day: "Day"
+    day: Day
     announced: Announced | None
     """The line to all; None: there is none."""
     ended_ms: dict[str, tuple[str, int]]
@@ -243,7 +243,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         closed=any(isinstance(fact, Closed) for fact in known),
         stages=tuple(stages),
         planned=tuple(planned),
-        running=_running(known, matches),
+        running=_running(known),
         moves=_moves(known),
         decisions=decisions(known),
         day=_day(known),
@@ -359,7 +359,7 @@ def _why_unused(
     return say("league.result-early", pairing=fact.pairing, game=fact.game)
 
 
-def _running(facts: Sequence[AnyFact], matches: Mapping[str, Match]) -> tuple[Called, ...]:
+def _running(facts: Sequence[AnyFact]) -> tuple[Called, ...]:
     """Find the games that are on a court: called, and neither recalled nor ended since."""
     running: dict[str, Called] = {}
     for fact in facts:

@@ -36,7 +36,7 @@ def playable(contest: Contest) -> list[Match]:
         for match in view.matches
         if match.state == "open"
         and match.pairing.id not in running
-        and not (is_final(match) and waits_for_others(view, match))
+        and not (is_final(match) and waits_for_others(view))
     ]
     matches.sort(key=lambda match: not match.games)
     there = {match.pairing.id: match for match in matches}
@@ -53,8 +53,8 @@ def is_final(match: Match) -> bool:
     return match.pairing.winner_place == 1
 
 
-def waits_for_others(view: StageView, final: Match) -> bool:
-    """Return whether a final has to wait for other matches of its stage."""
+def waits_for_others(view: StageView) -> bool:
+    """Return whether the final of a stage has to wait for other matches of it."""
     return not all(match.decided or is_final(match) for match in view.matches)
 
 
@@ -64,21 +64,23 @@ def court_of(contest: Contest, match: Match) -> str:
     return moved or (_plan(contest, match).final_court if is_final(match) else "")
 
 
-def not_before_ms(contest: Contest, match: Match) -> int:
+def not_before_ms(contest: Contest, match: Match, now_ms: int) -> int:
     """Return the earliest time of a match, in milliseconds since 1970, UTC; 0: any time.
 
     A match that has begun goes on without a break of its stage. The rest of teams is not counted.
+    A game that ended in the future did not: the machine's clock was set back since.
     """
     name, plan = stage_of(match.pairing.id), _plan(contest, match)
     before = [view.name for view in contest.stages]
     ended = contest.stages_ended_ms
+    past = {stage: end_ms for stage, end_ms in ended.items() if end_ms <= now_ms}
     earliest = [contest.day.until_ms]
     earliest += [move.not_before_ms for move in contest.moves if move.pairing == match.pairing.id]
     before = before[: before.index(name)] if name in before else before
-    if name not in ended and (ends := [ended.get(one, 0) for one in before]):
+    if name not in ended and (ends := [past[one] for one in before if one in past]):
         earliest.append(max(ends) + round(1000 * plan.break_s))
-    if is_final(match) and not match.games and plan.final_break_s:
-        earliest.append(ended.get(name, 0) + round(1000 * plan.final_break_s))
+    if is_final(match) and not match.games and name in past:
+        earliest.append(past[name] + round(1000 * plan.final_break_s))
     return max(earliest)
 
 
@@ -132,7 +134,7 @@ def _assigned(
         if rested_ms(contest, match, least_rest_ms, now_ms) > now_ms:
             continue
         court = court_of(contest, match) or free[0]
-        if court not in free or not_before_ms(contest, match) > now_ms:
+        if court not in free or not_before_ms(contest, match, now_ms) > now_ms:
             continue
         busy |= {*teams}
         free.remove(court)

@@ -287,7 +287,7 @@ def starts(
         court = court_of(contest, match)
         if court not in court_ms:
             court = min(court_ms, key=court_ms.__getitem__)
-        appointed_ms = not_before_ms(contest, match)
+        appointed_ms = not_before_ms(contest, match, now_ms)
         at_ms = max(court_ms[court], waited, appointed_ms, *rested)
         yield one.pairing.id, Start(court, at_ms, bisect_left(begun, at_ms))
         count = _games(plan, match)
