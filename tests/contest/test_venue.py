@@ -1,10 +1,13 @@
 """Tests of the processes of a contest."""
 
 import socket
+import urllib.request
 from pathlib import Path
 
+import psutil
 import pytest
 from benchmarks.contest_played import CONTEST, SWISS
+from waiting import LIMIT_S, until
 
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.live import venue
@@ -36,3 +39,29 @@ def test_a_court_whose_port_is_taken_says_so_before_it_tries_again(tmp_path: Pat
     (why,) = map(render, told)
     assert why.startswith(f"Court red can't be opened. Port {port} is in use")
     assert "[court.red]" in why
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("listen", [None, "127.0.0.1:0"])
+def test_killed_pages_come_back_at_their_address(tmp_path: Path, listen: str | None) -> None:
+    """Also if they took a free port: links lead there, and pages that are open come back."""
+    file = tmp_path / "contest.toml"
+    file.write_text(CONTEST + COURT.format(port=0) + SWISS, "utf-8")
+
+    def is_there(url: str) -> bool:
+        try:
+            with urllib.request.urlopen(f"{url}/healthz", timeout=LIMIT_S) as answer:
+                return bool(answer.status == 200)
+        except OSError:
+            return False
+
+    with venue.pages(ContestFolder(file), tmp_path, listen, False, "tcp/127.0.0.1:1") as url:
+        assert is_there(url)
+        pages = next(
+            one
+            for one in psutil.Process().children(recursive=True)
+            if url.rpartition(":")[2] in {str(c.laddr.port) for c in one.net_connections()}
+        )
+        pages.kill()
+        until(lambda: not pages.is_running() or pages.status() == psutil.STATUS_ZOMBIE)
+        until(lambda: is_there(url))

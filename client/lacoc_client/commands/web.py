@@ -127,6 +127,7 @@ def web_command(
             shown = browser and built and open_browser(f"{address}/{first}")
             if json:
                 opened = {"kind": "open", "url": address, "key": home.key, "built": built}
+                opened["listen"] = port.listens
                 opened |= {"shown": shown, "metrics": None if exporter is None else exporter.url}
                 screen.print_json(opened)
             else:

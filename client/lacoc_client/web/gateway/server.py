@@ -62,6 +62,12 @@ class Port:
         self.socket.close()
 
     @property
+    def listens(self) -> str:
+        """Where it listens, as `listen` takes it: with the port that was free."""
+        host, port = self.socket.getsockname()[:2]
+        return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+
+    @property
     def url(self) -> str:
         """Address of the pages as everybody opens them, without a slash at its end."""
         if self.public.pages:

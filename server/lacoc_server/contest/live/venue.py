@@ -92,11 +92,14 @@ def pages(
         desk: address of the office's desk.
     """
     words = ["web", "--contest", str(where.file), "--office", desk, "--json"]
-    words += ["--listen", listen] if listen else []
-    first = [*words, "--open"] if show else words
+    first = [*words, *(["--listen", listen] if listen else []), *(["--open"] if show else [])]
     place = folder / "pages"
     place.mkdir()
-    with kept_child(first, place, say("child.gateway"), _same(words)) as opened:
+
+    def again(opened: dict[str, Any]) -> list[str]:
+        return [*words, "--listen", opened["listen"]]  # also if it took a free port: links stay
+
+    with kept_child(first, place, say("child.gateway"), again) as opened:
         yield opened["url"]
 
 
@@ -142,11 +145,6 @@ def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], l
         return [*words, "--listen", f"{place}:{opened['locators'][0].rpartition(':')[2]}"]
 
     return again
-
-
-def _same(words: list[str]) -> Callable[[object], list[str]]:
-    """Return a function that gives the words of the command for later starts: always `words`."""
-    return lambda _: words
 
 
 class Bots:
