@@ -123,8 +123,9 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
     hall.until(lambda: not hall.left.flags & SeatFlag.SILENT)
     hall.walks()
     record = Record.read(next((hall.folder / "recordings").glob("*.live.mcap")))
-    (silence,) = hall.silences()
-    assert SilentSeat(0) in record.inputs[silence.beat]
+    silences = [one for one in hall.silences() if one.seat == 0]
+    assert silences  # on a busy machine it may fall silent more than once
+    assert all(SilentSeat(0) in record.inputs[one.beat] for one in silences)
 
 
 @pytest.mark.parametrize("answer_s", [1.0, pytest.param(10.0, marks=pytest.mark.long)])
