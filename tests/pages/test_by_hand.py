@@ -3,6 +3,7 @@
 import pytest
 from contestant import Contestant, Sit
 from playwright.sync_api import expect
+from show import violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_shared.seat import Phase
@@ -81,6 +82,11 @@ def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     judging.use("dialog button[type=submit]")
     page.phase(Phase.OFFICIAL)
     page.sees(".result", "Ants")
+    for shown in (page, judge):
+        assert violations(shown.page) == []
+        shown.press("?")
+        shown.sees("dialog dl")
+        assert violations(shown.page) == []
 
 
 def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
@@ -108,3 +114,12 @@ def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
     judge.find("dialog button[type=submit]").tap()
     page.phase(Phase.OFFICIAL)
     page.sees(".result", "Ants")
+    for shown in (page, judge):
+        assert violations(shown.page) == []
+    watcher = sit(venue.url, viewport=PHONE, has_touch=True, is_mobile=True)
+    watcher.open("/watch")
+    watcher.sees(".result", "Ants")
+    assert violations(watcher.page) == []
+    watcher.open("/")
+    watcher.sees("h1")
+    assert violations(watcher.page) == []
