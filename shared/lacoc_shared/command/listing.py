@@ -82,7 +82,9 @@ _PANELS: Mapping[str, Mapping[str, Listed]] = {
             "Say which numbers of a gait matter, and search for a better gait with few changes.",
             _SERVER,
         ),
-        "robot": Listed("Check a robot file, export it as MJCF, or list the installed robots."),
+        "robot": Listed(
+            "Check a robot file, import the workshop's header, export MJCF, or list the robots."
+        ),
     },
     "Run a contest": {
         "contest": Listed(
