@@ -73,7 +73,7 @@ def test_the_workshops_header_is_the_sample_robot() -> None:
         ("_W 0.1 ", "_W 2e-1", ("body", "size_m", 0), 0.2),
         ("_W 0.1 ", "_W (ROBOT_BODY_D / 0.6)", ("body", "size_m", 0), 0.2),
         ("#define ROBOT_BODY_W 0.1", "#  define\tROBOT_BODY_W\t0.2", ("body", "size_m", 0), 0.2),
-        ("#define ROBOT_BODY_W 0.1", "const double ROBOT_BODY_W = 0.2;", ("body", "size_m", 0), 0.2),
+        ("#define ROBOT_BODY_W 0.1", "const double ROBOT_BODY_W=.2;", ("body", "size_m", 0), 0.2),
         ("_H 0.05 ", "_H 0.04 + \\\n 0.02", ("body", "size_m", 2), 0.06),
         ("0.125,", "/* the body */ (dReal)0.25,", ("body", "mass_kg"), 0.25),
         ("0.125,", "1 / 4.0,", ("body", "mass_kg"), 0.25),
@@ -84,10 +84,20 @@ def test_the_workshops_header_is_the_sample_robot() -> None:
         ("_LEG_R 0.015", "_LEG_R 0.02", ("link", "radius_m"), 0.02),
         ("_LEG_L 0.04 ", "_LEG_L 0.05 ", ("link", "lengths_m", 1), 0.08),
         ("AngMin=1.2", "AngMin = 2 * 0.6 + 0.3", ("drive", "ang_min_deg_s"), 150),
-        ("double AngMin=1.2,", "static int a = 1, b;\nfloat AngMin=1.5F,", ("drive", "ang_min_deg_s"), 150),
-        ("double AngMin=1.2,", "// double AngMin=9;\ndouble AngMin=1.5,", ("drive", "ang_min_deg_s"), 150),
+        (
+            "double AngMin=1.2,",
+            "static int a = 1, b;\nfloat AngMin=1.5F,",
+            ("drive", "ang_min_deg_s"),
+            150,
+        ),
+        (
+            "double AngMin=1.2,",
+            "// double AngMin=9;\ndouble AngMin=1.5,",
+            ("drive", "ang_min_deg_s"),
+            150,
+        ),
     ],
-)  # fmt: skip
+)
 def test_each_way_to_write_a_number_is_read(
     old: str, new: str, entry: tuple[str | int, ...], value: float
 ) -> None:
