@@ -7,13 +7,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 from chromium import OpenPage
-from contestant import Contestant, own_page
+from contestant import Contestant, own_page, start_own_page
 from drop import drop
 from openpyxl import load_workbook
 from playwright.sync_api import expect
 from show import violations
+from waiting import LIMIT_S
 
 from lacoc_robots.library import find_robot, sample_gait_files
 
@@ -484,3 +486,35 @@ def test_axe_finds_nothing(open_page: OpenPage, address: tuple[str, str], sample
     page.page.click(".bar .name")
     page.sees("dialog[open]")
     assert violations(page.page) == []
+
+
+@pytest.mark.long
+def test_a_page_that_comes_while_the_studio_stands_still_opens_by_itself(
+    open_page: OpenPage, tmp_path: Path, console: Any
+) -> None:
+    """The page says that there is no studio, asks again by itself, and then opens."""
+    console.expect("WebSocket")  # at the end
+    process, url, key = start_own_page(tmp_path, "design")
+    studios = [
+        child
+        for child in psutil.Process(process.pid).children(recursive=True)
+        if "studio" in child.cmdline()
+    ]
+    try:
+        Designer(open_page, url).begin(key)
+        for studio in studios:
+            studio.suspend()
+        other = find_robot("hexapod")[1].replace(b"Hexapod", b"Another")  # not known yet
+        (tmp_path / "robot.toml").write_bytes(other)
+        page = Designer(open_page, url)
+        page.open("/design", key)
+        page.sees(".banner", "no studio")
+        for studio in studios:
+            studio.resume()
+        page.sees("#gait-grid td")
+        page.misses(".banner")
+    finally:
+        for studio in studios:
+            studio.resume()
+        process.terminate()
+        process.communicate(timeout=LIMIT_S)

@@ -128,8 +128,11 @@ export default function Design() {
 function Waiting({ studio }: { studio: Studio }) {
   const why = studio.why.value;
   const noStudio = why ? said(why) : t("design.noStudio");
+  const waitsFor = studio.opening.waitsFor.value;
   const text =
-    waitsForGateway(studio.gateway.state.value) || (studio.present.value === false && noStudio);
+    waitsForGateway(studio.gateway.state.value) ||
+    (studio.present.value === false && noStudio) ||
+    (waitsFor && said(waitsFor));
   if (text) return <Banner>{text}</Banner>;
   const offered = studio.sheet.table.value && studio.handed.offered.value;
   return offered ? <Offer handed={studio.handed} offered={offered} /> : null;

@@ -23,6 +23,8 @@ import { Sheet } from "./table/sheet";
 import { Trials } from "./trials/trials";
 import { Showing } from "./walk/showing";
 
+const ASK_AGAIN_MS = 2000;
+
 export class Studio {
   readonly can = signal<Can>(ALL);
   /** Whether a studio answers; null: not known yet. */
@@ -88,13 +90,15 @@ export class Studio {
     }),
   );
 
-  private readonly opening = new Opening(
+  readonly opening = new Opening(
     this.gateway,
     this.files,
     this.robot,
     this.sheet,
     () => this.trials.all.peek().length > 0,
   );
+  /** The timer after which the first things are asked for again. */
+  private asksAgain = 0;
   /** null: not greeted yet. */
   private greeting: Greeting | null = null;
 
@@ -155,5 +159,9 @@ export class Studio {
     if (!this.greeting || !this.present.peek() || this.opening.isOpen) return;
     await this.opening.first(this.greeting);
     if (this.opening.isOpen) this.learning.greet();
+    clearTimeout(this.asksAgain);
+    if (this.opening.waitsFor.peek()) {
+      this.asksAgain = window.setTimeout(() => void this.openFirst(), ASK_AGAIN_MS);
+    }
   }
 }

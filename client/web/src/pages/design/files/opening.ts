@@ -1,7 +1,10 @@
 /** What is opened unasked: the first robot and gait, and what other programs save meanwhile. */
 
+import { signal } from "@preact/signals";
+import { Refused } from "../../../core/connection";
 import { columnsOf, fromWire } from "../../../core/design/table";
 import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
+import type { Phrase } from "../../../core/phrase";
 import type { Draft, FolderFile, SentFile } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
@@ -14,6 +17,8 @@ import { type Files, NOTHING, type Parsed, type Read } from "./files";
 export class Opening {
   /** How far the first things to see are opened. */
   private is: "closed" | "opening" | "open" = "closed";
+  /** Why they are not open yet, as long as that may pass by itself; null: nothing is known. */
+  readonly waitsFor = signal<Phrase | null>(null);
 
   /** @param isTried Whether a trial was made with the table that is there. */
   constructor(
@@ -52,9 +57,11 @@ export class Opening {
         if (own) this.goOn(own, read);
       }
       this.is = "open";
+      this.waitsFor.value = null;
     } catch (error) {
       this.is = "closed";
-      this.gateway.refuse(error);
+      if (mayPass(error)) this.waitsFor.value = error.why;
+      else this.gateway.refuse(error);
     }
   }
 
@@ -163,6 +170,7 @@ export class Opening {
       const own = this.find((file) => file.slot === "robot");
       return await (own ? this.robotOf(own.name) : this.robotIn(null));
     } catch (error) {
+      if (mayPass(error)) throw error;
       this.gateway.refuse(error);
       return await this.robotIn(null);
     }
@@ -185,6 +193,7 @@ export class Opening {
       if (name) return await this.gateway.ask<Read>("read", { name });
       return { ...(await this.gateway.ask<Parsed>("sample")), version: "" };
     } catch (error) {
+      if (mayPass(error)) throw error;
       this.gateway.refuse(error);
       return null;
     }
@@ -200,4 +209,9 @@ export class Opening {
   private find(wanted: (file: FolderFile) => boolean): FolderFile | undefined {
     return this.files.folder.peek().files.find(wanted);
   }
+}
+
+/** Whether something was refused for another reason than what is in a file. */
+function mayPass(error: unknown): error is Refused {
+  return error instanceof Refused && !error.mistakes.length;
 }
