@@ -31,7 +31,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.library import installed_robots, robot_folder
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.cluster import Cluster
-from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.headless.play import GameEngine, play
 from lacoc_server.contest.headless.pool import Pool
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
@@ -56,7 +56,7 @@ games = 2
 settings = {{ match = {{ duration_s = {seconds} }} }}
 """
 
-Engines = AbstractContextManager[Engine]
+Engines = AbstractContextManager[GameEngine]
 
 
 def main() -> None:

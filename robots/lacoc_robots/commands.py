@@ -36,7 +36,7 @@ _Robot = Annotated[
 
 
 @app.command()
-def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
+def check(robot: _Robot, contest: options.ContestOption = None, json: options.Json = False) -> None:
     """Weigh a robot in: list every mistake in its file, or describe the robot.
 
     The robot is tried in physics: it must stay in place when it stands, with the gait files beside
@@ -85,7 +85,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
 def export(
     robot: _Robot,
     out: Annotated[Path, typer.Argument(metavar="OUT", help="The MJCF file to write (.xml).")],
-    contest: options.ContestFile = None,
+    contest: options.ContestOption = None,
 ) -> None:
     """Write a robot as plain MJCF, which any MuJoCo opens.
 

@@ -18,7 +18,7 @@ from waiting import LIMIT_S, until
 from lacoc_arenas import time_limit
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import play
-from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
+from lacoc_server.contest.headless.pool import Job, PlayedAlone, Pool, attempt
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.publish import tables
 from lacoc_server.contest.kept.store import FactStore
@@ -90,11 +90,11 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
 class _Damaged(Here):
     """Plays games whose records come back damaged, as from a worker of other software."""
 
-    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+    def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a game at once; return a future with a record that can't be read."""
         found = attempt(job)
-        assert isinstance(found, Ended)
-        future: Future[Ended | Phrase] = Future()
+        assert isinstance(found, PlayedAlone)
+        future: Future[PlayedAlone | Phrase] = Future()
         future.set_result(found._replace(record=b"damaged"))
         return future
 

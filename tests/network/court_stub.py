@@ -14,7 +14,7 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import (
     PROTOCOL,
     DecisionReply,
@@ -39,7 +39,7 @@ from lacoc_shared.network.certificate import Pair
 from lacoc_shared.seat import No, Phase
 from lacoc_shared.words import Phrase, say
 
-KEYS = Keys("main")
+KEYS = KeySpace("main")
 SEATS = ("left", "right")
 TOKENS = {"left": "token of left", "right": "token of right"}
 HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}

@@ -20,7 +20,7 @@ from lacoc_server.simulate import player, simulate, software
 from lacoc_server.simulate.forks import chances, odds
 from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute, margin, margins
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
-from lacoc_server.simulate.forks.odds import Moment
+from lacoc_server.simulate.forks.odds import MomentOdds
 from lacoc_server.simulate.forks.origin import read_source
 from lacoc_shared.record.files import odds_path
 from lacoc_shared.seat import BEAT_S
@@ -53,8 +53,8 @@ def test_student(t: float, freedom: int, expected: float) -> None:
     assert odds.student(t, freedom) == pytest.approx(expected, abs=5e-4)
 
 
-def moment(beat: int, chance: float) -> Moment:
-    return Moment(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
+def moment(beat: int, chance: float) -> MomentOdds:
+    return MomentOdds(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
 
 
 def test_swings() -> None:
@@ -77,7 +77,7 @@ def test_five_seconds_are_near() -> None:
     """Moments five seconds apart share their forks, wherever they are in the match."""
     for beat in range(0, 4000, 7):
         pair = [
-            Moment(beat=at, clock_s=at * BEAT_S, margins=(margin,), chance=0.0, key="k")
+            MomentOdds(beat=at, clock_s=at * BEAT_S, margins=(margin,), chance=0.0, key="k")
             for at, margin in ((beat, 1.0), (beat + round(odds.NEAR_S / BEAT_S), -1.0))
         ]
         assert [one.chance for one in odds.pooled(pair)] == [0.5, 0.5]
@@ -87,10 +87,10 @@ def test_neighbours_share_their_forks() -> None:
     """Forks of the moments before and after count, but not far ones, and not at the end."""
     margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 100: (1.0, 1.0), 400: (7.0, 7.0)}
     found = [
-        Moment(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
+        MomentOdds(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
         for beat, some in margins.items()
     ]
-    end = Moment(beat=410, clock_s=8.2, margins=(9.0,), chance=0.5)
+    end = MomentOdds(beat=410, clock_s=8.2, margins=(9.0,), chance=0.5)
     pooled = odds.pooled([end, *found])
     assert [one.beat for one in pooled] == [0, 50, 100, 400, 410]
     assert [one.chance for one in pooled] == [

@@ -16,7 +16,7 @@ from lacoc_server.doors.inbox import Door
 from lacoc_server.doors.network import Arrival
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.verdict import Kind
+from lacoc_server.journal.verdict import VerdictKind
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
@@ -142,7 +142,7 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
     assert held.network.outcomes[-1] == Done()
     assert held.decided == ["halt", "resume"]
     held.kill()
-    assert verdict(Record.read(sorted(tmp_path.iterdir()))).kind is Kind.SAME
+    assert verdict(Record.read(sorted(tmp_path.iterdir()))).kind is VerdictKind.SAME
 
 
 def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from stage import join as sample
 from lacoc_robots.limits import Limits
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.match import entry
-from lacoc_server.match.entry import Admission
+from lacoc_server.match.entry import WeighIn
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import PROTOCOL, Join, SentFile
 from lacoc_shared.mistakes import FileRefused
@@ -25,8 +25,8 @@ WHOLE = Join(
 )
 
 
-def admission() -> Admission:
-    return Admission(
+def admission() -> WeighIn:
+    return WeighIn(
         HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion, Limits(), (Level.LOCOMOTION,)
     )
 

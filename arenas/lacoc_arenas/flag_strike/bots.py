@@ -66,7 +66,7 @@ class _Hunter(ABC):
         """
 
 
-class Nearest(_Hunter):
+class NearestFlag(_Hunter):
     """Goes to the nearest standing flag; if all have fallen, to the nearest corner."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
@@ -87,7 +87,7 @@ class _Plan(NamedTuple):
     route: tuple[int, ...]
 
 
-class Planner(_Hunter):
+class FlagPlanner(_Hunter):
     """Weighs the points of a route over flags and corners against the time it takes."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
@@ -161,13 +161,13 @@ class Planner(_Hunter):
 
 
 def nearest(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that goes to the nearest flag (`Nearest`)."""
-    return Nearest(sheet, seat)
+    """Make a brain that goes to the nearest flag (`NearestFlag`)."""
+    return NearestFlag(sheet, seat)
 
 
 def planner(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that plans routes over flags and corners (`Planner`)."""
-    return Planner(sheet, seat)
+    """Make a brain that plans routes over flags and corners (`FlagPlanner`)."""
+    return FlagPlanner(sheet, seat)
 
 
 BOTS: dict[str, BotFactory] = {"straight": straight, "nearest": nearest, "planner": planner}

@@ -68,7 +68,7 @@ class _Walker(ABC):
         """
 
 
-class Nearest(_Walker):
+class NearestDisc(_Walker):
     """Goes to the nearest disc that it can flip, or else to an own disc beside such a disc."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
@@ -102,7 +102,7 @@ class _Plan(NamedTuple):
     """The first cell of the route."""
 
 
-class Planner(_Walker):
+class DiscPlanner(_Walker):
     """Looks several cells ahead and weighs the discs of a route against the time it takes."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
@@ -152,13 +152,13 @@ def _around(cell: int) -> list[int]:
 
 
 def nearest(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that goes to the nearest disc to flip (`Nearest`)."""
-    return Nearest(sheet, seat)
+    """Make a brain that goes to the nearest disc to flip (`NearestDisc`)."""
+    return NearestDisc(sheet, seat)
 
 
 def planner(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that plans routes over several discs (`Planner`)."""
-    return Planner(sheet, seat)
+    """Make a brain that plans routes over several discs (`DiscPlanner`)."""
+    return DiscPlanner(sheet, seat)
 
 
 BOTS: dict[str, BotFactory] = {"straight": straight, "nearest": nearest, "planner": planner}

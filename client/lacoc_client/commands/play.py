@@ -15,7 +15,7 @@ from lacoc_client.play.controller import Controller
 from lacoc_client.play.own_files import OwnFiles
 from lacoc_client.play.stopping import stop_signals
 from lacoc_client.play.team_way import TeamWay, is_gone, is_over
-from lacoc_client.play.terminal.keys import Keys, open_keys
+from lacoc_client.play.terminal.keys import KeySource, open_keys
 from lacoc_client.play.terminal.play import TerminalPlay, keys_table
 from lacoc_client.play.terminal.words import played
 from lacoc_client.web.gateway.home import Prefill, player_home
@@ -189,7 +189,7 @@ def _play_match(
     there: Whereabouts,
     team: str,
     files: SeatFiles,
-    keys: Keys,
+    keys: KeySource,
     stopping: Callable[[], bool],
     *,
     ready: bool,

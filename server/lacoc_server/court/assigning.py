@@ -17,7 +17,7 @@ from lacoc_robots.limits import Limits
 from lacoc_robots.stand_test import try_standing
 from lacoc_server.doors.inbox import MISTAKES_TOLD
 from lacoc_server.doors.openings import frozen_join
-from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_server.match.entry import WeighIn, weigh_in
 from lacoc_server.world.world import World
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import PROTOCOL, Join, Refusal
@@ -52,7 +52,7 @@ class Preparation:
         arena: str,
         settings: Mapping[str, Any],
         seats: Sequence[str],
-        admission: Admission,
+        admission: WeighIn,
         aside: "Callable[[Callable[[], Prepared | Refusal]], Future[Prepared | Refusal]]",
     ) -> None:
         self._arena = arena
@@ -114,7 +114,7 @@ def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str])
     ]
 
 
-def _weighed(seat: AssignedSeat, admission: Admission) -> AssignedSeat | Refusal:
+def _weighed(seat: AssignedSeat, admission: WeighIn) -> AssignedSeat | Refusal:
     """Weigh in the files of a team; return its seat with the robot file filled in.
 
     An open seat stays as it is: its files are weighed in when somebody joins.

@@ -9,7 +9,7 @@ from typing import Self, TypeVar
 
 from lacoc_robots.stand_test import try_standing
 from lacoc_robots.standing import standing_postures
-from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_server.match.entry import WeighIn, weigh_in
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import Join
 from lacoc_shared.mistakes import FileRefused, Mistake
@@ -31,7 +31,7 @@ class Weighing:
         admission: reads the files.
     """
 
-    def __init__(self, admission: Admission) -> None:
+    def __init__(self, admission: WeighIn) -> None:
         self._admission = admission
         self._worker = ThreadPoolExecutor(1, "weighing")
         self._tests: dict[object, Future[list[Mistake]]] = {}

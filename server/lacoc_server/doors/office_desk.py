@@ -57,7 +57,7 @@ Answer = _Reply | Callable[[], _Reply | None]
 """An answer, or a function that is called in each beat until it returns one."""
 
 
-class Wanted(NamedTuple, Generic[T]):
+class WantedMatch(NamedTuple, Generic[T]):
     """What the office wants the court to open next."""
 
     prepared: T | None
@@ -88,7 +88,7 @@ class OfficeDesk(Generic[T]):
         self._copy_part = copy_part
         self.retired = False
         """Whether the court goes on at another machine, so that this process must end."""
-        self.wanted: Wanted[T] | None = None
+        self.wanted: WantedMatch[T] | None = None
         """What the court shall open next, as soon as its match allows it; None: nothing."""
         self.teams = TeamDesk()
         """Answers teams with what the office tells."""
@@ -176,7 +176,7 @@ class OfficeDesk(Generic[T]):
             if isinstance(found, Refusal):
                 self.refused[Why.BAD_FILES.value] += 1
                 return found
-            self.wanted = None if found is None else Wanted(found)
+            self.wanted = None if found is None else WantedMatch(found)
         return None
 
     def _withdraw(self, request: Withdraw) -> Answer:
@@ -190,7 +190,7 @@ class OfficeDesk(Generic[T]):
             return self._busy()
         if self._phase is Phase.OFFICIAL and not request.official:
             return self._refuse(Why.OLD, say("refused.call-is-over", call=request.call))
-        self.wanted = Wanted(None)
+        self.wanted = WantedMatch(None)
         return None
 
     @property

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from lacoc_robots.model import MODEL_VERSION
 from lacoc_server.journal.judge import Judge, fits_together
-from lacoc_server.journal.section import BOUND, Finding, Section, Worlds, simulate
-from lacoc_server.journal.verdict import Kind, Verdict, conclude
+from lacoc_server.journal.section import BOUND, Section, SectionFinding, Worlds, simulate
+from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
 from lacoc_shared.mistakes import UserError
@@ -53,7 +53,7 @@ def verify(
     """
     _same_physics(record)
     judge = Judge(record, folder, dict(record.snapshots))
-    findings: list[Finding] = []
+    findings: list[SectionFinding] = []
     beats = 0
     for finding in _simulated(judge, bound, _processes(record, processes)):
         findings.append(finding)
@@ -71,7 +71,7 @@ def verify(
 
 
 @dataclass(frozen=True)
-class Resumed:
+class ResumedMatch:
     """A match that can go on."""
 
     match: Match
@@ -81,7 +81,7 @@ class Resumed:
     """
 
 
-def resume(record: Record, at: int | None = None, folder: Path | None = None) -> Resumed:
+def resume(record: Record, at: int | None = None, folder: Path | None = None) -> ResumedMatch:
     """Continue a match where its record ends.
 
     Up to the newest snapshot the recorded poses take the place of physics; only the rest is
@@ -109,7 +109,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     for _ in judge.sections():
         pass
     match, section = judge.match, judge.section
-    findings: list[Finding] = []
+    findings: list[SectionFinding] = []
     physics = match.physics
     if section is not None:
         with fits_together(record):
@@ -125,10 +125,10 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     if not verdict.same:
         raise UserError(say("resume.differs", verdict=verdict.said, versions=_versions(record)))
     match.take_up(physics, World)
-    return Resumed(match, None if verdict.kind is Kind.SAME else verdict.distance)
+    return ResumedMatch(match, None if verdict.kind is VerdictKind.SAME else verdict.distance)
 
 
-def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
+def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[SectionFinding]:
     """Simulate each section of a record as soon as `judge` has reached it; yield in their order."""
     if processes <= 1:
         worlds = Worlds()
@@ -136,7 +136,7 @@ def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
             yield simulate(section, worlds, bound)
         return
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin) as pool:
-        waiting: deque[Future[Finding]] = deque()
+        waiting: deque[Future[SectionFinding]] = deque()
         for section in judge.sections():
             waiting.append(pool.submit(_simulate, section, bound))
             while waiting and waiting[0].done():
@@ -161,7 +161,7 @@ def _begin() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _simulate(section: Section, bound: float) -> Finding:
+def _simulate(section: Section, bound: float) -> SectionFinding:
     return simulate(section, _worlds, bound)
 
 

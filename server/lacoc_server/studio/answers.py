@@ -61,7 +61,7 @@ class Answer(NamedTuple):
     payload: bytes
 
 
-class Files(NamedTuple):
+class RobotWithGait(NamedTuple):
     """The robot and the gait that were read from a request's files."""
 
     robot: RobotSpec
@@ -143,7 +143,7 @@ def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
     return Refusal(say("refused.bad-request", error=str(error)))
 
 
-def read_files(files: GaitFiles) -> Files:
+def read_files(files: GaitFiles) -> RobotWithGait:
     """Read a robot and its gait.
 
     Without a robot file, the robot is the workshop's. Without any file, the gait is the workshop's
@@ -182,11 +182,11 @@ def read_files(files: GaitFiles) -> Files:
     if postures is None and locomotion is None:
         raise UserError(say("studio.no-gait"))
     if postures is None or locomotion is not None:
-        return Files(robot, Gait(postures, locomotion), None, notes)
+        return RobotWithGait(robot, Gait(postures, locomotion), None, notes)
     if files.sequences is None:
-        return Files(robot, Gait(postures, sample_sequences(postures)), SAMPLE_KEYS, notes)
+        return RobotWithGait(robot, Gait(postures, sample_sequences(postures)), SAMPLE_KEYS, notes)
     joined = join_postures(postures, sent[0].name, files.sequences)
-    return Files(robot, Gait(postures, joined), files.sequences, notes)
+    return RobotWithGait(robot, Gait(postures, joined), files.sequences, notes)
 
 
 def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None = None) -> Trial:

@@ -32,7 +32,7 @@ ON_PAGES = FILES[:-3]
 """The files that pages need; the last three have only sentences for terminals and programs."""
 
 
-class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The entry of a code in the table."""
 
     en: str
@@ -42,9 +42,9 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @cache
-def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
+def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
     """Read the table: every code with its entry."""
-    entries: dict[str, Entry] = {}
+    entries: dict[str, Wording] = {}
     folder = resources.files("lacoc_shared.words") / "texts"
     for file in files:
         subjects = tomllib.loads((folder / f"{file}.toml").read_text(encoding="utf-8"))
@@ -53,7 +53,7 @@ def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
                 code = f"{subject}.{name}"
                 if code in entries:
                     raise ValueError(f"the code {code} is in the table twice")
-                entries[code] = msgspec.convert(entry, Entry)
+                entries[code] = msgspec.convert(entry, Wording)
     return entries
 
 

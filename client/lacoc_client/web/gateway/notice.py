@@ -4,7 +4,7 @@ from pathlib import Path
 
 import msgspec
 
-from lacoc_client.web.gateway.wire import Kind, map_message
+from lacoc_client.web.gateway.wire import MessageKind, map_message
 
 
 class _Day(msgspec.Struct, frozen=True):
@@ -58,4 +58,4 @@ class Notice:
             "until_ms": day.until_ms,
             "reason": day.reason,
         }
-        return map_message(Kind.NOTICE, body)
+        return map_message(MessageKind.NOTICE, body)

@@ -21,7 +21,7 @@ class _Sheet(msgspec.Struct):
     stages: tuple[_Stage, ...] = ()
 
 
-class Shown:
+class ShownRecords:
     """The names of these records, as the newest sheet says; may be used from any thread.
 
     Args:

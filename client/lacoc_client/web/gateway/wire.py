@@ -35,7 +35,7 @@ class TokenRefused(UserError):
     """A court refuses a referee's token: showing the same one again is useless."""
 
 
-class Kind(IntEnum):
+class MessageKind(IntEnum):
     """Kinds of messages to a page."""
 
     WELCOME = 1
@@ -239,7 +239,7 @@ def read_id(data: bytes) -> int | None:
         return None
 
 
-def message(kind: Kind, payload: bytes) -> bytes:
+def message(kind: MessageKind, payload: bytes) -> bytes:
     """Make a finished WebSocket frame of a message; the same bytes can go to all pages."""
     size = len(payload) + 1
     if size < 126:
@@ -251,13 +251,13 @@ def message(kind: Kind, payload: bytes) -> bytes:
     return head + payload
 
 
-def opened(framed: bytes) -> tuple[Kind, bytes]:
+def opened(framed: bytes) -> tuple[MessageKind, bytes]:
     """Return the kind and the payload of a message that `message` made."""
     head = {126: 4, 127: 10}.get(framed[1], 2)
-    return Kind(framed[head]), framed[head + 1 :]
+    return MessageKind(framed[head]), framed[head + 1 :]
 
 
-def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
+def map_message(kind: MessageKind, value: dict[str, Any]) -> bytes:
     """Make a message of the gateway's own, as a WebSocket frame."""
     return message(kind, encode(value))
 
@@ -279,12 +279,12 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
         "error": None if refused is None else _said(refused),
         "mistakes": refused.mistakes if isinstance(refused, FileRefused) else [],
     }
-    return map_message(Kind.FILES, body)
+    return map_message(MessageKind.FILES, body)
 
 
 def reply(to: int, value: Any) -> bytes:
     """Make the answer to a request."""
-    return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
+    return map_message(MessageKind.REPLY, {"id": to, "ok": True, "value": value})
 
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
@@ -299,7 +299,7 @@ def refusal(to: int, error: UserError | FileRefused) -> bytes:
         "again": isinstance(error, NotNow),
         "unanswered": isinstance(error, NoAnswer),
     }
-    return map_message(Kind.REPLY, body)
+    return map_message(MessageKind.REPLY, body)
 
 
 def _said(error: UserError | FileRefused) -> Phrase:

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from lacoc_client.web.gateway.wire import Ask
-from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.design.requests import Name, ParseAsk, Ping, Sequences, read_with
 from lacoc_client.workshop.design.table import FileTable
 
@@ -19,7 +19,7 @@ class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
 class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
     """Set what students may do."""
 
-    rules: Rules
+    rules: StudentRules
 
 
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):

@@ -18,7 +18,7 @@ from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.learning.learner import Learner
 from lacoc_client.workshop.design.saving.robot_edit import edit_robot
 from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
-from lacoc_client.workshop.phases.evidence import Hand, Moved, Named
+from lacoc_client.workshop.phases.evidence import Hand, Named, WentToPhase
 from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_robots.seat_files import SeatFiles
@@ -215,7 +215,7 @@ class DesignPage:
             case requests.PhaseAsk():
                 if asked.number in student.rules.closed:
                     raise UserError(say("class.phase-closed", number=asked.number))
-                await diary.add(Moved(phase=asked.number))
+                await diary.add(WentToPhase(phase=asked.number))
             case requests.NameAsk():
                 await diary.add(Named(word=asked.word))
             case requests.VoteAsk():

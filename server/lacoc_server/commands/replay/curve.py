@@ -9,7 +9,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_server.simulate.forks.chances import Odds, Wish, compute
 from lacoc_server.simulate.forks.jobs import opened
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
-from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
@@ -47,7 +47,7 @@ def odds_of(
     every_s: float,
     arena: Path | None,
     jobs: int | None,
-) -> tuple[Source, Odds]:
+) -> tuple[ForkSource, Odds]:
     """Compute the odds of a record, and keep them beside it.
 
     Args:
@@ -91,7 +91,7 @@ def odds_of(
     return source, found
 
 
-def _bots(source: Source, players: str | None, folder: Path | None) -> tuple[str, str]:
+def _bots(source: ForkSource, players: str | None, folder: Path | None) -> tuple[str, str]:
     if players is None:
         setup = source.record.header.setup
         best = [*arenas.from_settings(setup.arena, setup.settings, folder).bots][-1]

@@ -11,7 +11,7 @@ import typer
 from lacoc_arenas import brains
 from lacoc_server.simulate.forks.fork import Forked
 from lacoc_server.simulate.forks.jobs import ForkJob, attempt, changes_of, opened, play
-from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.simulate.forks.script import Script
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import options, screen
@@ -153,7 +153,7 @@ def _scripts(given: Sequence[str]) -> dict[str, Script]:
     return scripts
 
 
-def _forks(base: ForkJob, source: Source, times: int) -> Iterator[ForkJob]:
+def _forks(base: ForkJob, source: ForkSource, times: int) -> Iterator[ForkJob]:
     """Yield each fork, with an id that no other record in its folder has."""
     number = 0
     for variant in range(1, times + 1) if times > 1 else (0,):
@@ -164,7 +164,7 @@ def _forks(base: ForkJob, source: Source, times: int) -> Iterator[ForkJob]:
         yield msgspec.structs.replace(base, variant=variant, match_id=match_id)
 
 
-def _id(base: ForkJob, source: Source, number: int) -> str:
+def _id(base: ForkJob, source: ForkSource, number: int) -> str:
     return f"fork-{number}-at-{base.beat}-of-{source.match_id}"
 
 
@@ -186,7 +186,7 @@ def _played(forks: Sequence[ForkJob], jobs: int | None) -> Iterator[tuple[ForkJo
             yield job, found
 
 
-def _told(source: Source, job: ForkJob, forked: Forked) -> dict[str, Any]:
+def _told(source: ForkSource, job: ForkJob, forked: Forked) -> dict[str, Any]:
     return {
         "kind": "fork",
         "match_id": job.match_id,
@@ -203,7 +203,7 @@ def _told(source: Source, job: ForkJob, forked: Forked) -> dict[str, Any]:
     }
 
 
-def _show(source: Source, job: ForkJob, forked: Forked) -> None:
+def _show(source: ForkSource, job: ForkJob, forked: Forked) -> None:
     screen.show(say("fork.made", match=source.match_id, beat=job.beat))
     screen.show(say("fork.how", how=how(changes_of(job, source))))
     screen.show(_ending(forked.result, forked.phase))
@@ -228,7 +228,7 @@ def _ending(result: Result, phase: Phase) -> Phrase:
     return say("fork.ending", scores=scores, winner=result.computed, why=result.reason)
 
 
-def _show_odds(source: Source, base: ForkJob, played: Sequence[Forked], json: bool) -> None:
+def _show_odds(source: ForkSource, base: ForkJob, played: Sequence[Forked], json: bool) -> None:
     made = changes_of(base, source)
     over = [one for one in played if one.result.computed]
     won = {

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import msgspec
 
-from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.headless.play import GameEngine, play
 from lacoc_server.contest.kept import publish
 from lacoc_server.contest.kept.applications import Applications
-from lacoc_server.contest.kept.entries import Entry, HandedIn, gather, weigh
+from lacoc_server.contest.kept.entries import ContestEntry, HandedIn, gather, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
@@ -87,7 +87,12 @@ def team_name(text: str) -> str:
 
 
 def enter_weighed(
-    where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str, club: str = ""
+    where: ContestFolder,
+    store: FactStore,
+    team: str,
+    entry: ContestEntry,
+    reason: str,
+    club: str = "",
 ) -> Phrase:
     """Enter a team with an entry that was weighed in, or change its files; return what was done.
 
@@ -244,7 +249,7 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
 def play_headless(
     file: Path,
     steer: str,
-    engine: AbstractContextManager[Engine],
+    engine: AbstractContextManager[GameEngine],
     progress: Progress,
     tell: Callable[[Phrase], None] = lambda _: None,
 ) -> tuple[ContestSheet, int]:

@@ -14,7 +14,7 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, generation
 from lacoc_server.contest.league.timetable.calling import is_open_call
 from lacoc_server.contest.standby.door import unpacked
-from lacoc_server.contest.standby.messages import Knock, Known
+from lacoc_server.contest.standby.messages import KnockAsk, OfficeThere
 from lacoc_server.contest.standby.other import NotThere, Other, OtherToken
 from lacoc_server.contest.standby.sealing import Sealing
 from lacoc_shared.mistakes import UserError
@@ -81,7 +81,7 @@ def _check_gone(other: Other) -> None:
         UserError: if it does.
     """
     try:
-        other.ask(Knock(generation=0), Known)
+        other.ask(KnockAsk(generation=0), OfficeThere)
     except (NotThere, OtherToken):
         return
     raise UserError(say("standby.office-is-there", at=other.address))

@@ -39,7 +39,7 @@ _PRESSED = Struct("<IBBB")
 _MOST_BYTES = 1 << 28
 
 
-class _Saved(msgspec.Struct, frozen=True, array_like=True):
+class _SavedEpisode(msgspec.Struct, frozen=True, array_like=True):
     opening: Opening
     angles: bool
     robots: bytes
@@ -234,7 +234,7 @@ class Episode:
         self.require_begun()
         seats = len(self._seqs) if self.begun.angles else 0
         return encode(
-            _Saved(
+            _SavedEpisode(
                 self.opening,
                 self.begun.angles,
                 self.begun.robots,
@@ -261,7 +261,7 @@ class Episode:
                 the value is of another type. The episode is then as it was.
         """
         try:
-            saved = decode(saved_bytes(data), _Saved, _MOST_BYTES)
+            saved = decode(saved_bytes(data), _SavedEpisode, _MOST_BYTES)
             extra = decode(saved.extra, kind, _MOST_BYTES)
             if saved.angles != self.begun.angles:
                 raise BadMessage("only one of the two episodes is steered by angles")

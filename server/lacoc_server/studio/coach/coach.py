@@ -16,7 +16,7 @@ from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.keys import forward_key
 from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.studio import CellPlace, Change, CoachReply, Progress, Weight
+from lacoc_shared.studio import CellChange, CellPlace, CoachReply, Progress, Weight
 from lacoc_shared.words import say
 
 _UNDO_TRIALS = 50
@@ -28,7 +28,7 @@ Tell = Callable[[Progress], None]
 """Takes the progress of a search; called many times a second."""
 
 
-class Found(NamedTuple):
+class CoachFound(NamedTuple):
     """What the coach found."""
 
     matters: list[Matter]
@@ -85,7 +85,7 @@ def task_of(
     return Task(robot, stand, table, goal)
 
 
-def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> Found:
+def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> CoachFound:
     """Find which numbers of a table matter, and search for a better table.
 
     Args:
@@ -115,10 +115,10 @@ def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Te
     trials.on_done = lambda: None
     tables = [own] if best is None else [own, best.angles_deg]
     figures = trials.figures(tables)
-    return Found(matters, best, figures[0], figures[-1], trials.count, stopped)
+    return CoachFound(matters, best, figures[0], figures[-1], trials.count, stopped)
 
 
-def reply_of(task: Task, key: int, found: Found) -> CoachReply:
+def reply_of(task: Task, key: int, found: CoachFound) -> CoachReply:
     """Make the message that tells what the coach found."""
     own = task.table.angles_deg
     best = own if found.best is None else found.best.angles_deg
@@ -138,10 +138,10 @@ def reply_of(task: Task, key: int, found: Found) -> CoachReply:
     )
 
 
-def changes(table: KeyTable, before: Angles, after: Angles) -> tuple[Change, ...]:
+def changes(table: KeyTable, before: Angles, after: Angles) -> tuple[CellChange, ...]:
     """List the numbers that differ between two versions of a table."""
     return tuple(
-        Change(cell=place(table, index), from_deg=before[index], to_deg=after[index])
+        CellChange(cell=place(table, index), from_deg=before[index], to_deg=after[index])
         for index in differing(before, after)
     )
 

@@ -11,7 +11,7 @@ from lacoc_server.studio.styles.gait_map import Mapped
 from lacoc_server.studio.styles.style import WAYS, Styles
 from lacoc_server.studio.styles.variants import Varied
 from lacoc_server.trial.figures import Figures
-from lacoc_shared.studio import Difference, MapCell, MapReply, OtherGait, VariantsReply
+from lacoc_shared.studio import GaitDifference, MapCell, MapReply, OtherGait, VariantsReply
 
 _SEEN = 0.4
 """A difference of fewer steps can hardly be seen."""
@@ -61,9 +61,9 @@ def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> O
     )
 
 
-def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[Difference]:
+def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[GaitDifference]:
     """Yield the ways in which a table looks different, the most visible way first."""
     steps = styles.look(table) - styles.look(own)
     for index in np.argsort(-abs(steps), kind="stable"):
         if abs(steps[index]) >= _SEEN:
-            yield Difference(way=WAYS[index], steps=round(float(steps[index]), 2))
+            yield GaitDifference(way=WAYS[index], steps=round(float(steps[index]), 2))
