@@ -12,7 +12,7 @@ from lacoc_client.commands import entrance
 from lacoc_client.commands.pages import public_address
 from lacoc_client.play.link.event import FoundEvent, find
 from lacoc_client.play.link.mirror import SheetMirror
-from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway import contest_sheet, server
 from lacoc_client.web.gateway.browser import open_browser
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.home import VIEWERS_MOST, Home
@@ -149,7 +149,7 @@ def web_command(
 def _again(stack: ExitStack, found: FoundEvent, court: str | None) -> Home:
     """Return the settings of a gateway that serves the pages of a link once more."""
     event = found.event
-    sheet = stack.enter_context(Scratch("mirror")) / "contest.json"
+    sheet = stack.enter_context(Scratch("mirror")) / contest_sheet.NAME
     stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
     courts = entrance.reached(found, court)
     return Home(

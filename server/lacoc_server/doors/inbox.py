@@ -123,10 +123,6 @@ class _SeatDoor:
         return Refusal(said, again=again)
 
 
-class _Version(msgspec.Struct):
-    protocol: int
-
-
 MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
 
 
@@ -227,7 +223,7 @@ class Inbox:
         """
         seat = self._seats[index]
         try:
-            protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
+            protocol = codec.protocol_of(payload, JOIN_MAX_BYTES)
             if protocol != PROTOCOL:
                 said = say("refused.wrong-version", court=PROTOCOL, program=protocol)
                 return seat.refuse(Why.WRONG_VERSION, said)

@@ -13,7 +13,7 @@ from typing import Annotated, Generic, NamedTuple, TypeVar
 import msgspec
 
 from lacoc_server.doors.inbox import FILE_NAME_MAX, NAME_MAX
-from lacoc_server.doors.sessions import Why
+from lacoc_server.doors.sessions import AnyToken, Why
 from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared import codec, seal
 from lacoc_shared.codec import encode
@@ -64,8 +64,7 @@ class WantedMatch(NamedTuple, Generic[T]):
     """The prepared match; None: the court shall wait."""
 
 
-class _Token(msgspec.Struct):
-    token: str
+class _OfficeToken(AnyToken):
     generation: Annotated[int, msgspec.Meta(ge=0)] = 0
 
 
@@ -123,7 +122,7 @@ class OfficeDesk(Generic[T]):
             payload: should be an `Assign`, a `Withdraw`, a `Tell`, a `Copy` or a `Retire`.
         """
         try:
-            asking = codec.decode(payload, _Token, ASSIGN_MAX_BYTES)
+            asking = codec.decode(payload, _OfficeToken, ASSIGN_MAX_BYTES)
             if not seal.verify_token(asking.token, self._token_hash):
                 return self._refuse(Why.WRONG_TOKEN, say("refused.no-office-token"))
             if asking.generation < self._generation:

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
+import msgspec
+
 from lacoc_shared.seal import SECRET_BYTES
 
 _REMEMBERED = 64
@@ -30,6 +32,12 @@ class Why(StrEnum):
     BAD_NAME = "bad-name"
     BAD_FILES = "bad-files"
     BAD_DECISION = "bad-decision"
+
+
+class AnyToken(msgspec.Struct):
+    """The token of a request, whatever else the request has."""
+
+    token: str
 
 
 @dataclass

@@ -23,7 +23,7 @@ from lacoc_server.trial.support import margins_m
 from lacoc_server.trial.told import told
 from lacoc_server.trial.walk import Floats, Press, Walk
 from lacoc_shared import __version__
-from lacoc_shared.codec import BadMessage, decode, encode, message_hash
+from lacoc_shared.codec import BadMessage, decode, encode, message_hash, protocol_of
 from lacoc_shared.gait.joining import join_postures, sample_sequences
 from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
@@ -120,7 +120,7 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
         BadMessage: if the bytes are not such a request, or too many.
         UserError: if the request uses another version of the protocol.
     """
-    protocol = decode(payload, _Version, STUDIO_MAX_BYTES).protocol
+    protocol = protocol_of(payload, STUDIO_MAX_BYTES)
     if protocol != PROTOCOL:
         raise UserError(say("studio.wrong-version", studio=PROTOCOL, program=protocol))
     return decode(payload, kind, STUDIO_MAX_BYTES)
@@ -215,10 +215,6 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
     if not figures.cycles:
         notes.append(say("trial.no-cycle", seconds=figures.seconds))
     return Trial(last, walk, figures, explain(course.robot, walk, figures, last, sequence), notes)
-
-
-class _Version(msgspec.Struct):
-    protocol: int
 
 
 def _check_name(file: SentFile | None) -> None:

@@ -99,7 +99,7 @@ class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, which says how far the court is from the gateway."""
+    """Ask for a reply, as a sign of life. It says how far the court is, if the page has one."""
 
     t: float | int | str | None = None
 
@@ -217,11 +217,20 @@ def read(data: bytes) -> Asked:
         Unreadable: if it is no known request, or too long for its kind.
     """
     try:
-        if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
+        if len(data) > REQUEST_BYTES and wanted(data) != "join":
             raise too_long(len(data), REQUEST_BYTES)
         return _asked.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise Unreadable(say("gateway.bad-message", error=str(error))) from None
+
+
+def wanted(data: bytes) -> str:
+    """Return what a request wants done (`do`), if nothing else of it can be read.
+
+    Raises:
+        msgspec.DecodeError: if it does not say so.
+    """
+    return _any_do.decode(data).do
 
 
 def too_long(size: int, most: int) -> Unreadable:

@@ -10,6 +10,7 @@ from starlette.websockets import WebSocket
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Ping
 from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import FileContent, file_bytes, read_file
 from lacoc_client.workshop.design.folder import Folder
@@ -67,7 +68,7 @@ class DesignPage:
         """
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
-        elif isinstance(asked, requests.Ping):  # also while somebody types the class code
+        elif isinstance(asked, Ping):  # also while somebody types the class code
             self._answers.reply(asked.id, {"t": asked.t})
         elif self._learner is not None and self._viewer.can_act:
             self._answer(asked, self._learner)
