@@ -25,7 +25,7 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
-from lacoc_server.match.entry import WeighIn
+from lacoc_server.match.entry import JoinCheck
 from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SentFile
@@ -84,9 +84,9 @@ def measured_court(name: str = NAME) -> Iterator[Measured]:
     tokens, referee = {seat.id: new_token() for seat in loaded.seats}, new_token()
     keys = KeySpace(name)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    admission = WeighIn(*files, Limits(), loaded.match.open_levels)
+    join_check = JoinCheck(*files, Limits(), loaded.match.open_levels)
     opened = open_match({seat: [hash_token(token)] for seat, token in tokens.items()})
-    inbox = Inbox(keys, list(tokens), admission, secrets.token_bytes)
+    inbox = Inbox(keys, list(tokens), join_check, secrets.token_bytes)
     desk = DecisionDesk([hash_token(referee)])
     with (
         tempfile.TemporaryDirectory() as folder,

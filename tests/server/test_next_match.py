@@ -21,7 +21,7 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
-from lacoc_server.match.entry import WeighIn
+from lacoc_server.match.entry import JoinCheck
 from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.decisions import Abort, Halt, Next, Set, Start
 from lacoc_shared.keyspace import KeySpace
@@ -66,9 +66,9 @@ def room(tmp_path: Path) -> Iterator[Room]:
     """Run a court in a thread, so that a test can fake a full disk; give the court's clients."""
     arena = arenas.load("othello", {"match": {"countdown_s": 0.02}})
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    admission = WeighIn(*files, Limits(), arena.match.open_levels)
+    join_check = JoinCheck(*files, Limits(), arena.match.open_levels)
     opened = open_match({seat: [hash_token(token)] for seat, token in TOKENS.items()})
-    inbox = Inbox(KeySpace("main"), list(TOKENS), admission, secrets.token_bytes)
+    inbox = Inbox(KeySpace("main"), list(TOKENS), join_check, secrets.token_bytes)
     desk = DecisionDesk([hash_token(WHISTLE)])
     over = threading.Event()
     with (

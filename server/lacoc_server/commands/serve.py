@@ -25,7 +25,7 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk
 from lacoc_server.doors.team_desk import TeamDesk, alone
 from lacoc_server.journal.recovery import Unfinished, last_result, unfinished
-from lacoc_server.match.entry import WeighIn
+from lacoc_server.match.entry import JoinCheck
 from lacoc_shared.command import child, log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
@@ -121,7 +121,7 @@ def serve_command(
             screen.note(left.cut)
         if left.other_arithmetic:
             screen.warn(left.other_arithmetic)
-    admission = WeighIn(
+    join_check = JoinCheck(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),
         Limits.of(plan.limits),
@@ -140,7 +140,7 @@ def serve_command(
     )
     addresses = (endpoint(listen, plan.public.protocol),) if listen else entry.own_listen
     with ExitStack() as opened:
-        weighing = opened.enter_context(Weighing(admission))
+        weighing = opened.enter_context(Weighing(join_check))
         inbox = Inbox(
             keys,
             seats,
@@ -152,7 +152,7 @@ def serve_command(
         )
         office = None
         if contest:
-            prepare = Preparation(entry.arena, own_settings, seats, admission, weighing.aside)
+            prepare = Preparation(entry.arena, own_settings, seats, join_check, weighing.aside)
             copying = Copying(folder, name, weighing.aside)
             office = OfficeDesk(hash_token(plan.secrets.office), seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None

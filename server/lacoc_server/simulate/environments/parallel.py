@@ -11,8 +11,8 @@ from pettingzoo import ParallelEnv
 from lacoc_arenas.learned.arguments import table, whole
 from lacoc_arenas.learned.senses import Numbers, Senses
 from lacoc_server.simulate.environments.court import Actions, AgentCourt, lead
-from lacoc_server.simulate.environments.drawn import Painter
 from lacoc_server.simulate.environments.opening import known_options
+from lacoc_server.simulate.environments.painter import Painter
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -63,7 +63,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self.agents: list[str] = []
         self._episode = self.court.episode()
         self._senses = Senses(self._episode.match.sheet())
-        self._drawn = Painter(render_mode)
+        self._painter = Painter(render_mode)
         self.observation_spaces = {
             agent: self.court.observation_space(self._senses, seat)
             for seat, agent in enumerate(self.possible_agents)
@@ -198,11 +198,11 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return a picture, an array (height, width, 3); None without a render mode."""
         match = self._episode.match
-        return self._drawn.draw(match.physics, match.game, self._episode.frame.markers)
+        return self._painter.draw(match.physics, match.game, self._episode.frame.markers)
 
     def close(self) -> None:
         """Free what draws pictures."""
-        self._drawn.close()
+        self._painter.close()
 
     def _seen(self) -> dict[str, Numbers]:
         left, right = self.possible_agents
