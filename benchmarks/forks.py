@@ -21,7 +21,7 @@ from lacoc_server.journal.replay import resume, verify
 from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.fork import fork
-from lacoc_server.simulate.forks.jobs import ForkJob, play
+from lacoc_server.simulate.forks.jobs import ForkJob, play_fork
 from lacoc_server.simulate.forks.line import ForkChange
 from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_shared.decisions import TakeBack
@@ -93,7 +93,7 @@ def _record(folder: Path, number: int, seconds: float, chance: random.Random) ->
         match_id=f"{match_id}-changed",
         folder=str(folder),
     )
-    changed = play(change)
+    changed = play_fork(change)
     assert changed.record is not None
     return read_source(changed.record)
 

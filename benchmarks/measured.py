@@ -26,7 +26,7 @@ from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.match.entry import JoinCheck
-from lacoc_shared.contest.tokens import hash_token, new_token
+from lacoc_shared.contest.tokens import new_token, new_token_hash
 from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SentFile
 from lacoc_shared.messages.office import open_match
@@ -85,9 +85,9 @@ def measured_court(name: str = NAME) -> Iterator[Measured]:
     keys = KeySpace(name)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     join_check = JoinCheck(*files, Limits(), loaded.match.open_levels)
-    opened = open_match({seat: [hash_token(token)] for seat, token in tokens.items()})
+    opened = open_match({seat: [new_token_hash(token)] for seat, token in tokens.items()})
     inbox = Inbox(keys, list(tokens), join_check, secrets.token_bytes)
-    desk = DecisionDesk([hash_token(referee)])
+    desk = DecisionDesk([new_token_hash(referee)])
     with (
         tempfile.TemporaryDirectory() as folder,
         CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, desk) as network,

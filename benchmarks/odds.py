@@ -28,7 +28,14 @@ from msgspec.structs import replace
 from lacoc_arenas import arena as arenas
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks import odds
-from lacoc_server.simulate.forks.chances import ChanceJob, MatchCourse, Odds, Wish, compute, margins
+from lacoc_server.simulate.forks.chances import (
+    ChanceJob,
+    MatchCourse,
+    Odds,
+    Wish,
+    compute_odds,
+    margins,
+)
 from lacoc_server.simulate.forks.odds import MomentOdds, Swing
 from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.studio.workers import Workers
@@ -110,7 +117,7 @@ def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
         source, bots, _ = _match(Path(folder), number, seconds)
         file = str(Path(folder, f"{source.match_id}.mcap"))
         wish = Wish(file=file, bots=bots, forks=forks + _OTHERS, step_s=1.0)
-        *_, curve = compute(wish, _Here(), None, lambda done, of: None)
+        *_, curve = compute_odds(wish, _Here(), None, lambda done, of: None)
         chosen = odds.highlights(_from_forks(curve, slice(forks)), least=_LEAST)
         largest = odds.steps(_from_forks(curve, slice(forks, None)))
         largest.sort(key=lambda step: -abs(step.change))

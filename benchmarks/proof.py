@@ -27,7 +27,7 @@ from benchmarks.forger import Forger
 from benchmarks.played import elsewhere, play
 from lacoc_server.journal.judge import Judge
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.section import SectionFinding, Worlds, simulate
+from lacoc_server.journal.section import SectionFinding, Worlds, simulate_section
 from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude
 from lacoc_server.match.match import Match
 from lacoc_server.world import arithmetic
@@ -69,7 +69,7 @@ class Prover:
         name = hashlib.blake2b(content, digest_size=16).digest()
         if name not in self._findings:
             worlds = Worlds() if build.number or section.start is None else self._worlds
-            self._findings[name] = simulate(section, worlds)
+            self._findings[name] = simulate_section(section, worlds)
         return self._findings[name]
 
 

@@ -44,9 +44,9 @@ def load_table(file: str | Path, robot: str = _ROBOT) -> Gait:
         UserError: if the file can't be read, or there is no such robot.
         FileRefused: with every mistake of a file.
     """
-    from lacoc_robots.reading import read_gait, read_robot_file
+    from lacoc_robots.reading import load_gait, read_robot_file
 
-    return read_gait(Path(file), read_robot_file(robot))
+    return load_gait(Path(file), read_robot_file(robot))
 
 
 def walk(
@@ -70,12 +70,12 @@ def walk(
         FileRefused: with every mistake of a file.
     """
     _need("mujoco", extra="server")
-    from lacoc_robots.reading import read_gait, read_robot_file
+    from lacoc_robots.reading import load_gait, read_robot_file
     from lacoc_server.studio.answers import try_gait
     from lacoc_server.world.sensed import make_course
 
     spec = read_robot_file(robot)
-    gait = read_gait(Path(table), spec) if isinstance(table, str | Path) else table
+    gait = load_gait(Path(table), spec) if isinstance(table, str | Path) else table
     return try_gait(make_course(spec), gait, keys, seconds)
 
 

@@ -30,7 +30,7 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
 from lacoc_shared.contest.file import load
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import Whereabouts, open_match
 from lacoc_shared.mistakes import UserError
@@ -171,7 +171,7 @@ def test_mistakes_in_an_open_stage_are_told(tmp_path: Path, stages: str, said: s
 
 def record_open_match(folder: Path) -> Path:
     """Record a short open match in a folder of a contest's records; return the file."""
-    tokens = {seat: [hash_token(seat)] for seat in ("left", "right")}
+    tokens = {seat: [new_token_hash(seat)] for seat in ("left", "right")}
     made = replace(
         setup("othello", QUICK),
         match_id="20260501-100000-main-001",

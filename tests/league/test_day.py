@@ -9,7 +9,7 @@ from cup import Cup
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.contest.league.draws import apart, by_lot
+from lacoc_server.contest.league.draws import by_lot, clubs_apart
 from lacoc_server.contest.league.facts import (
     Announced,
     Closed,
@@ -297,7 +297,7 @@ def test_teams_of_one_club_are_kept_apart(clubs: list[str], groups: int) -> None
     def clash(order: tuple[str, ...]) -> int:
         return sum(club_of[one] == club_of[two] != "" for one, two in met(order))
 
-    found = apart(names, club_of, met)
+    found = clubs_apart(names, club_of, met)
     assert sorted(found) == sorted(names)
     assert clash(found) <= clash(names)
     if not clash(names):

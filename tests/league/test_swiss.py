@@ -16,7 +16,7 @@ from lacoc_server.contest.league.formats.swiss import (
     faults,
     fewest_faults,
     paired,
-    seated,
+    seat_pair,
 )
 
 
@@ -42,7 +42,7 @@ def play(random: Random, pair: Sequence[SwissTeam], before: dict[int, int]) -> N
         pair[0].points += 2
         pair[0].floats.append("down")
         return
-    left = seated(pair[0], pair[1])[0]
+    left = seat_pair(pair[0], pair[1])[0]
     points = random.choice([0, 1, 2])
     for player, other, won in ((*pair, points), (pair[1], pair[0], 2 - points)):
         apart = before[player.number] - before[other.number]

@@ -26,13 +26,13 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
 
 OFFICE = "the token of the office"
-HASH = tokens.hash_token(OFFICE)
+HASH = tokens.new_token_hash(OFFICE)
 SEATS = ("left", "right")
 FINAL = say("fixture.final", stage=None)
 
 
 def seat(name: str, team: str, **changes: Any) -> AssignedSeat:
-    hashes = (tokens.hash_token(team),)
+    hashes = (tokens.new_token_hash(team),)
     return AssignedSeat(**({"id": name, "team": team, "token_hashes": hashes} | changes))
 
 

@@ -19,7 +19,7 @@ from lacoc_client.play.bot_player import BotPlayer
 from lacoc_client.play.controller import Controller
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.contest.live.court_link import Asked, CourtLink, CourtResult, Unanswered
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.network.session import Session, open_client
@@ -42,7 +42,7 @@ _calls = itertools.count(1)
 @functools.cache
 def hash_of(team: str) -> str:
     """Return the hash of a team's token; a team has one token for all its matches."""
-    return hash_token(token(team))
+    return new_token_hash(token(team))
 
 
 def token(team: str) -> str:

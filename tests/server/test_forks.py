@@ -20,7 +20,7 @@ from lacoc_server.journal.replay import resume, verify
 from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.fork import Forked, fork
-from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play
+from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play_fork
 from lacoc_server.simulate.forks.line import ForkChange, of_bot
 from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.simulate.forks.script import Script
@@ -154,7 +154,7 @@ def test_bots_and_a_script_take_over(source: ForkSource, file: Path, tmp_path: P
         match_id="scripted",
         folder=str(tmp_path),
     )
-    record = proven(play(job))
+    record = proven(play_fork(job))
     own = [
         (at, item.key)
         for at, items in record.inputs.items()

@@ -18,7 +18,7 @@ from lacoc_client.film.moments import from_file
 from lacoc_server.commands.replay.highlights import app as highlights_app
 from lacoc_server.simulate import player, simulate, software
 from lacoc_server.simulate.forks import chances, odds
-from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute, margin, margins
+from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute_odds, margin, margins
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
 from lacoc_server.simulate.forks.odds import MomentOdds
 from lacoc_server.simulate.forks.origin import read_source
@@ -129,7 +129,7 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
     file = tmp_path / f"{MATCH}.mcap"
     wish = Wish(file=str(file), bots=("planner", "nearest"), forks=2, step_s=2.0)
     engine, told = Counting(), []
-    *_, found = compute(wish, engine, None, lambda done, of: told.append((done, of)))
+    *_, found = compute_odds(wish, engine, None, lambda done, of: told.append((done, of)))
     assert engine.forks == 2 * (len(found.moments) - 1)
     assert told[-1][0] == told[-1][1] == len(found.moments) == 3
     assert found.moments[-1].margins == (margin(result, ("left", "right")),)
@@ -141,14 +141,14 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
     write_odds(path, found)
     assert read_odds(path) == found
     more = Counting()
-    *_, again = compute(replace(wish, forks=3), more, read_odds(path), lambda done, of: None)
+    *_, again = compute_odds(replace(wish, forks=3), more, read_odds(path), lambda done, of: None)
     assert more.forks <= engine.forks  # of each moment that stays, one more fork
     for one in again.moments[:-1]:
         known = next((old for old in found.moments if old.beat == one.beat), None)
         assert known is None or one.margins[:2] == known.margins
     other = Counting()
     wished = replace(wish, bots=("straight", "nearest"))
-    assert [*compute(wished, other, read_odds(path), lambda done, of: None)]
+    assert [*compute_odds(wished, other, read_odds(path), lambda done, of: None)]
     assert other.forks == 4
 
     job = ChanceJob(file=str(file), beat=found.moments[0].beat, bots=wish.bots, variants=(1, 2))

@@ -23,7 +23,7 @@ from lacoc_shared.messages import Event, Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import KINDS
-from lacoc_shared.record.stream import walk
+from lacoc_shared.record.stream import walk_messages
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import render, say
@@ -177,7 +177,7 @@ def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
         if topic != "/lacoc/header":
             writer._write(1 + list(KINDS).index(topic), beat, data)
 
-    walk(live, take)
+    walk_messages(live, take)
     writer.close()
     return writer.path
 

@@ -21,7 +21,7 @@ from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import Done, Event, Outcome, SeatHealth
 from lacoc_shared.messages.office import open_match
@@ -37,7 +37,7 @@ LONG = 200
 """Four seconds, in beats."""
 TROUBLE = say("record.disk-trouble", file="m.mcap", why="Input/output error")
 
-HASH = hash_token("a token")
+HASH = new_token_hash("a token")
 
 
 class Quiet:

@@ -167,7 +167,7 @@ class TeamWay:
             time.sleep(min(left_s, 0.1))
 
 
-def is_over(view: Spectator, call: str) -> bool:
+def call_is_over(view: Spectator, call: str) -> bool:
     """Return whether the match of a call has its official end, or its court has another match."""
     frame, sheet = view.frame, view.sheet
     if sheet.call != call:

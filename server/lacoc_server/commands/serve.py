@@ -32,7 +32,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.courts import LOOPBACK, ContestCourt
 from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.contest.secrets import Secrets
-from lacoc_shared.contest.tokens import hash_token, new_token
+from lacoc_shared.contest.tokens import new_token, new_token_hash
 from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SentFile
 from lacoc_shared.messages.office import TOKENS_MOST, WAITING, open_match
@@ -154,7 +154,7 @@ def serve_command(
         if contest:
             prepare = Preparation(entry.arena, own_settings, seats, join_check, weighing.aside)
             copying = Copying(folder, name, weighing.aside)
-            office = OfficeDesk(hash_token(plan.secrets.office), seats, prepare, copying)
+            office = OfficeDesk(new_token_hash(plan.secrets.office), seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         outlooks, key_trials = Outlooks(weighing.aside), KeyTrials(weighing.aside)
         pair = plan.public.pair
@@ -164,7 +164,7 @@ def serve_command(
                 keys,
                 addresses,
                 inbox,
-                DecisionDesk([hash_token(whistle)]),
+                DecisionDesk([new_token_hash(whistle)]),
                 pair,
                 office,
                 outlooks,
@@ -205,7 +205,7 @@ def _alone(arena: str | None, listen: str | None, court: str | None) -> ContestF
 
 def _opening(tokens: Mapping[str, str], left: Unfinished | None) -> dict[str, list[str]]:
     """Return the hashes of all tokens that open a seat: the new one, and those before a restart."""
-    found = {seat: [hash_token(token)] for seat, token in tokens.items()}
+    found = {seat: [new_token_hash(token)] for seat, token in tokens.items()}
     if left is not None:
         for one in left.match.assigned.seats if left.match.assigned else ():
             found[one.id] += one.token_hashes

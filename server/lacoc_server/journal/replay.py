@@ -16,7 +16,7 @@ from pathlib import Path
 
 from lacoc_robots.model import MODEL_VERSION
 from lacoc_server.journal.judge import Judge, fits_together
-from lacoc_server.journal.section import BOUND, Section, SectionFinding, Worlds, simulate
+from lacoc_server.journal.section import BOUND, Section, SectionFinding, Worlds, simulate_section
 from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
@@ -115,7 +115,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
         with fits_together(record):
             world = judge.worlds.at_start(section)
         if section.steps:
-            findings.append(simulate(section, judge.worlds))
+            findings.append(simulate_section(section, judge.worlds))
             world.digest = section.steps[-1].digest
         # Keep what was published, even if this machine computes other last bits.
         world.scene, world.scene_hash = physics.scene, physics.scene_hash
@@ -133,7 +133,7 @@ def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[SectionFi
     if processes <= 1:
         worlds = Worlds()
         for section in judge.sections():
-            yield simulate(section, worlds, bound)
+            yield simulate_section(section, worlds, bound)
         return
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin) as pool:
         waiting: deque[Future[SectionFinding]] = deque()
@@ -162,7 +162,7 @@ def _begin() -> None:
 
 
 def _simulate(section: Section, bound: float) -> SectionFinding:
-    return simulate(section, _worlds, bound)
+    return simulate_section(section, _worlds, bound)
 
 
 def _same_physics(record: Record) -> None:

@@ -162,7 +162,7 @@ class Worlds:
         return self._world
 
 
-def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> SectionFinding:
+def simulate_section(section: Section, worlds: Worlds, bound: float = BOUND) -> SectionFinding:
     """Simulate a section and compare it with the record.
 
     Args:

@@ -95,7 +95,7 @@ class _AnyHeader(msgspec.Struct):
     format: int
 
 
-def walk(path: Path, take: Take) -> Stop | None:
+def walk_messages(path: Path, take: Take) -> Stop | None:
     """Pass every whole message of a file to `take`, up to its end or the first fault.
 
     See `walk_bytes`. Bytes that can't be decoded as their topic's message are a fault too.

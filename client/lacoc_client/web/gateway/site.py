@@ -26,7 +26,7 @@ from lacoc_client.web.gateway.cached import (
 from lacoc_client.web.gateway.courts import Courts
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.forks import ForkAsk, Forks, bots
-from lacoc_client.web.gateway.guard import answer, language_of, machine_of
+from lacoc_client.web.gateway.guard import answer_browser, language_of, machine_of
 from lacoc_client.web.gateway.health import GatewayHealth
 from lacoc_client.web.gateway.home import Home
 from lacoc_client.web.gateway.metrics import GatewayMetrics
@@ -156,7 +156,7 @@ def fork_routes(
 
     async def fork(request: Request) -> Response:
         if not lets_act(request.headers.get(KEY_HEADER, "")):
-            return answer(request.scope, say("gateway.fork-key"), 403)
+            return answer_browser(request.scope, say("gateway.fork-key"), 403)
         record = await asyncio.to_thread(shelf.find, request.path_params["name"])
         if record is None:
             return _not_found(request)
@@ -168,9 +168,9 @@ def fork_routes(
             else:
                 found = {"bots": await asyncio.to_thread(bots, record)}
         except msgspec.MsgspecError as error:
-            return answer(request.scope, say("gateway.bad-message", error=str(error)), 400)
+            return answer_browser(request.scope, say("gateway.bad-message", error=str(error)), 400)
         except UserError as error:
-            return answer(request.scope, error.phrase, 409)
+            return answer_browser(request.scope, error.phrase, 409)
         return Response(msgspec.json.encode(found), media_type="application/json")
 
     return [Route("/recordings/{name}/forks", fork, methods=["GET", "POST"])]
@@ -215,7 +215,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
         if files is not None and path is not None:
             found = await asyncio.to_thread(files.find, path.name)
         if found is None:
-            return answer(request.scope, say("gateway.no-contest"), 404)
+            return answer_browser(request.scope, say("gateway.no-contest"), 404)
         return file_response(request, found, ASK_AGAIN)
 
     return Route("/contest.json", sheet)
@@ -236,7 +236,7 @@ def page_routes(
     async def index(request: Request) -> Response:
         file = await asyncio.to_thread(files.find, "index.html")
         if file is None:
-            return answer(request.scope, NOT_BUILT, 503)
+            return answer_browser(request.scope, NOT_BUILT, 503)
         return file_response(request, file, ASK_AGAIN)
 
     async def without_slash(request: Request) -> Response:
@@ -279,4 +279,4 @@ def page_routes(
 
 
 def _not_found(request: Request) -> Response:
-    return answer(request.scope, say("gateway.no-page"), 404)
+    return answer_browser(request.scope, say("gateway.no-page"), 404)

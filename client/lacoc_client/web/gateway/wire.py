@@ -217,14 +217,14 @@ def read(data: bytes) -> Asked:
         Unreadable: if it is no known request, or too long for its kind.
     """
     try:
-        if len(data) > REQUEST_BYTES and wanted(data) != "join":
+        if len(data) > REQUEST_BYTES and do_of(data) != "join":
             raise too_long(len(data), REQUEST_BYTES)
         return _asked.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise Unreadable(say("gateway.bad-message", error=str(error))) from None
 
 
-def wanted(data: bytes) -> str:
+def do_of(data: bytes) -> str:
     """Return what a request wants done (`do`), if nothing else of it can be read.
 
     Raises:

@@ -41,7 +41,7 @@ from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_shared import seal
 from lacoc_shared.contest.codes import new_code, read_code
 from lacoc_shared.contest.names import look_alike, read_name, same_name
-from lacoc_shared.contest.tokens import hash_token, new_token
+from lacoc_shared.contest.tokens import new_token, new_token_hash
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import TrialReply
@@ -137,7 +137,7 @@ class Classroom:
             student, token = self._known(hello), hello.token
         else:
             student, token = await self._newcomer(hello, where), new_token()
-            student.token_hash = hash_token(token)
+            student.token_hash = new_token_hash(token)
             await student.diary.write(student.kept_token())
         if self.students.get(same_name(student.name)) is not student:
             raise UserError(say("class.enter"))  # forgotten while it came in

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
-from lacoc_client.web.gateway.wire import Ask, Ping, Unreadable, too_long, wanted
+from lacoc_client.web.gateway.wire import Ask, Ping, Unreadable, do_of, too_long
 from lacoc_client.workshop.design.saving.robot_edit import RobotEntry
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import By
@@ -274,7 +274,7 @@ def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
     """Decode a request with this decoder; raise the same error as `read`."""
     try:
         if len(data) > REQUEST_BYTES:
-            most = PARSE_BYTES if wanted(data) == "parse" else REQUEST_BYTES
+            most = PARSE_BYTES if do_of(data) == "parse" else REQUEST_BYTES
             if len(data) > most:
                 raise too_long(len(data), most)
         return decoder.decode(data)

@@ -10,7 +10,13 @@ import typer
 
 from lacoc_arenas import brains
 from lacoc_server.simulate.forks.fork import Forked
-from lacoc_server.simulate.forks.jobs import ForkJob, attempt, changes_of, opened, play
+from lacoc_server.simulate.forks.jobs import (
+    ForkJob,
+    attempt_fork,
+    changes_of,
+    opened_record,
+    play_fork,
+)
 from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.simulate.forks.script import Script
 from lacoc_server.studio.workers import WorkerDied, Workers
@@ -106,7 +112,7 @@ def fork_command(
     The fork is written as a record of its own. It names the match, the beat and the record that it
     is a fork of, and is nobody's official result.
     """
-    source = opened(str(record_paths(file)[0]))
+    source = opened_record(str(record_paths(file)[0]))
     if source.record.warning:
         screen.warn(source.record.warning)
     bots = tuple(players.split(",")) if players else ()
@@ -170,11 +176,13 @@ def _id(base: ForkJob, source: ForkSource, number: int) -> str:
 
 def _played(forks: Sequence[ForkJob], jobs: int | None) -> Iterator[tuple[ForkJob, Forked]]:
     if len(forks) == 1:
-        yield forks[0], play(forks[0])
+        yield forks[0], play_fork(forks[0])
         return
     with Workers(jobs, background=True, limit_s=_LONGEST_S) as workers, screen.progress() as bar:
         task = bar.add_task(render(say("fork.forks")), total=len(forks))
-        futures: list[Future[Forked | Phrase]] = [workers.submit(attempt, job) for job in forks]
+        futures: list[Future[Forked | Phrase]] = [
+            workers.submit(attempt_fork, job) for job in forks
+        ]
         for job, future in zip(forks, futures, strict=True):
             try:
                 found = future.result()

@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from threading import Event, Thread
 from typing import Any, Self
 
-from lacoc_server.contest.headless.pool import EngineLost, Job, PlayedAlone, attempt
+from lacoc_server.contest.headless.pool import EngineLost, Job, PlayedAlone, attempt_match
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_shared.command import installing
 from lacoc_shared.mistakes import UserError
@@ -75,7 +75,7 @@ class Cluster:
 
         # The id is a hash of all that decides the game, so Dask need not make one.
         try:
-            theirs = self._client.submit(attempt, job, key=job.match_id, retries=_RETRIES)
+            theirs = self._client.submit(attempt_match, job, key=job.match_id, retries=_RETRIES)
         except ClosedClientError:  # the cluster was lost at this moment
             self._lose()
         else:

@@ -69,7 +69,7 @@ class _DueGame(NamedTuple):
         return left, right
 
 
-def play(
+def play_contest(
     folder: ContestFolder,
     store: FactStore,
     engine: GameEngine,

@@ -122,7 +122,7 @@ class Pool:
 
     def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a match when a process is free; its result is read with `ended`."""
-        future = self._workers.submit(attempt, job)
+        future = self._workers.submit(attempt_match, job)
         self._playing[future] = job
         return future
 
@@ -200,7 +200,7 @@ def first_done(
     return wait(futures, _LOOK_S, FIRST_COMPLETED)
 
 
-def attempt(job: Job) -> PlayedAlone | Phrase:
+def attempt_match(job: Job) -> PlayedAlone | Phrase:
     """Play a match in a worker process; an error that a user can correct is returned."""
     try:
         if not job.brings_record:

@@ -115,7 +115,7 @@ def hand_in(files: SeatFiles, robot: str) -> HandedIn:
     )
 
 
-def gather(folder: Path | None, bot: str, robot: str) -> HandedIn:
+def gather_entry(folder: Path | None, bot: str, robot: str) -> HandedIn:
     """Read the files that a team hands in.
 
     Args:

@@ -132,7 +132,7 @@ class StandbyDoor:
             waiting=None
             if version == asked.applications
             else {name: one.at_ms for name, one in waiting.items()},
-            records=unpacked(self._where.records),
+            records=with_segments(self._where.records),
         )
 
     def _part(self, asked: PartAsk) -> AnyAnswer:
@@ -187,7 +187,7 @@ def version_of(waiting: Mapping[str, Application]) -> str:
     return hashlib.blake2b(encode(listed), digest_size=16).hexdigest()
 
 
-def unpacked(records: Path) -> tuple[str, ...]:
+def with_segments(records: Path) -> tuple[str, ...]:
     """Return the ids of the matches that have segments, and no packed record yet.
 
     Args:

@@ -24,7 +24,7 @@ from lacoc_server.contest.kept.plans import open_stage, plans
 from lacoc_server.contest.kept.publish import entries_of
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played, generation
-from lacoc_server.contest.standby.door import hashes, small_files, unpacked, version_of
+from lacoc_server.contest.standby.door import hashes, small_files, version_of, with_segments
 from lacoc_server.contest.standby.messages import Got, Kind, PartAsk, RecordAsk, StepAsk, There
 from lacoc_server.contest.standby.other import LacksIt, Other
 from lacoc_shared import codec
@@ -83,7 +83,10 @@ class Follower:
         self._applications = Applications(where.applications)
         self._facts = self._store.facts()
         self._generation = generation(self._facts)
-        self._open: set[str] = {*unpacked(where.records), *_missing(where.records, self._facts)}
+        self._open: set[str] = {
+            *with_segments(where.records),
+            *_missing(where.records, self._facts),
+        }
         """Ids of the matches whose records are not whole here."""
         self._wrong_contest: str | None = None
         """Hash of a contest file that can't be used here."""

@@ -15,7 +15,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import Key
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
-from lacoc_server.simulate.environments.opening import Opening, begun_at, places
+from lacoc_server.simulate.environments.opening import Opening, begun_at, start_place_count
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.simulate.headless import to_play
 from lacoc_server.simulate.inputs import closing
@@ -269,7 +269,7 @@ class Episode:
                 raise BadMessage("it lacks the angles that the robots move to")
             if saved.robots != self.begun.robots:
                 raise BadMessage("it has other robots or gaits")
-            if not 0 <= saved.opening.place < places(self.begun.arena):
+            if not 0 <= saved.opening.place < start_place_count(self.begun.arena):
                 raise BadMessage("the arena has no such start place")
             before = self.opening
             self._open(saved.opening)

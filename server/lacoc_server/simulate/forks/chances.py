@@ -18,7 +18,7 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Match
 from lacoc_server.simulate.forks import odds
-from lacoc_server.simulate.forks.jobs import bots_of, opened
+from lacoc_server.simulate.forks.jobs import bots_of, opened_record
 from lacoc_server.simulate.forks.line import ForkChange, ForkLine, of_bot
 from lacoc_server.simulate.forks.odds import MomentOdds
 from lacoc_server.simulate.forks.origin import ForkSource
@@ -80,7 +80,7 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     arena: str | None = None
 
 
-def compute(
+def compute_odds(
     wish: Wish, engine: ForkEngine, known: Odds | None, progress: Callable[[int, int], None]
 ) -> Iterator[Odds]:
     """Compute the odds of a record.
@@ -98,7 +98,7 @@ def compute(
         UserError: if the record can't be forked, does not have two seats, or has no play, or if a
             bot has a mistake.
     """
-    source = opened(wish.file)
+    source = opened_record(wish.file)
     first, second = _two_seats(source)
     course = MatchCourse(source)
     kept = _still_known(source, wish, known)
@@ -201,7 +201,7 @@ def margin(result: Result, seats: Sequence[str]) -> float:
 
 
 def _margins(job: ChanceJob) -> Iterator[float]:
-    source = opened(job.file)
+    source = opened_record(job.file)
     folder = Path(job.arena) if job.arena else None
     seats = _two_seats(source)
     match, saved = _match_at(job.file, job.beat, job.arena)
@@ -225,7 +225,7 @@ def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
 
     Forks change the match, so each of them begins with a load.
     """
-    before = opened(file).record.until(beat - 1)
+    before = opened_record(file).record.until(beat - 1)
     match = resume(before, folder=Path(arena) if arena else None).match
     while match.beats < beat - 1:  # beats in which nothing was recorded
         match.beat()

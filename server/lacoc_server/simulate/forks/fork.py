@@ -15,7 +15,7 @@ from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
-from lacoc_shared.record.pack import read, write
+from lacoc_shared.record.pack import read_messages, write_packed
 from lacoc_shared.record.schema import ForkChanges, Result
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
@@ -86,7 +86,7 @@ def fork(
             journal.close()
         if out is not None and journal.writer is not None:
             # The fork's own beats are one more segment of the record that it goes on from.
-            write([*before.messages, *read([journal.writer.path])], out)
+            write_packed([*before.messages, *read_messages([journal.writer.path])], out)
     return forked
 
 

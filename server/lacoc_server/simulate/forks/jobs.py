@@ -40,14 +40,14 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     """Folder of the arena, if it is not installed."""
 
 
-def play(job: ForkJob) -> Forked:
+def play_fork(job: ForkJob) -> Forked:
     """Play a fork.
 
     Raises:
         UserError: as `fork.fork` does; or if there is no such seat or bot, or a script has a
             mistake.
     """
-    source = opened(job.file)
+    source = opened_record(job.file)
     folder = Path(job.folder) if job.folder else None
     arena = Path(job.arena) if job.arena else None
     return fork(
@@ -62,16 +62,16 @@ def play(job: ForkJob) -> Forked:
     )
 
 
-def attempt(job: ForkJob) -> Forked | Phrase:
+def attempt_fork(job: ForkJob) -> Forked | Phrase:
     """Play a fork in a worker process; an error that a user can correct is returned."""
     try:
-        return play(job)
+        return play_fork(job)
     except UserError as error:
         return error.phrase
 
 
 @lru_cache(maxsize=1)
-def opened(file: str) -> ForkSource:
+def opened_record(file: str) -> ForkSource:
     """Read a record; the one that was read last is kept, because many forks go on from it.
 
     Raises:

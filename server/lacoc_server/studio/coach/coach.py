@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
@@ -125,28 +125,28 @@ def reply_of(task: Task, key: int, found: CoachFound) -> CoachReply:
     return CoachReply(
         key=key,
         matters=tuple(
-            Weight(cell=place(task.table, one.number), up=one.up, down=one.down)
+            Weight(cell=cell_place(task.table, one.number), up=one.up, down=one.down)
             for one in found.matters
         ),
-        changes=changes(task.table, own, best),
+        changes=cell_changes(task.table, own, best),
         before=vars(found.before),
         after=vars(found.after),
-        score_before=score(found.before, task.goal),
-        score_after=score(found.after, task.goal),
+        score_before=goal_score(found.before, task.goal),
+        score_after=goal_score(found.after, task.goal),
         trials=found.trials,
         cancelled=found.stopped,
     )
 
 
-def changes(table: KeyTable, before: Angles, after: Angles) -> tuple[CellChange, ...]:
+def cell_changes(table: KeyTable, before: Angles, after: Angles) -> tuple[CellChange, ...]:
     """List the numbers that differ between two versions of a table."""
     return tuple(
-        CellChange(cell=place(table, index), from_deg=before[index], to_deg=after[index])
+        CellChange(cell=cell_place(table, index), from_deg=before[index], to_deg=after[index])
         for index in differing(before, after)
     )
 
 
-def place(table: KeyTable, index: int) -> CellPlace:
+def cell_place(table: KeyTable, index: int) -> CellPlace:
     """Return the place of a number in the key's sequence, in the first posture that has it."""
     row, joint = table.cell(index)
     return CellPlace(posture=table.order.index(row), joint=joint)

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.trial.figures import Figures
 
@@ -119,7 +119,7 @@ def is_straight(figures: Figures) -> bool:
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
     """Return what a gait is worth: its score in coarse steps, then how little was changed."""
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
-    return math.floor(score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
+    return math.floor(goal_score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 
 
 class Archive:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lacoc_server.studio.coach.coach import changes
+from lacoc_server.studio.coach.coach import cell_changes
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.studio.coach.trials import Task
 from lacoc_server.studio.styles.gait_map import Mapped
@@ -55,7 +55,7 @@ def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> O
     own = task.table.angles_deg
     return OtherGait(
         table=table,
-        changes=changes(task.table, own, table),
+        changes=cell_changes(task.table, own, table),
         differences=tuple(_differences(styles, own, table)),
         figures=vars(figures),
     )

@@ -32,7 +32,7 @@ _Answer = WorkbookSheet | list[Mistake]
 """A sheet, or why the file is refused."""
 
 
-def sheet_of(data: bytes, name: str) -> WorkbookSheet:
+def read_sheet_apart(data: bytes, name: str) -> WorkbookSheet:
     """Read the sheet of a workbook that has the gait, as `content.read_sheet` does.
 
     Args:

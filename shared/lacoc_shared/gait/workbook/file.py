@@ -14,7 +14,7 @@ from lacoc_shared.gait.legend import KEY
 from lacoc_shared.gait.reader import POSTURES_HEADER, Legs, Range, read_cells
 from lacoc_shared.gait.tables import LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
-from lacoc_shared.gait.workbook.apart import sheet_of
+from lacoc_shared.gait.workbook.apart import read_sheet_apart
 from lacoc_shared.gait.workbook.content import COMPOUND_FILE, MAX_BYTES, Odd, WorkbookSheet, refused
 from lacoc_shared.gait.workbook.look import add_sheets
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
@@ -82,7 +82,7 @@ def read_workbook(
     Raises:
         FileRefused: with every mistake in the file; a mistake in a cell names the cell.
     """
-    sheet = sheet_of(data, name)
+    sheet = read_sheet_apart(data, name)
     odd = {(row, column): kind for row, column, kind in sheet.odd}
     try:
         table = read_cells(

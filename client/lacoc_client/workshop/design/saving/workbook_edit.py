@@ -26,7 +26,7 @@ from lacoc_shared.gait.cells import angle_of, number_of, number_text
 from lacoc_shared.gait.legend import KEY
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.workbook import INPUT_SHEET, MIRROR_SHEET
-from lacoc_shared.gait.workbook.apart import sheet_of
+from lacoc_shared.gait.workbook.apart import read_sheet_apart
 from lacoc_shared.gait.workbook.file import read_workbook, sheet_rows
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -47,7 +47,7 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
         FileRefused: if the file is no workbook with postures.
         UserError: if the postures can't be saved without losing something else in the file.
     """
-    sheet = sheet_of(data, name)
+    sheet = read_sheet_apart(data, name)
     layout = find_layout(sheet_rows(sheet), name, table)
     try:
         edited = _Edit(BookParts(data), sheet.title, layout).result() or data
@@ -66,7 +66,7 @@ def formulas_in(data: bytes, name: str) -> int:
         data: an .xlsx file that can be read as postures.
         name: name of the file, for messages.
     """
-    sheet = sheet_of(data, name)
+    sheet = read_sheet_apart(data, name)
     postures = {row.number for row in sheet_rows(sheet) if KEY.fullmatch(row.cells[0].strip())}
     try:
         book = BookParts(data)

@@ -66,7 +66,7 @@ class Swiss(DrawnByRound):
         """Pair the next round."""
         players = [one for one in history(stage, matches) if one.team not in gone]
         return tuple(
-            (pair[0].team,) if len(pair) == 1 else seated(pair[0], pair[1])
+            (pair[0].team,) if len(pair) == 1 else seat_pair(pair[0], pair[1])
             for pair in paired(players, len(stage.drawn) + 1)
         )
 
@@ -117,7 +117,7 @@ def _float(before: Mapping[str, int], team: str, others: Sequence[str]) -> str:
     return "up" if before[team] < before[others[0]] else "none"
 
 
-def seated(one: SwissTeam, other: SwissTeam) -> tuple[str, str]:
+def seat_pair(one: SwissTeam, other: SwissTeam) -> tuple[str, str]:
     """Seat a pair; return who sits left, then who sits right.
 
     Who sat left less often sits left. If both did equally often, who sat right last does; if that

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 import msgspec
 
 from lacoc_server.contest.league.contest import Contest, StageView, next_round
-from lacoc_server.contest.league.draws import apart
+from lacoc_server.contest.league.draws import clubs_apart
 from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new, stage_of
 from lacoc_server.contest.league.formats.format import Format, Stage
 from lacoc_server.contest.league.matches import ContestMatch
@@ -205,7 +205,7 @@ def kept_apart(
             if isinstance(first, Entrant) and isinstance(second, Entrant):
                 yield first.team, second.team
 
-    return apart(teams, {team.name: team.club for team in contest.teams}, met)
+    return clubs_apart(teams, {team.name: team.club for team in contest.teams}, met)
 
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:
