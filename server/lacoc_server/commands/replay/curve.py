@@ -59,8 +59,8 @@ def odds_of(
         jobs: number of processes; None: one for each core.
 
     Raises:
-        UserError: as `chances.compute_odds` does; or if there are not two players, a process dies, or
-            the file of odds can't be written.
+        UserError: as `compute_odds` does; or if there are not two players, a process dies, or the
+            file of odds can't be written.
     """
     path = record_paths(file)[0]
     source = opened_record(str(path))
