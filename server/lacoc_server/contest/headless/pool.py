@@ -59,7 +59,7 @@ class Job(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PlayedAlone(NamedTuple):
-    """A match that was played."""
+    """A match that was played without a network."""
 
     result: Result
     record: bytes | None
