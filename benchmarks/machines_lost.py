@@ -19,6 +19,7 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played
 from lacoc_shared.codec import decode
+from lacoc_shared.contest.file import secrets_path
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import segment_name, segment_paths
@@ -66,10 +67,11 @@ class Relay:
             for number in range(1, machines + 1):
                 second = self._file.parent.parent / f"machine-{number}" / self._file.name
                 second.parent.mkdir()
-                shutil.copy(self._file, second)
+                for file in (self._file, secrets_path(self._file)):
+                    shutil.copy(file, second.with_name(file.name))
                 words = ("contest", "standby", str(second))
                 copier = stack.enter_context(started(LACOC, *words, quiet=True))
-                if not self._wait(office, second):
+                if not self._wait(office, copier, second):
                     break
                 office = self._lose(stack, office, second)
                 copier.wait(_LIMIT_S)
@@ -84,10 +86,14 @@ class Relay:
         read_line(office)
         return office
 
-    def _wait(self, office: subprocess.Popen[str], second: Path) -> bool:
+    def _wait(
+        self, office: subprocess.Popen[str], copier: subprocess.Popen[str], second: Path
+    ) -> bool:
         """Wait for a random moment in which all courts play; False: the contest is over."""
         later_s = 0.0
         while office.poll() is None:
+            if copier.poll() is not None:
+                raise RuntimeError(f"the standby at {second} ended with {copier.returncode}")
             if len(_in_play(second)) == self._courts:
                 if later_s and time.monotonic() > later_s:
                     return True
@@ -129,7 +135,7 @@ class Relay:
         return again
 
     def report(self, last: Path) -> bool:
-        """Print what was measured; return whether no result was lost or changed.
+        """Print what was measured; return whether a machine was lost and no result.
 
         Args:
             last: the contest file at the last machine.
@@ -152,7 +158,7 @@ class Relay:
             "verify": verify.returncode,
         }
         print(found)
-        return not lost and verify.returncode in (0, 3)
+        return bool(self._on_s) and not lost and verify.returncode in (0, 3)
 
 
 def _figures(values: list[float]) -> str:

@@ -4,15 +4,18 @@
 
 src/core/wire.gen.ts has the court's messages as types, from the Python structs,
 src/core/desk.gen.ts those of an office's desk, src/core/contest/sheet.gen.ts the sheet of a
-contest, and src/i18n/words.gen.ts the texts of everything that is said, except what only commands
-say. A test fails when a file does not fit the Python code any more.
+contest. src/i18n/texts/LANGUAGE/GROUP.json has what pages say: their own messages (texts/*.toml)
+and the phrases of programs, without those of commands. A page loads its groups in one language. A
+test fails when a file does not fit the Python code any more.
 """
 
 import json
 import types
 import typing
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping
 from enum import IntEnum
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -63,11 +66,20 @@ from lacoc_shared.seat import (
     Phase,
     SeatFlag,
 )
+from lacoc_shared.words import LANGUAGES
 from lacoc_shared.words.phrase import Phrase
-from lacoc_shared.words.render import DECIMALS, DEEPEST, LARGEST, LONGEST_LIST, LONGEST_TEXT
-from lacoc_shared.words.table import ON_PAGES, table
+from lacoc_shared.words.render import (
+    DECIMALS,
+    DEEPEST,
+    LARGEST,
+    LONGEST_LIST,
+    LONGEST_TEXT,
+    Language,
+)
+from lacoc_shared.words.table import ON_PAGES, Wording, read, table
 
 _SOURCE = Path(__file__).parent / "src"
+_TEXTS = Path(__file__).parent / "texts"
 
 STRUCTS = (
     messages.SeatFrame,
@@ -216,6 +228,28 @@ LIMITS: dict[str, float] = {
     "DECIMALS": DECIMALS,
 }
 """Of phrases that are put into words."""
+GROUPS: dict[str, tuple[str, ...]] = {
+    "every": (
+        "general",
+        "match",
+        "referee",
+        "contestant",
+        "network",
+        "gateway",
+        "league",
+        "contest",
+    ),
+    "play": (),
+    "files": ("files",),
+    "referee": ("health",),
+    "replay": (),
+    "design": ("studio", "phases"),
+    "class": ("class", "tournament"),
+    "contest": (),
+    "office": ("office",),
+}
+"""By group of the pages' own messages: which files of phrases go with it."""
+
 _IMPORTS = {Phrase: "phrase"}
 """Types that pages write themselves, with the module of core that has them."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
@@ -357,27 +391,43 @@ def _type(hint: Any) -> str:
     return "unknown"
 
 
-def words() -> str:
-    """Return the texts that pages show, by code: the content of src/i18n/words.gen.ts."""
-    lines = "".join(
-        f"  {json.dumps(code)}: {json.dumps([entry.en, entry.ja], ensure_ascii=False)},\n"
-        for code, entry in table(ON_PAGES).items()
-    )
-    return (
-        "// Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.\n\n"
-        f"{_constants(LIMITS)}\n\n"
-        "/** Each code with its templates: English, Japanese. */\n"
-        f"export const WORDS: Record<string, readonly [string, string]> = {{\n{lines}}};\n"
-    )
+def limits() -> str:
+    """Return the limits of a rendered phrase, as TypeScript."""
+    return f"// Made by client/web/make_wire.py; not edited by hand.\n\n{_constants(LIMITS)}\n"
 
 
-FILES = {
+def texts() -> dict[str, dict[str, Wording]]:
+    """Return what pages say, by group and code.
+
+    Raises:
+        ValueError: if two entries have the same code.
+    """
+    said = {group: table(files) for group, files in GROUPS.items()}
+    assert sorted(sum(GROUPS.values(), ())) == sorted(ON_PAGES)
+    own = {file.stem: read(file) for file in sorted(_TEXTS.glob("*.toml"))}
+    every = [code for part in (*said.values(), *own.values()) for code in part]
+    if twice := sorted(code for code, times in Counter(every).items() if times > 1):
+        raise ValueError(f"several entries have the code {', '.join(twice)}")
+    return {group: {**own.get(group, {}), **said[group]} for group in GROUPS}
+
+
+def _json(group: str, language: Language) -> str:
+    entries = {code: getattr(entry, language) for code, entry in texts()[group].items()}
+    return json.dumps(entries, ensure_ascii=False, indent=2) + "\n"
+
+
+FILES: dict[Path, Callable[[], str]] = {
     _SOURCE / "core" / "wire.gen.ts": wire_types,
     _SOURCE / "core" / "desk.gen.ts": desk_types,
     _SOURCE / "core" / "contest" / "sheet.gen.ts": sheet_types,
-    _SOURCE / "i18n" / "words.gen.ts": words,
+    _SOURCE / "i18n" / "limits.gen.ts": limits,
+} | {
+    _SOURCE / "i18n" / "texts" / language / f"{group}.json": partial(_json, group, language)
+    for group in GROUPS
+    for language in LANGUAGES
 }
 
 if __name__ == "__main__":
     for path, text in FILES.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text(), encoding="utf-8")

@@ -12,5 +12,23 @@ export default defineConfig({
     target: "es2022",
     chunkSizeWarningLimit: 800,
     reportCompressedSize: true,
+    rolldownOptions: {
+      output: {
+        chunkFileNames: ({ name }) => `assets/${name.split("~")[0]}-[hash].js`,
+        assetFileNames: ({ names }) =>
+          `assets/${(names[0] ?? "").split("~")[0]!.replace(/\.\w+$/, "")}-[hash][extname]`,
+        // What several pages share is in few files: a page loads at most some kilobytes in vain.
+        codeSplitting: {
+          groups: [
+            {
+              name: "shared",
+              minShareCount: 2,
+              entriesAware: true,
+              entriesAwareMergeThreshold: 30000,
+            },
+          ],
+        },
+      },
+    },
   },
 });

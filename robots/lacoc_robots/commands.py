@@ -1,4 +1,4 @@
-"""`lacoc robot`: check a robot file, export it as MJCF, list the installed robots."""
+"""`lacoc robot`: check a robot file, import or export one, list the installed robots."""
 
 import math
 from pathlib import Path
@@ -8,6 +8,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from lacoc_robots.header.importing import CFile, import_robot
 from lacoc_robots.library import find_robot, installed_robots, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
@@ -18,14 +19,17 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
-from lacoc_shared.gait.text import read_gait
-from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.gait.text import decoded, read_gait
+from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
-    help="Check a robot file, export it as MJCF, or list the installed robots.",
+    help="Check a robot file, import the workshop's header, export MJCF, or list the robots.",
     no_args_is_help=True,
 )
+
+_LARGEST_C_FILE = 256 * 1024
+"""Largest C file [bytes]."""
 
 _Robot = Annotated[
     str,
@@ -100,6 +104,43 @@ def export(
     if kept is not None:
         screen.note(say("command.kept", path=str(out), kept=str(kept)))
     screen.note(say("robot-command.written", path=str(out)))
+
+
+@app.command("import")
+def import_header(
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILES", help="robot6legs.h, and mainR.cpp if AngMin is changed."),
+    ],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="The robot file to write.")] = Path(
+        "robot.toml"
+    ),
+    name: Annotated[str, typer.Option(metavar="NAME", help="The robot's name.")] = "My robot",
+) -> None:
+    """Make a robot file of the workshop's C header (workshop 4-3).
+
+    Sizes, weights, places of the legs, start posture and AngMin are read, also from expressions
+    such as 0.5*ROBOT_BODY_W. Nothing is compiled. Each line that can't be read is named, and the
+    workshop's own numbers stand in its place. A file of the same name is kept.
+    """
+    sources = [CFile(file.name, _c_text(file)) for file in files]
+    made = import_robot(sources, name)
+    kept = save(out, made.toml.encode())
+    for note in made.notes:
+        screen.warn(note)
+    if kept is not None:
+        screen.note(say("command.kept", path=str(out), kept=str(kept)))
+    screen.note(say("robot-command.imported", path=str(out)))
+    read_robot(made.toml, out.name)
+
+
+def _c_text(file: Path) -> str:
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-read", path=str(file), why=why)) from None
+    return decoded(data, file.name, _LARGEST_C_FILE).text
 
 
 @app.command("list")

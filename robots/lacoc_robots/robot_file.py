@@ -84,7 +84,7 @@ def _robot(root: Entries, limits: Limits) -> RobotSpec:
         "m",
     )
     body_mass_kg = body.number("mass_kg", limits.part_mass_min_kg, limits.part_mass_max_kg, "kg")
-    legs = _legs(root, limits)
+    legs = _legs(root, size, limits)
     advance = drive.choice("advance", ("reached", "time"))
     hold_s = (
         drive.number("hold_s", BEAT_S, limits.hold_s, "s", with_time=True)
@@ -128,7 +128,7 @@ def _robot(root: Entries, limits: Limits) -> RobotSpec:
     return robot
 
 
-def _legs(root: Entries, limits: Limits) -> tuple[LegSpec, ...]:
+def _legs(root: Entries, size_m: tuple[float, ...], limits: Limits) -> tuple[LegSpec, ...]:
     link_table = root.table("link")
     default = _link(link_table, None, limits)
     link_table.finish()
@@ -139,7 +139,7 @@ def _legs(root: Entries, limits: Limits) -> tuple[LegSpec, ...]:
         root.note("leg", say("robot.count", count=len(tables)), expected)
     legs: list[LegSpec] = []
     for table in tables[:high]:
-        leg = _leg(table, default, limits)
+        leg = _leg(table, size_m, default, limits)
         table.finish()
         if leg.label and leg.label in (other.label for other in legs):
             again = say("robot.label-again", label=leg.label)
@@ -148,10 +148,11 @@ def _legs(root: Entries, limits: Limits) -> tuple[LegSpec, ...]:
     return tuple(legs)
 
 
-def _leg(table: Entries, default: _LinkEntries, limits: Limits) -> LegSpec:
+def _leg(
+    table: Entries, size_m: tuple[float, ...], default: _LinkEntries, limits: Limits
+) -> LegSpec:
     label = table.text("label", 8)
-    sizes = (limits.width_m, limits.length_m, limits.height_m)
-    position = table.numbers("position_m", [(-size / 2, size / 2) for size in sizes], "m")
+    position = _position(table, size_m, limits)
     outward_deg = table.number("outward_deg", -180.0, 360.0, "degrees")
     if abs(math.cos(math.radians(outward_deg))) < 0.01:
         table.note(
@@ -170,6 +171,18 @@ def _leg(table: Entries, default: _LinkEntries, limits: Limits) -> LegSpec:
         range_rad=(math.radians(link.range_deg[0]), math.radians(link.range_deg[1])),
         accent=table.flag("accent"),
     )
+
+
+def _position(table: Entries, size_m: tuple[float, ...], limits: Limits) -> tuple[float, ...]:
+    """Read where a leg is fixed: in metres, or on the body, whose sides are -1 and 1."""
+    if "position_m" not in table:
+        table.ask("on_body")
+    if "position_m" not in table and "on_body" in table:
+        table.ask("position_m")
+        share = table.numbers("on_body", [(-1.0, 1.0)] * 3)
+        return tuple(one * size / 2 for one, size in zip(share, size_m, strict=True))
+    sizes = (limits.width_m, limits.length_m, limits.height_m)
+    return table.numbers("position_m", [(-size / 2, size / 2) for size in sizes], "m")
 
 
 def _link(table: Entries, default: _LinkEntries | None, limits: Limits) -> _LinkEntries:

@@ -5,6 +5,7 @@ import io
 import json
 import os
 import signal
+import sys
 import urllib.request
 import zipfile
 from collections.abc import Iterator
@@ -319,6 +320,25 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     closing.callback(desk.close)
     assert desk.card("Jo")["need"] == "hand"
     assert desk.card("Jo")["hand_up_s"] > 1e9
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs prlimit")
+def test_a_full_disk_is_told_to_every_student(tmp_path: Path, closing: ExitStack) -> None:
+    """While the disk is full each student reads that nothing is kept; with room, that all is."""
+    import resource
+
+    room = ClassRoom(tmp_path)
+    closing.callback(room.close)
+    ada, bob = comes(closing, room, "Ada"), comes(closing, room, "Bob")
+    _, most = resource.prlimit(room.process.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(room.process.pid, resource.RLIMIT_FSIZE, (0, most))
+    edit(ada, edit(ada, ada.sample(), 1.0), 11.5)
+    for page in (ada, bob):
+        page.until(lambda page=page: page.phases["trouble"])
+    resource.prlimit(room.process.pid, resource.RLIMIT_FSIZE, (most, most))
+    for page in (ada, bob):
+        page.until(lambda page=page: page.phases["trouble"] is None)
+    until_kept(tmp_path, 11.5)
 
 
 @pytest.mark.parametrize("missing", ["the studio", "the robot"])

@@ -43,7 +43,7 @@ def test_a_broken_layer_and_a_circle_are_found(tmp_path: Path) -> None:
     wrong = {
         "core/keys.ts": 'export type { SeatMark } from "../ui/score";',
         "core/walk.ts": 'export const words = () => import("../i18n/words");',
-        "i18n/play.ts": 'export type { CameraName } from "../scene/View";',
+        "i18n/words.ts": 'export type { CameraName } from "../scene/View";',
         "scene/tags.ts": 'export { t } from "../i18n";',
         "ui/screen.ts": 'export { View } from "../scene/View";',
         "core/colours.ts": 'export type { Court } from "./court";',

@@ -863,19 +863,3 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
             Frame(1, beat, int(phase), 0, clock, (seat, seat), b"", poses, bytes(8), bytes(8))
         )
     return frames
-
-
-def test_no_message_stands_in_two_catalogues() -> None:
-    """Each message name is in only one part of the catalogue, or one text would replace another.
-
-    words.gen.ts is no part of it: it has the messages that courts and gateways send.
-    """
-    folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
-    names = [
-        name
-        for part in folder.glob("*.ts")
-        if part.name != "words.gen.ts"
-        for name in re.findall(r'^  "([\w.-]+)": \[', part.read_text("utf-8"), re.M)
-    ]
-    assert len(names) > 1000
-    assert sorted(names) == sorted(set(names))

@@ -375,6 +375,27 @@ def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
     assert share_of(stand.pixels(), BLUE) < 0.5 * before
 
 
+AS_A_CARD = """
+const own = WebGL2RenderingContext.prototype.getParameter;
+WebGL2RenderingContext.prototype.getParameter = function (name) {
+  return name === 0x9246 ? "A graphics card" : own.call(this, name);
+};
+"""
+"""Lets the browser's software say that it is a graphics card."""
+
+
+def test_a_graphics_card_draws_light_and_shadows(stand: Stand, console: Any) -> None:
+    """All shaders of the fine picture compile, and each robot has its colour and a shadow."""
+    stand.page.add_init_script(AS_A_CARD)
+    stand.open("othello.bin", speed=0, q="high", labels=0)
+    assert stand.view("quality") == "high"
+    picture = stand.pixels()
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 2000
+    assert share_of(picture, BLUE, 60) > 0.02
+    assert share_of(picture, ORANGE, 60) > 0.02
+    assert console.errors == []
+
+
 @pytest.mark.long
 def test_in_software_it_begins_coarse(stand: Stand) -> None:
     """Without a graphics card low quality is chosen automatically, and a person can change it."""

@@ -5,23 +5,29 @@ import { type ComponentType, render } from "preact";
 import { ownPage } from "./core/address";
 import { palette } from "./core/colours";
 import { reloadWhenServed } from "./core/reload";
-import { language } from "./i18n";
+import { type Group, language, loadWords } from "./i18n";
 import "./style.css";
 
-const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
-  "/": () => import("./pages/home"),
-  "/play": () => import("./pages/play"),
-  "/practice": () => import("./pages/practice"),
-  "/referee": () => import("./pages/referee"),
-  "/watch": () => import("./pages/watch"),
-  "/overlay": () => import("./pages/overlay"),
-  "/design": () => import("./pages/design"),
-  "/class": () => import("./pages/class"),
-  "/contest": () => import("./pages/contest"),
-  "/office": () => import("./pages/office"),
-  "/enter": () => import("./pages/enter"),
-  "/replay": () => import("./pages/replay"),
-  "/film": () => import("./pages/film"),
+type Load = () => Promise<{ default: ComponentType }>;
+
+/** The module of each page, and which words it says beside those of every page. */
+const PAGES: Record<string, [Load, ...Group[]]> = {
+  "/": [() => import("./pages/home")],
+  "/play": [() => import("./pages/play"), "play"],
+  "/practice": [
+    () => import("./pages/play").then(({ Practice }) => ({ default: Practice })),
+    "play",
+  ],
+  "/referee": [() => import("./pages/referee"), "referee"],
+  "/watch": [() => import("./pages/watch"), "contest"],
+  "/overlay": [() => import("./pages/overlay")],
+  "/design": [() => import("./pages/design"), "design", "play", "files"],
+  "/class": [() => import("./pages/class"), "class", "design", "files"],
+  "/contest": [() => import("./pages/contest"), "contest"],
+  "/office": [() => import("./pages/office"), "office", "contest"],
+  "/enter": [() => import("./pages/enter"), "office", "contest", "files"],
+  "/replay": [() => import("./pages/replay"), "replay"],
+  "/film": [() => import("./pages/film")],
 };
 
 effect(() => {
@@ -32,6 +38,7 @@ effect(() => {
 addEventListener("vite:preloadError", () => void reloadWhenServed());
 
 const path = `/${ownPage ?? location.pathname.split("/").at(-1)}`;
-const { default: Page } = await (PAGES[path] ?? PAGES["/"]!)();
+const [load, ...groups] = PAGES[path] ?? PAGES["/"]!;
+const [{ default: Page }] = await Promise.all([load(), loadWords("every", ...groups)]);
 document.body.dataset.page = path.slice(1) || "home";
 render(<Page />, document.getElementById("page")!);

@@ -85,7 +85,7 @@ _PANELS: Mapping[str, Mapping[str, ListedCommand]] = {
             _SERVER,
         ),
         "robot": ListedCommand(
-            "Check a robot file, export it as MJCF, or list the installed robots."
+            "Check a robot file, import the workshop's header, export MJCF, or list the robots."
         ),
     },
     "Run a contest": {

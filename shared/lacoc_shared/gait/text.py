@@ -104,14 +104,14 @@ class Decoded(NamedTuple):
     """The file's first bytes, which are no text."""
 
 
-def decoded(data: bytes, name: str) -> Decoded:
+def decoded(data: bytes, name: str, most_bytes: int = MAX_BYTES) -> Decoded:
     """Decode a file: by its BOM, else UTF-16 if it has NULs, else strict UTF-8, else cp932.
 
     Raises:
         FileRefused: if it is too large, or no text in any of these encodings.
     """
-    if len(data) > MAX_BYTES:
-        most_kib = say("gait.most-kib", most=MAX_BYTES // 1024)
+    if len(data) > most_bytes:
+        most_kib = say("gait.most-kib", most=most_bytes // 1024)
         raise _refused(name, say("gait.bytes", count=len(data)), most_kib)
     for bom, encoding in _BOMS:
         if data.startswith(bom):

@@ -4,6 +4,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import resources
+from importlib.resources.abc import Traversable
 
 import msgspec
 
@@ -23,6 +24,7 @@ FILES = (
     "class",
     "tournament",
     "league",
+    "contest",
     "office",
     "film",
     "commands",
@@ -47,14 +49,20 @@ def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
     entries: dict[str, Wording] = {}
     folder = resources.files("lacoc_shared.words") / "texts"
     for file in files:
-        subjects = tomllib.loads((folder / f"{file}.toml").read_text(encoding="utf-8"))
-        for subject, codes in subjects.items():
-            for name, entry in codes.items():
-                code = f"{subject}.{name}"
-                if code in entries:
-                    raise ValueError(f"the code {code} is in the table twice")
-                entries[code] = msgspec.convert(entry, Wording)
+        for code, entry in read(folder / f"{file}.toml").items():
+            if code in entries:
+                raise ValueError(f"the code {code} is in the table twice")
+            entries[code] = entry
     return entries
+
+
+def read(file: Traversable) -> Mapping[str, Wording]:
+    """Read the entries of a TOML file, by code."""
+    return {
+        f"{subject}.{name}": msgspec.convert(entry, Wording)
+        for subject, codes in tomllib.loads(file.read_text(encoding="utf-8")).items()
+        for name, entry in codes.items()
+    }
 
 
 def faults(phrase: Phrase) -> list[str]:

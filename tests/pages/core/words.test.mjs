@@ -1,10 +1,11 @@
 // Tests of clocks and hints in words (client/web/src/i18n/words.ts).
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { borderOf, ownLabel } from "../../../client/web/src/core/border.ts";
 import { toldEvents } from "../../../client/web/src/core/rulings.ts";
-import { said, t } from "../../../client/web/src/i18n/index.ts";
+import { said, setWords, t } from "../../../client/web/src/i18n/index.ts";
 import {
   clock,
   clockTicks,
@@ -14,6 +15,9 @@ import {
   played,
   winnerOf,
 } from "../../../client/web/src/i18n/words.ts";
+
+const every = new URL("../../../client/web/src/i18n/texts/en/every.json", import.meta.url);
+setWords(JSON.parse(readFileSync(every, "utf-8")));
 
 const PLAYING = 4;
 const seat = (team) => ({ id: team.toLowerCase(), team });

@@ -337,6 +337,8 @@ class Classroom:
             if self._public() != told:
                 told = self._public()
                 self._tell(self._class_message())
+                for student in self.students.values():
+                    student.tell()  # whether what it does is kept
             if now_s >= quiet_s:
                 quiet_s = now_s + _QUIET_LOOK_S
                 for student in self.students.values():

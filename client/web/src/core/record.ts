@@ -64,7 +64,7 @@ export interface PackedFrames {
   bytes: Uint8Array<ArrayBuffer>;
 }
 
-/** Why files can't be played: the names of messages of the page (i18n/replay.ts). */
+/** Why files can't be played: the names of messages of the page (texts/replay.toml). */
 export type Why = "notMcap" | "notLacoc" | "format" | "noHeader" | "otherMatch" | "nothing";
 
 /** There is nothing to play, and why. */

@@ -8,9 +8,10 @@
 
 import { markerKind, markerLabel } from "../core/border.ts";
 import type { Phrase, Value } from "../core/phrase.ts";
-import { DECIMALS, DEEPEST, LARGEST, LONGEST_LIST, LONGEST_TEXT, WORDS } from "./words.gen.ts";
+import { DECIMALS, DEEPEST, LARGEST, LONGEST_LIST, LONGEST_TEXT } from "./limits.gen.ts";
 
-export type Language = "en" | "ja";
+/** Templates of one language, by code. */
+export type Words = Readonly<Record<string, string>>;
 
 type Hole = { name: string; formats: string[] };
 type Part = string | Hole | (string | Hole)[];
@@ -23,27 +24,25 @@ const PIECE = /\{(\w+)(?::([^{}<>]*))?\}|([<>])|([^{}<>]+)/g;
 const parsed = new Map<string, Part[]>();
 
 /** A phrase in words; a plain text comes out as it is. */
-export function render(phrase: Phrase | string, language: Language): string {
-  return typeof phrase === "string" ? phrase : rendered(phrase, language, 0);
+export function render(phrase: Phrase | string, words: Words): string {
+  return typeof phrase === "string" ? phrase : rendered(phrase, words, 0);
 }
 
-function rendered(phrase: Phrase, language: Language, depth: number): string {
-  const entry = found(phrase.code);
-  if (!entry || depth >= DEEPEST) return unknown(phrase, depth);
+function rendered(phrase: Phrase, words: Words, depth: number): string {
+  const template = found(phrase.code, words);
+  if (template === undefined || depth >= DEEPEST) return unknown(phrase, words, depth);
   const values = phrase.values ?? {};
   const shown = (part: Part): string => {
     if (typeof part === "string") return part;
-    if (!Array.isArray(part)) return filled(own(values, part.name), part.formats, language, depth);
+    if (!Array.isArray(part)) return filled(own(values, part.name), part.formats, words, depth);
     const there = part.every((one) => typeof one === "string" || !isMissing(own(values, one.name)));
     return there ? part.map(shown).join("") : "";
   };
-  return parse(entry[language === "ja" ? 1 : 0])
-    .map(shown)
-    .join("");
+  return parse(template).map(shown).join("");
 }
 
-function found(code: string): readonly [string, string] | undefined {
-  return Object.hasOwn(WORDS, code) ? WORDS[code] : undefined;
+function found(code: string, words: Words): string | undefined {
+  return Object.hasOwn(words, code) ? words[code] : undefined;
 }
 
 function own(values: Record<string, Value>, name: string): Value {
@@ -60,68 +59,68 @@ function parse(template: string): Part[] {
   if (known) return known;
   const parts: Part[] = [];
   let into: Part[] = parts;
-  for (const [, name, formats, bracket, words] of template.matchAll(PIECE)) {
+  for (const [, name, formats, bracket, text] of template.matchAll(PIECE)) {
     if (bracket === "<") {
       into = [];
       parts.push(into as (string | Hole)[]);
     } else if (bracket === ">") into = parts;
-    else into.push(name ? { name, formats: formats?.split(",") ?? [] } : (words ?? ""));
+    else into.push(name ? { name, formats: formats?.split(",") ?? [] } : (text ?? ""));
   }
   parsed.set(template, parts);
   return parts;
 }
 
-function unknown(phrase: Phrase, depth: number): string {
+function unknown(phrase: Phrase, words: Words, depth: number): string {
   const values = phrase.values ?? {};
   const plain = Object.keys(values)
     .sort()
     .slice(0, LONGEST_LIST)
-    .map((name) => `${shownText(name)}: ${filled(own(values, name), [], "en", DEEPEST)}`);
+    .map((name) => `${shownText(name)}: ${filled(own(values, name), [], words, DEEPEST)}`);
   const inside = depth < DEEPEST ? plain.join(", ") : "";
   return shownText(phrase.code) + (inside && ` (${inside})`);
 }
 
-function filled(value: Value, formats: string[], language: Language, depth: number): string {
-  if (!Array.isArray(value)) return one(value, formats, language, depth);
-  const items = value.slice(0, LONGEST_LIST).map((item) => one(item, formats, language, depth));
-  const comma = word("join.comma", language);
+function filled(value: Value, formats: string[], words: Words, depth: number): string {
+  if (!Array.isArray(value)) return one(value, formats, words, depth);
+  const items = value.slice(0, LONGEST_LIST).map((item) => one(item, formats, words, depth));
+  const comma = word("join.comma", words);
   const joins = formats.includes("or") ? "join.or" : formats.includes("and") ? "join.and" : "";
   if (items.length < 2 || !joins) return items.join(comma);
-  return items.slice(0, -1).join(comma) + word(joins, language) + items.at(-1);
+  return items.slice(0, -1).join(comma) + word(joins, words) + items.at(-1);
 }
 
-function one(value: Value, formats: string[], language: Language, depth: number): string {
-  const text = plain(value, formats, language, depth);
+function one(value: Value, formats: string[], words: Words, depth: number): string {
+  const text = plain(value, formats, words, depth);
   if (!formats.includes("quoted")) return text;
-  const [opening, closing] = word("quote.marks", language).split(" ");
+  const [opening, closing] = word("quote.marks", words).split(" ");
   return `${opening}${text}${closing}`;
 }
 
-function plain(value: Value, formats: string[], language: Language, depth: number): string {
-  if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", language);
+function plain(value: Value, formats: string[], words: Words, depth: number): string {
+  if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", words);
   if (typeof value === "number" || typeof value === "bigint") return number(Number(value), formats);
   if (typeof value === "string") {
-    if (formats.includes("marker")) return markerText(value, language);
+    if (formats.includes("marker")) return markerText(value, words);
     for (const format of formats) {
       const code = format.slice(0, -1) + value;
-      if (format.endsWith(".*") && found(code)) return word(code, language);
+      if (format.endsWith(".*") && found(code, words)) return word(code, words);
     }
     return shownText(value);
   }
-  return value === null || Array.isArray(value) ? "?" : rendered(value, language, depth + 1);
+  return value === null || Array.isArray(value) ? "?" : rendered(value, words, depth + 1);
 }
 
 /** A marker's name as pictures show it; names of other games stay as they are. */
-export function markerText(name: string, language: Language): string {
+export function markerText(name: string, words: Words): string {
   const label = markerLabel(name);
   const kind = markerKind(name);
   if (!label) return shownText(name);
   const values: Record<string, Value> = kind ? { number: label } : { label };
-  return rendered({ code: kind ? `marker.${kind}` : "marker.disc", values }, language, 0);
+  return rendered({ code: kind ? `marker.${kind}` : "marker.disc", values }, words, 0);
 }
 
-function word(code: string, language: Language): string {
-  return found(code)?.[language === "ja" ? 1 : 0] ?? code;
+function word(code: string, words: Words): string {
+  return found(code, words) ?? code;
 }
 
 function shownText(text: string): string {

@@ -2,10 +2,9 @@
 
 import type { Match } from "../core/match";
 import { BEATS_PER_S, type Event, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
-import { language, said, t } from "./index";
-import { markerText } from "./render";
+import { language, markerName, said, t } from "./index";
 
-export { BEATS_PER_S };
+export { BEATS_PER_S, markerName };
 
 /** A time of the clock, rounded up to a second: "2:05". */
 export function clock(ticks: number): string {
@@ -50,11 +49,6 @@ export function ruleOf(sheet: Sheet | null): string {
 /** A seat's name in the reader's language. */
 export function seatName(id: string): string {
   return id === "left" || id === "right" || id === "solo" ? t(`seat.${id}`) : id;
-}
-
-/** A marker in words, as pictures show it: "disc C4", "flag 16". */
-export function markerName(name: string): string {
-  return markerText(name, language.value);
 }
 
 /** Why a seat's keys do nothing now, or that it is silent; "" if all is well or play is over. */

@@ -145,7 +145,7 @@ function keyRows(): readonly KeyRow[] {
 }
 
 /** Keys that work wherever the focus is. */
-function useKeys({ sheet, files, trials, membership }: Studio): void {
+function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
       if (event.isComposing || !(event.ctrlKey || event.metaKey) || event.altKey) return;
@@ -156,8 +156,10 @@ function useKeys({ sheet, files, trials, membership }: Studio): void {
         "input:not(.cell-input):not([type=range]):not([data-kept])",
       );
       if (key === "enter") void trials.tryIt();
-      else if (key === "s" && membership.name.peek()) toast(t("design.class.kept"));
-      else if (key === "s") void files.keep();
+      else if (key === "s" && membership.name.peek()) {
+        const trouble = learning.phases.peek()?.trouble;
+        toast(trouble ? said(trouble) : t("design.class.kept"));
+      } else if (key === "s") void files.keep();
       else if (key === "z" && !isField) event.shiftKey ? sheet.redo() : sheet.undo();
       else if (key === "y" && !isField) sheet.redo();
       else return;

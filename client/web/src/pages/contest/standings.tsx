@@ -7,7 +7,7 @@ import {
   type Table,
   tieColumns,
 } from "../../core/contest/sheet";
-import { catalogue, type MessageName, t } from "../../i18n";
+import { isMessage, t } from "../../i18n";
 import { chosenTeam, TeamLink } from "./parts";
 import { groupTitle } from "./words";
 
@@ -117,12 +117,11 @@ function Column({ name }: { name: "points" | "difference" | (typeof COUNTS)[numb
 
 /** A column of a tie-break: its heading explains it. */
 function TieColumn({ id, code }: { id: string; code: string }) {
+  const short = `contest.tie.${code}.short`;
   return (
     <th scope="col">
       <button type="button" class="explains" popovertarget={id} title={tieText(code)}>
-        {`contest.tie.${code}.short` in catalogue
-          ? t(`contest.tie.${code}.short` as MessageName)
-          : code}
+        {isMessage(short) ? t(short) : code}
       </button>
       <p id={id} popover="auto">
         {tieText(code)}
@@ -150,7 +149,7 @@ export function Ties({ view }: { view: StageView }) {
 
 function tieText(code: string): string {
   const name = `contest.tie.${code}`;
-  return name in catalogue ? t(name as MessageName) : t("contest.tie.other", { code });
+  return isMessage(name) ? t(name) : t("contest.tie.other", { code });
 }
 
 export function signed(value: number): string {

@@ -14,13 +14,13 @@ import {
   type Source,
   type StageView,
 } from "../../core/contest/sheet";
-import { catalogue, type MessageName, said, t } from "../../i18n";
+import { isMessage, said, t } from "../../i18n";
 import { timeOf } from "../../i18n/words";
 
 /** How a stage is played, beside its title: "Swiss, best of 3"; "" where the title says it. */
 export function stageHeading(sheet: ContestSheet, { stage, format, settings }: Planned): string {
   const message = `contest.format.${format}`;
-  const words = message in catalogue ? t(message as MessageName) : format;
+  const words = isMessage(message) ? t(message) : format;
   const games = settings?.games ?? 1;
   if (games > 1) return t("contest.bestOf", { format: words, games });
   return stageTitle(sheet, stage).startsWith(words) ? "" : words;
@@ -41,7 +41,7 @@ export function expectedOf(sheet: ContestSheet, pairing: string): string {
 /** How many rounds are still to be drawn; a format may have its own words for that. */
 export function roundsLeft({ plan, rounds_to_draw: count }: StageView): string {
   const own = `contest.roundsLeft.${plan.format}`;
-  return t(own in catalogue ? (own as MessageName) : "contest.roundsLeft", { count });
+  return t(isMessage(own) ? own : "contest.roundsLeft", { count });
 }
 
 /** What people call a stage: the organiser's title, or the usual name of its format. */

@@ -30,7 +30,7 @@ export function TeamCard({ court, team }: Props) {
         <h1 id="entrance-title">{there.team}</h1>
       </div>
       <div role="status" class="coming">
-        <p>{t(isOver ? "team.thanks" : "team.next")}</p>
+        <p>{t(isOver ? "team.thanks" : "team.nextMatch")}</p>
         <strong>{said(there.said)}</strong>
         {there.state === "waits" && there.opponent && there.fixture && <p>{said(there.fixture)}</p>}
         {Boolean(there.games_before) && (

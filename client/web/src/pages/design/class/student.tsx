@@ -1,6 +1,6 @@
 /** Who works on this page, whether all is kept, and the raised hand. */
 
-import { t } from "../../../i18n";
+import { said, t } from "../../../i18n";
 import { Icon } from "../../../ui/icons";
 import { isNarrow } from "../../../ui/screen";
 import type { Learning } from "../learning/learning";
@@ -15,9 +15,12 @@ interface Props {
 
 export function StudentName({ name, learning, isOpen, onFiles }: Props) {
   // A change that is on its way is as good as kept.
-  const isKept = learning.isTold.value || (isOpen && learning.gait() !== null);
+  const isTold = learning.isTold.value || (isOpen && learning.gait() !== null);
+  const trouble = learning.phases.value?.trouble;
+  const isKept = isTold && !trouble;
+  const title = trouble ? said(trouble) : t("design.files");
   return (
-    <button class="button name" type="button" title={t("design.files")} onClick={onFiles}>
+    <button class="button name" type="button" title={title} onClick={onFiles}>
       <b>{name}</b>
       <small class={isKept ? "" : "unsaved"}>
         {t(isKept ? "design.class.kept" : "design.class.notKept")}

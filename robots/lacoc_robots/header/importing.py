@@ -1,0 +1,215 @@
+"""Writes a robot file from the values of the workshop's C files (workshop 4-3)."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from lacoc_robots.header.c_values import Unread, Value, read_c
+from lacoc_shared.gait.tables import JOINTS_PER_LEG
+from lacoc_shared.words import LANGUAGES, Phrase, render, say
+
+DEFAULTS = {
+    "ROBOT_BODY_W": 0.1,
+    "ROBOT_BODY_D": 0.12,
+    "ROBOT_BODY_H": 0.05,
+    "ROBOT_LEG_R": 0.015,
+    "ROBOT_LEG_L": 0.04,
+    "AngMin": 1.2,
+}
+"""The workshop's own numbers, for what a file does not have."""
+_NAMES = (*DEFAULTS, "RJOINT_NUM", "Start_Pos", "Robot_weight", "Joint_Angle")
+_PLACES = ("Rjoint_x", "Rjoint_y", "Rjoint_z")
+_WEIGHTS_KG = (0.125, 0.055)
+_ROOTS_DEG = (45, 0, -45, -45, 0, 45)
+_LIFT_DEG = 20.0
+_ANG_MIN_TICKS_S = 100
+"""AngMin is in degrees for each 10 ms (rules 1)."""
+_RANGE_DEG = "[-150, 150]"
+
+
+class CFile(NamedTuple):
+    """A C file."""
+
+    name: str
+    text: str
+
+
+class Imported(NamedTuple):
+    """A robot file, and what of it is not from the C files."""
+
+    toml: str
+    notes: tuple[Phrase, ...]
+
+
+def import_robot(sources: Sequence[CFile], name: str) -> Imported:
+    """Make a robot file of the workshop's header and, if it is given, of its main file.
+
+    Where a value is missing or can't be read, the workshop's own stands in the robot file, and a
+    note says so. The file is not yet weighed in: the values may be beyond the limits.
+
+    Args:
+        sources: the files; where several give a value, the last one counts.
+        name: the robot's name.
+    """
+    values: dict[str, Value] = {}
+    places: dict[str, str] = {}
+    unread: dict[str, tuple[str, Unread]] = {}
+    for source in sources:
+        read = read_c(source.text)
+        values |= read.values
+        places |= {key: f"{source.name}, line {line}" for key, line in read.lines.items()}
+        wanted = [one for one in read.unread if one.name in (*_NAMES, *_PLACES)]
+        unread |= {one.name: (source.name, one) for one in wanted}
+    for given in values:
+        unread.pop(given, None)
+    header = _HeaderRobot(values, places)
+    lines = [*header.toml(name)]
+    notes = []
+    for file, one in unread.values():
+        notes.append(say("header.not-read", file=file, line=one.line, name=one.name, why=one.why))
+        lines += ["", f"# Not read: {file}, line {one.line}: {one.text[:160]}"]
+    told = {*unread, *header.wrong}
+    notes += [note for names, note in header.missing if told.isdisjoint(names)]
+    return Imported("\n".join(lines) + "\n", (*notes, *header.wrong.values()))
+
+
+class _HeaderRobot:
+    """The robot that the C files describe."""
+
+    def __init__(self, values: dict[str, Value], places: dict[str, str]) -> None:
+        self._values = values
+        self._places = places
+        self.missing: list[tuple[Sequence[str], Phrase]] = []
+        """For each value that is the workshop's: which names could have given it, and a note."""
+        self.wrong: dict[str, Phrase] = {}
+        """By name: what is there, but can't be as it is."""
+        self._w, self._d, self._h, self._radius, self._link, self._ang_min = (
+            self._number(name) for name in DEFAULTS
+        )
+        count = values.get("RJOINT_NUM", 18)
+        joints = count if isinstance(count, int) else 18
+        self._legs = max(1, joints // JOINTS_PER_LEG)
+        start = self._list("Start_Pos", 3)
+        self._start = start or (0.0, 0.0, self._link + self._radius)
+
+    def toml(self, name: str) -> Iterator[str]:
+        """Return the lines of the robot file."""
+        h = 0.5 * self._h
+        yield f"# Made by 'lacoc robot import'. {render(say('header.look'), LANGUAGES[0])}"
+        yield ""
+        yield f'name = "{name}"'
+        yield ""
+        yield "[body]"
+        size = ", ".join(map(_shown, (self._w, self._d, self._h)))
+        yield f"size_m = [{size}]  # {self._from('ROBOT_BODY_W', 'ROBOT_BODY_D', 'ROBOT_BODY_H')}"
+        body_kg, links_kg = self._weights()
+        yield f"mass_kg = {_shown(body_kg)}  # {self._from('Robot_weight')}"
+        yield ""
+        yield "[start]"
+        yield f"height_m = {_shown(self._start[2])}  # {self._from('Start_Pos')}"
+        yield "posture_deg = ["
+        angles = self._posture()
+        for level in range(JOINTS_PER_LEG):
+            row = angles[level * self._legs : (level + 1) * self._legs]
+            yield f"  {', '.join(map(_shown, row))},"
+        yield f"]  # {self._from('Joint_Angle')}"
+        yield ""
+        yield "[drive]"
+        speed = _shown(self._ang_min * _ANG_MIN_TICKS_S)
+        yield f"ang_min_deg_s = {speed}  # {self._from('AngMin')}, in degrees for each 10 ms"
+        yield ""
+        yield "[link]"
+        length = _shown(self._link + 2 * self._radius)
+        yield f"lengths_m = [{_shown(self._radius)}, {length}, {length}]"
+        yield f"radius_m = {_shown(self._radius)}  # {self._from('ROBOT_LEG_R', 'ROBOT_LEG_L')}"
+        yield f"masses_kg = [{', '.join(map(_shown, links_kg[0]))}]"
+        yield f"range_deg = {_RANGE_DEG}"
+        for leg, (x, y, z) in enumerate(self._hinges()):
+            label = _label(leg, self._legs)
+            place = (x / (0.5 * self._w), y / (0.5 * self._d), z / h)
+            yield ""
+            yield "[[leg]]"
+            yield f'label = "{label}"'
+            yield f"on_body = [{', '.join(map(_shown, place))}]"
+            yield f"outward_deg = {0 if x > 0 else 180}"
+            if links_kg[leg] != links_kg[0]:
+                yield f"masses_kg = [{', '.join(map(_shown, links_kg[leg]))}]"
+            if leg in (0, self._legs - 1):
+                yield "accent = true"
+
+    def _number(self, name: str) -> float:
+        value = self._values.get(name)
+        if isinstance(value, int | float):
+            return float(value)
+        self._miss(_shown(DEFAULTS[name]), name)
+        return DEFAULTS[name]
+
+    def _list(self, name: str, count: int) -> tuple[float, ...] | None:
+        """Return the numbers of a list; C fills what is left out with zeros."""
+        value = self._values.get(name)
+        if value is None:
+            return None
+        items = value if isinstance(value, tuple) else ()
+        numbers = [float(one) for one in items if isinstance(one, int | float)]
+        if not numbers or len(numbers) != len(items) or len(numbers) > count:
+            where = self._places.get(name, "")
+            self.wrong[name] = say("header.entries", name=name, place=where, count=count)
+            return None
+        return (*numbers, *[0.0] * (count - len(numbers)))
+
+    def _miss(self, value: Phrase | str, *names: str) -> None:
+        note = say("header.missing", name=", ".join(names), value=value)
+        self.missing.append((names, note))
+
+    def _weights(self) -> tuple[float, list[tuple[float, ...]]]:
+        """Return the masses of the body and of each leg's links [kg]."""
+        legs = self._legs
+        weights = self._list("Robot_weight", 1 + JOINTS_PER_LEG * legs)
+        if weights is None:
+            body, link = _WEIGHTS_KG
+            self._miss(f"{body}, {link}, ...", "Robot_weight")
+            weights = (body, *[link] * (JOINTS_PER_LEG * legs))
+        return weights[0], [weights[1 + leg :: legs] for leg in range(legs)]
+
+    def _posture(self) -> tuple[float, ...]:
+        """Return the start posture [degrees], by joint id."""
+        angles = self._list("Joint_Angle", JOINTS_PER_LEG * self._legs)
+        if angles is not None:
+            return tuple(math.degrees(angle) for angle in angles)
+        self._miss("45, 0, -45, ...", "Joint_Angle")
+        roots = [*_ROOTS_DEG] if self._legs == len(_ROOTS_DEG) else [0] * self._legs
+        return (*roots, *[_LIFT_DEG] * self._legs, *[0.0] * self._legs)
+
+    def _hinges(self) -> list[tuple[float, ...]]:
+        """Return where each leg is fixed to the body, from the middle of the body [m]."""
+        joints = JOINTS_PER_LEG * self._legs
+        axes = [self._list(name, joints) for name in _PLACES]
+        start_x, start_y, start_z = self._start
+        if all(axis is not None for axis in axes):
+            middle = (start_x, start_y, start_z + 0.5 * self._h)
+            roots = zip(*(axis[: self._legs] for axis in axes if axis is not None), strict=True)
+            return [tuple(a - b for a, b in zip(root, middle, strict=True)) for root in roots]
+        self._miss(say("header.places"), *_PLACES)
+        a_side = self._legs // 2
+        step = 2 / max(1, a_side - 1)
+        reach_m = 0.5 * self._d - self._radius
+        right = [reach_m * (1 - step * leg) for leg in range(a_side)]
+        z = self._radius - 0.5 * self._h
+        x = 0.5 * self._w
+        return [*((x, y, z) for y in right), *((-x, y, z) for y in reversed(right))]
+
+    def _from(self, *names: str) -> str:
+        """Say where values stand, or that the workshop's own stand here."""
+        places = [self._places[name] for name in names if name in self._places]
+        return "; ".join(dict.fromkeys(places)) or "the workshop's own"
+
+
+def _label(leg: int, legs: int) -> str:
+    a_side = legs // 2
+    side, row = ("R", leg) if leg < a_side else ("L", legs - 1 - leg)
+    rows = {2: ("F", "B"), 3: ("F", "C", "B")}.get(a_side)
+    return f"{side},{rows[row] if rows else row + 1}"
+
+
+def _shown(value: float) -> str:
+    return f"{round(value, 6) + 0.0:.6g}"

@@ -1,0 +1,125 @@
+"""A whole match by one hand: with the keyboard alone, and with fingers alone on a phone."""
+
+import pytest
+from contestant import Contestant, Sit
+from playwright.sync_api import expect
+from show import violations
+from venue import REFEREE, TOKENS, Venue
+
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+PHONE = {"width": 390, "height": 844}
+BIG = ".big:not(.fresh) .act:not([aria-disabled=true])"
+"""The referee's button for the next decision."""
+_MOST_TABS = 80
+
+
+class Keyboard:
+    """A person who has no mouse.
+
+    Args:
+        page: the page that she uses.
+    """
+
+    def __init__(self, page: Contestant) -> None:
+        self._page = page
+
+    def go_to(self, selector: str) -> None:
+        """Press Tab until the element has the focus."""
+        wanted = self._page.find(selector).first
+        expect(wanted).to_be_visible()
+        expect(wanted).to_be_enabled()
+        for _ in range(_MOST_TABS):
+            if wanted.evaluate("element => element === document.activeElement"):
+                return
+            self._page.press("Tab")
+        pytest.fail(f"Tab does not lead to {selector}")
+
+    def use(self, selector: str) -> None:
+        """Go to a button, and press it with Enter."""
+        self.go_to(selector)
+        self._page.press("Enter")
+
+    def write(self, selector: str, text: str) -> None:
+        """Go to a field, and type a text."""
+        self.go_to(selector)
+        self._page.page.keyboard.type(text)
+
+
+def opened(venue: Venue, sit: Sit, **options: object) -> Contestant:
+    """Start a court for a match of some seconds, and open the link of the left seat."""
+    venue.court("--seconds", "6")
+    venue.web()
+    page = sit(venue.url, **options)
+    page.open(token=TOKENS["left"])
+    return page
+
+
+def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
+    """A contestant and a referee who have no mouse bring a match to its official result."""
+    page = opened(venue, sit)
+    keyboard = Keyboard(page)
+    keyboard.write("#join-name", "Ants")
+    page.press("Enter")
+    page.stands("seated")
+    keyboard.use("button.ready")
+    venue.contestant("right", "Bees")
+    page.phase(Phase.READY)
+
+    judge = sit(venue.url)
+    judge.open("/referee", token=REFEREE)
+    judging = Keyboard(judge)
+    judging.write(".enter input[name=by]", "Kim")
+    judge.press("Enter")
+    judging.use(BIG)
+    page.phase(Phase.PLAYING)
+    page.steer(2)
+    page.key_stands(2)
+    page.phase(Phase.FINISHED)
+    judging.use(BIG)
+    judging.use("dialog button[type=submit]")
+    page.phase(Phase.OFFICIAL)
+    page.sees(".result", "Ants")
+    for shown in (page, judge):
+        assert violations(shown.page) == []
+        shown.press("?")
+        shown.sees("dialog dl")
+        assert violations(shown.page) == []
+
+
+def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
+    """A contestant and a referee play and judge a match with fingers, each on a phone."""
+    page = opened(venue, sit, viewport=PHONE, has_touch=True, is_mobile=True)
+    page.find("#join-name").tap()
+    page.page.keyboard.type("Ants")  # the keyboard that a phone shows
+    page.find("button[type=submit]").tap()
+    page.stands("seated")
+    page.find("button.ready").tap()
+    venue.contestant("right", "Bees")
+    page.phase(Phase.READY)
+
+    judge = sit(venue.url, viewport=PHONE, has_touch=True, is_mobile=True)
+    judge.open("/referee", token=REFEREE)
+    judge.find(".enter input[name=by]").tap()
+    judge.page.keyboard.type("Kim")
+    judge.find(".enter button[type=submit]").tap()
+    judge.find(BIG).tap()
+    page.phase(Phase.PLAYING)
+    page.find('.key[data-key="2"]').tap()
+    page.key_stands(2)
+    page.phase(Phase.FINISHED)
+    judge.find(BIG).tap()
+    judge.find("dialog button[type=submit]").tap()
+    page.phase(Phase.OFFICIAL)
+    page.sees(".result", "Ants")
+    for shown in (page, judge):
+        assert violations(shown.page) == []
+    watcher = sit(venue.url, viewport=PHONE, has_touch=True, is_mobile=True)
+    watcher.open("/watch")
+    watcher.sees(".result", "Ants")
+    assert violations(watcher.page) == []
+    watcher.open("/")
+    watcher.sees("h1")
+    assert violations(watcher.page) == []
