@@ -27,7 +27,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from benchmarks.processes import LACOC, read_line, started
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.classroom.classroom import CLASS_FILE
 from lacoc_client.workshop.design.learning.draft import NAME as DRAFT
 from lacoc_client.workshop.design.learning.draft import Draft, read_draft
@@ -71,7 +71,7 @@ class Page:
             async for message in self._socket:
                 assert isinstance(message, bytes)
                 body = msgpack.unpackb(message[1:])
-                if message[0] == Kind.REPLY:
+                if message[0] == MessageKind.REPLY:
                     self._asked.pop(body["id"]).set_result(body)
                 elif told is not None:
                     told(message[0], body)
@@ -186,7 +186,7 @@ async def _teach(lesson: Lesson) -> None:
     """Keep the teacher's page open, and note how soon it shows each trial."""
 
     def told(kind: int, body: dict[str, Any]) -> None:
-        cards = [body] if kind == Kind.CARD else body.get("cards") or ()
+        cards = [body] if kind == MessageKind.CARD else body.get("cards") or ()
         for card in cards:
             lesson.seen_s.setdefault((card["name"], card["tries"]), time.monotonic())
 

@@ -29,7 +29,7 @@ import msgspec
 from benchmarks.explained import FAULTS, WHOLE
 from benchmarks.trials import entry_of
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.coach import Found, coach, task_of
+from lacoc_server.studio.coach.coach import CoachFound, coach, task_of
 from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import Matter, what_matters
@@ -247,12 +247,14 @@ def _beginners_sequence(
     )
 
 
-def _searched(workers: Workers, robot: RobotSpec, gait: Gait, size: Size, seconds: float) -> Found:
+def _searched(
+    workers: Workers, robot: RobotSpec, gait: Gait, size: Size, seconds: float
+) -> CoachFound:
     task: Task = task_of(robot, gait, _KEY, Goal.FORWARD, None)
     return coach(Trials(task, workers, threading.Event()), size, seconds, 0, lambda _: None)
 
 
-def _told(found: Found) -> dict[str, float]:
+def _told(found: CoachFound) -> dict[str, float]:
     return {
         "before_mm_s": round(found.before.speed_mm_s, 1),
         "after_mm_s": round(found.after.speed_mm_s, 1),

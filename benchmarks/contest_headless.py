@@ -31,7 +31,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.library import installed_robots, robot_folder
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.cluster import Cluster
-from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.headless.play import GameEngine, play_contest
 from lacoc_server.contest.headless.pool import Pool
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
@@ -56,7 +56,7 @@ games = 2
 settings = {{ match = {{ duration_s = {seconds} }} }}
 """
 
-Engines = AbstractContextManager[Engine]
+Engines = AbstractContextManager[GameEngine]
 
 
 def main() -> None:
@@ -144,7 +144,7 @@ def _play(file: Path, engine: Engines) -> tuple[int, float, object]:
     with FactStore(where.facts) as store, engine as opened:
         note_plans(store, where.plans)
         begun_s = time.monotonic()
-        played = play(where, store, opened, "planner", lambda _: None, lambda _: None)
+        played = play_contest(where, store, opened, "planner", lambda _: None, lambda _: None)
         took_s = round(time.monotonic() - begun_s, 2)
     return played, took_s, [view.tables for view in organiser.sheet(file).stages]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Self
 
 from lacoc_server.contest.acts import organiser
-from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
+from lacoc_server.contest.headless.pool import Job, PlayedAlone, Pool, attempt_match
 from lacoc_shared.words import Phrase
 
 CONTEST = """\
@@ -61,10 +61,10 @@ class Here:
     def __exit__(self, *_: object) -> None:
         pass
 
-    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+    def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a game at once; return a future that already holds its result."""
-        future: Future[Ended | Phrase] = Future()
-        future.set_result(attempt(job))
+        future: Future[PlayedAlone | Phrase] = Future()
+        future.set_result(attempt_match(job))
         return future
 
 

@@ -34,9 +34,9 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.schedule import due
-from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
+from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
 from lacoc_shared.codec import encode
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import DESK
@@ -44,18 +44,18 @@ from lacoc_shared.messages import SentFile
 from lacoc_shared.messages.desk import (
     Apply,
     Approve,
-    Change,
+    ChangeFiles,
     CloseEntries,
     Decline,
     DeskRequest,
     Draw,
-    Files,
     Move,
     NewCode,
     Overview,
     Own,
     Rule,
     TakeOut,
+    TeamFiles,
     Tokens,
 )
 from lacoc_shared.network.session import NoReply, Refused, open_client
@@ -108,7 +108,7 @@ class _Trial:
             self._applications,
             EventCode(where.event_code, self._code),
         )
-        known = Known({"north": Seen(0)}, Pace(0, 60_000), {})
+        known = OfficeKnowledge({"north": SeenCourt(0)}, ContestPace(0, 60_000), {})
         desk = Desk(book, self._key, lambda: known)
         desk.answer(Apply(secret=self._code, team=_WAITS, files=self._files))
         self._mine = self._secrets.team(_MINE)
@@ -198,8 +198,8 @@ class _Trial:
         looks = self._chance.choice((team, team.upper(), f" {team} ", team.lower()))
         kinds: tuple[Any, ...] = (
             Apply(secret=self._code, team=looks, files=self._files),
-            Change(secret=self._guess(token), files=self._files),
-            Change(secret=team, files=self._files),
+            ChangeFiles(secret=self._guess(token), files=self._files),
+            ChangeFiles(secret=team, files=self._files),
             {"do": "change", "secret": self._mine, "team": team, "files": {}},
             {"do": "change", "secret": [self._mine, token[:5]], "files": {}},
         )
@@ -257,10 +257,12 @@ class _Trial:
         return facts, kept, self._where.secrets.read_bytes()
 
 
-def _sample() -> Files:
+def _sample() -> TeamFiles:
     postures, locomotion = sample_gait_files("hexapod")
     assert locomotion is not None
-    return Files(postures=postures, locomotion=SentFile(locomotion.name, locomotion.data + b"\n"))
+    return TeamFiles(
+        postures=postures, locomotion=SentFile(locomotion.name, locomotion.data + b"\n")
+    )
 
 
 if __name__ == "__main__":

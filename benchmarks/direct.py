@@ -12,7 +12,7 @@ import sys
 import time
 from contextlib import ExitStack
 
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.network.session import Mailbox, open_client
 
 PROBES = 10
@@ -27,7 +27,7 @@ def main() -> None:
     parser.add_argument("court")
     parser.add_argument("spectators", type=int)
     options = parser.parse_args()
-    keys = Keys(options.court)
+    keys = KeySpace(options.court)
     with ExitStack() as stack:
         probes: list[Mailbox] = []
         kept = []

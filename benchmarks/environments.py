@@ -20,7 +20,7 @@ import mujoco
 import numpy as np
 
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.simulate.environments import LacocParallelEnv, LacocVectorEnv
 from lacoc_server.world.world import STATE, SUBSTEPS
 from lacoc_shared.record.reader import Record
@@ -203,7 +203,7 @@ def records(game: str, episodes: int) -> dict[str, Any]:
             assert isinstance(verdict, Verdict)
             kinds[verdict.kind.name] = kinds.get(verdict.kind.name, 0) + 1
             file.unlink()
-    return {"episodes": episodes, **kinds, "all proven": kinds == {Kind.SAME.name: episodes}}
+    return {"episodes": episodes, **kinds, "all proven": kinds == {VerdictKind.SAME.name: episodes}}
 
 
 def _play(env: LacocParallelEnv, chance: np.random.Generator, most: int) -> None:

@@ -21,7 +21,7 @@ from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient
 from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Start
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import Command
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seal import command_mac
@@ -152,7 +152,7 @@ def flooder(words: list[str]) -> dict[str, Any]:
     session, controller = _controller(words)
     joined = controller._joined
     assert joined is not None
-    key = Keys(NAME).command(words[1])
+    key = KeySpace(NAME).command(words[1])
     publisher = session.publisher(key)
     newest, sent, seconds, seq = _commands(), 0, 0.0, joined.last_seq
     with session:

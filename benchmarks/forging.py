@@ -37,7 +37,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access
 from lacoc_shared.decisions import Adjust, Start
 from lacoc_shared.inputs import Decide, KeySeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import Command, DecisionRequest
 from lacoc_shared.network import config as network_config
 from lacoc_shared.network.session import NoReply, Refused, Session, open_client
@@ -45,7 +45,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.seal import MAC_BYTES, SECRET_BYTES, command_mac
 from lacoc_shared.seat import Phase
 
-KEYS = Keys("main")
+KEYS = KeySpace("main")
 SEATS = ("left", "right")
 REFEREE = "benchmark"
 CONTROLS = 50

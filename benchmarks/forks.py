@@ -18,12 +18,12 @@ from typing import NamedTuple
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.journal.replay import resume, verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.fork import fork
-from lacoc_server.simulate.forks.jobs import ForkJob, play
-from lacoc_server.simulate.forks.line import Change
-from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.simulate.forks.jobs import ForkJob, play_fork
+from lacoc_server.simulate.forks.line import ForkChange
+from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_shared.decisions import TakeBack
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import DecisionReply
@@ -68,7 +68,7 @@ def main() -> int:
     return int(different > 0 or agreed < asked)
 
 
-def _record(folder: Path, number: int, seconds: float, chance: random.Random) -> Source:
+def _record(folder: Path, number: int, seconds: float, chance: random.Random) -> ForkSource:
     """Play a match; if its number is odd, fork it with a change."""
     name = ("othello", "flag-strike")[number // 2 % 2]
     arena = arenas.load(name, {"match": {"duration_s": seconds}})
@@ -93,12 +93,12 @@ def _record(folder: Path, number: int, seconds: float, chance: random.Random) ->
         match_id=f"{match_id}-changed",
         folder=str(folder),
     )
-    changed = play(change)
+    changed = play_fork(change)
     assert changed.record is not None
     return read_source(changed.record)
 
 
-def _compare(source: Source, folder: Path, beats: int, chance: random.Random) -> _Same:
+def _compare(source: ForkSource, folder: Path, beats: int, chance: random.Random) -> _Same:
     different = frames = 0
     chosen = chance.sample(range(1, source.last_beat + 2), beats)
     for number, beat in enumerate(sorted(chosen)):
@@ -131,12 +131,12 @@ def _differences(was: Record, again: Record, beat: int) -> list[str]:
     if results[0] != results[1]:
         found.append("result")
     verdict = next(step for step in verify(again, processes=1) if isinstance(step, Verdict))
-    if again.cut or verdict.kind is not Kind.SAME:
+    if again.cut or verdict.kind is not VerdictKind.SAME:
         found.append("proof")
     return found
 
 
-def _take_backs(source: Source) -> tuple[int, int]:
+def _take_backs(source: ForkSource) -> tuple[int, int]:
     """Return how many take-backs agree with the dry run, and how many there were."""
     finished = next(
         (one.beat for one in source.record.events if one.data.get("after") == "FINISHED"), None
@@ -153,7 +153,7 @@ def _take_backs(source: Source) -> tuple[int, int]:
             continue  # an earlier decision of the record took it back already
         of += 1
         try:
-            forked = fork(source, beat + 1, Change(take_back=number))
+            forked = fork(source, beat + 1, ForkChange(take_back=number))
         except UserError as error:
             print(f"{source.match_id}, event {number}: {error}", file=sys.stderr)
             continue
@@ -161,12 +161,12 @@ def _take_backs(source: Source) -> tuple[int, int]:
     return agreed, of
 
 
-def _play(source: Source) -> tuple[int, int]:
+def _play(source: ForkSource) -> tuple[int, int]:
     beats = {str(one.data.get("after")): one.beat for one in source.record.events}
     return beats["PLAYING"], beats["FINISHED"]
 
 
-def _to_take_back(source: Source) -> list[tuple[int, int]]:
+def _to_take_back(source: ForkSource) -> list[tuple[int, int]]:
     """Return beat and number of each event of the game."""
     return [(one.beat, one.number) for one in source.record.events if "marker" in one.data]
 

@@ -20,9 +20,9 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import Brain
 from lacoc_server.contest.headless.pool import bot_of, setup_of
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
-from lacoc_server.contest.verify.games import Game
+from lacoc_server.contest.verify.games import GameToCheck
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
@@ -61,7 +61,7 @@ class Change:
 
     chance: random.Random
     arena: Arena
-    entries: list[Entry]
+    entries: list[ContestEntry]
     teams: list[str]
     setup: Setup
     late_ticks: list[int]
@@ -104,8 +104,8 @@ class Change:
 
 
 def forge(
-    game: Game,
-    entries: Sequence[Entry],
+    game: GameToCheck,
+    entries: Sequence[ContestEntry],
     folder: Path,
     chance: random.Random,
     names: Sequence[str] = (),
@@ -271,41 +271,41 @@ def written(record: Record, path: Path, change: Change | None = None) -> None:
 # Changes. Each is given the game as it will be played, and the honest game.
 
 
-def _silent(change: Change, game: Game) -> None:
+def _silent(change: Change, game: GameToCheck) -> None:
     seat = change.seat()
     change.add(Phase.PLAYING, SilentSeat(seat))
     if change.chance.random() < 0.5:
         change.add(Phase.PLAYING, HeardSeat(seat))
 
 
-def _heard(change: Change, game: Game) -> None:
+def _heard(change: Change, game: GameToCheck) -> None:
     change.add(Phase.PLAYING, HeardSeat(change.seat()))
 
 
-def _leave(change: Change, game: Game) -> None:
+def _leave(change: Change, game: GameToCheck) -> None:
     change.add(
         change.chance.choice((Phase.PLAYING, Phase.PLAYING, Phase.FINISHED)),
         LeaveSeat(change.seat()),
     )
 
 
-def _join_again(change: Change, game: Game) -> None:
+def _join_again(change: Change, game: GameToCheck) -> None:
     seat = change.seat()
     change.add(Phase.PLAYING, change.entries[seat].join(seat, change.teams[seat]))
 
 
-def _ready(change: Change, game: Game) -> None:
+def _ready(change: Change, game: GameToCheck) -> None:
     ready = change.chance.random() < 0.5
     phase = change.chance.choice((Phase.READY, Phase.PLAYING))
     change.add(phase, ReadySeat(change.seat(), ready), within=40)
 
 
-def _key_added(change: Change, game: Game) -> None:
+def _key_added(change: Change, game: GameToCheck) -> None:
     key = change.chance.choice((0, 1, 2, 3, RESTART_KEY))
     change.add(Phase.PLAYING, KeySeat(change.seat(), 10_000, change.chance.choice((0, 1)), key))
 
 
-def _key_changed(change: Change, game: Game) -> None:
+def _key_changed(change: Change, game: GameToCheck) -> None:
     at, key = change.chance.randrange(1, 150), change.chance.randrange(4)
     seat = change.seat()
 
@@ -315,22 +315,22 @@ def _key_changed(change: Change, game: Game) -> None:
     change.key = changed
 
 
-def _key_fields(change: Change, game: Game) -> None:
+def _key_fields(change: Change, game: GameToCheck) -> None:
     name = change.chance.choice(("seen", "held", "late", "seq"))
     more = change.chance.choice((1, 3, 50))
     change.names.append(name)
     change.key = lambda one, beat: replace(one, **{name: getattr(one, name) + more})
 
 
-def _mute(change: Change, game: Game) -> None:
+def _mute(change: Change, game: GameToCheck) -> None:
     change.mute[change.seat()] = change.chance.choice((0, 20, 80))
 
 
-def _advice(change: Change, game: Game) -> None:
+def _advice(change: Change, game: GameToCheck) -> None:
     change.add(Phase.PLAYING, Advice((say("health.beats", percent=3.0),)))
 
 
-def _decided(change: Change, game: Game) -> None:
+def _decided(change: Change, game: GameToCheck) -> None:
     """Add any decision of a referee, of the court or of the headless player, in any phase."""
     seat = _SEATS[change.seat()]
     rare = (
@@ -358,43 +358,43 @@ def _decide(change: Change, phase: Phase, decision: d.Decision) -> None:
     change.add(phase, Decide(by, reason, decision), within=within)
 
 
-def _points(change: Change, game: Game) -> None:
+def _points(change: Change, game: GameToCheck) -> None:
     phase = change.chance.choice((Phase.PLAYING, Phase.FINISHED))
     points = change.chance.choice((-5, 1, 5, 40))
     _decide(change, phase, d.Adjust(_SEATS[change.seat()], points))
 
 
-def _marker(change: Change, game: Game) -> None:
+def _marker(change: Change, game: GameToCheck) -> None:
     marker = change.chance.choice(change.arena.game.markers).name
     _decide(change, Phase.PLAYING, d.Set(marker, _SEATS[change.seat()]))
 
 
-def _winner(change: Change, game: Game) -> None:
+def _winner(change: Change, game: GameToCheck) -> None:
     winners = [one for one in (*_SEATS, "draw") if one != game.played.outcome]
     _decide(change, Phase.FINISHED, d.Declare(change.chance.choice(winners)))
 
 
-def _frozen(change: Change, game: Game) -> None:
+def _frozen(change: Change, game: GameToCheck) -> None:
     _decide(change, Phase.PLAYING, d.Freeze(_SEATS[change.seat()], 3.0))
 
 
-def _put_back(change: Change, game: Game) -> None:
+def _put_back(change: Change, game: GameToCheck) -> None:
     _decide(change, Phase.PLAYING, d.Restart(_SEATS[change.seat()]))
 
 
-def _time(change: Change, game: Game) -> None:
+def _time(change: Change, game: GameToCheck) -> None:
     _decide(change, Phase.PLAYING, d.Clock(gives_s=change.chance.choice((-2.0, 2.0, 5.0))))
 
 
-def _halt(change: Change, game: Game) -> None:
+def _halt(change: Change, game: GameToCheck) -> None:
     change.add(Phase.PLAYING, Decide(AUTHOR, "", d.Halt()))
 
 
-def _start(change: Change, game: Game) -> None:
+def _start(change: Change, game: GameToCheck) -> None:
     change.start += change.chance.choice((-30, -7, -1, 1, 2, 9, 40))
 
 
-def _late(change: Change, game: Game) -> None:
+def _late(change: Change, game: GameToCheck) -> None:
     ticks = change.chance.choice((1, 7, 14, 40))
     if change.chance.random() < 0.5:
         change.late_ticks = [game.late_ticks + ticks] * 2
@@ -402,7 +402,7 @@ def _late(change: Change, game: Game) -> None:
         change.late_ticks[change.seat()] = game.late_ticks + ticks
 
 
-def _bot(change: Change, game: Game) -> None:
+def _bot(change: Change, game: GameToCheck) -> None:
     """Let another bot steer a team, with the team's own files."""
     seat = change.seat()
     there = [name for name in change.arena.bots if name != change.entries[seat].bot]
@@ -413,7 +413,7 @@ def _bot(change: Change, game: Game) -> None:
     change.entries[seat] = other
 
 
-def _files(change: Change, game: Game) -> None:
+def _files(change: Change, game: GameToCheck) -> None:
     """Let a team play with a gait that walks another way."""
     seat = change.seat()
     own = change.entries[seat]
@@ -429,12 +429,12 @@ def _files(change: Change, game: Game) -> None:
     change.entries[seat] = replace(own, locomotion="\n".join(rows).encode() + b"\n")
 
 
-def _teams(change: Change, game: Game) -> None:
+def _teams(change: Change, game: GameToCheck) -> None:
     change.teams = change.teams[::-1]
     change.entries[:2] = change.entries[1::-1]
 
 
-def _closing(change: Change, game: Game) -> None:
+def _closing(change: Change, game: GameToCheck) -> None:
     decision = change.chance.choice((d.Abort(), d.Official()))
     by = change.chance.choice((AUTHOR, "Kim"))
     change.names.append(f"{type(decision).__name__} by {by}")
@@ -443,23 +443,23 @@ def _closing(change: Change, game: Game) -> None:
         change.last = Decide(by, "agreed", decision)
 
 
-def _wait(change: Change, game: Game) -> None:
+def _wait(change: Change, game: GameToCheck) -> None:
     change.wait += change.chance.choice((1, 50))
 
 
-def _stop(change: Change, game: Game) -> None:
+def _stop(change: Change, game: GameToCheck) -> None:
     """Say that physics stopped, in READY or in play."""
     change.stop = change.chance.choice((10, 60, 120, 200))
 
 
-def _nudge(change: Change, game: Game) -> None:
+def _nudge(change: Change, game: GameToCheck) -> None:
     """Choose another path within the bound of another arithmetic, and claim one."""
     change.nudge = change.chance.choice((-9e-6, -4e-6, 4e-6, 9e-6))
     _arithmetic(change, game)
 
 
-def _of_setup(**fields: Callable[[Change], Any]) -> Callable[[Change, Game], None]:
-    def forged(change: Change, game: Game) -> None:
+def _of_setup(**fields: Callable[[Change], Any]) -> Callable[[Change, GameToCheck], None]:
+    def forged(change: Change, game: GameToCheck) -> None:
         change.setup = replace(change.setup, **{name: of(change) for name, of in fields.items()})
 
     return forged
@@ -505,7 +505,7 @@ def assigned_of(change: Change) -> Assigned:
     )
 
 
-def _name(change: Change, game: Game) -> None:
+def _name(change: Change, game: GameToCheck) -> None:
     """Give the match another name, in its setup, in its header or in its fact too."""
     name = "f" * 32
     where = change.chance.choice(("setup", "header", "all"))
@@ -519,8 +519,8 @@ def _name(change: Change, game: Game) -> None:
         change.header = lambda header: replace(before(header), match_id=name)
 
 
-def _of_header(name: str, *values: Any) -> Callable[[Change, Game], None]:
-    def forged(change: Change, game: Game) -> None:
+def _of_header(name: str, *values: Any) -> Callable[[Change, GameToCheck], None]:
+    def forged(change: Change, game: GameToCheck) -> None:
         before, value = change.header, change.chance.choice(values)
         change.names.append(str(value))
         change.header = lambda header: replace(before(header), **{name: value})
@@ -528,7 +528,7 @@ def _of_header(name: str, *values: Any) -> Callable[[Change, Game], None]:
     return forged
 
 
-def _version(change: Change, game: Game) -> None:
+def _version(change: Change, game: GameToCheck) -> None:
     name, value = change.chance.choice(
         (
             ("lacoc", "0.0.9"),
@@ -550,7 +550,7 @@ def _version(change: Change, game: Game) -> None:
     change.header = forged
 
 
-def _no_versions(change: Change, game: Game) -> None:
+def _no_versions(change: Change, game: GameToCheck) -> None:
     before = change.header
 
     def forged(header: Header) -> Header:
@@ -560,7 +560,7 @@ def _no_versions(change: Change, game: Game) -> None:
     change.header = forged
 
 
-def _arithmetic(change: Change, game: Game) -> None:
+def _arithmetic(change: Change, game: GameToCheck) -> None:
     before, made_by = change.header, {"functions": "0" * 16, "path": "0" * 16}
     is_none = change.chance.random() < 0.5
     change.names.append("none" if is_none else "another")
@@ -572,7 +572,7 @@ def _arithmetic(change: Change, game: Game) -> None:
     change.header = forged
 
 
-def _health(change: Change, game: Game) -> None:
+def _health(change: Change, game: GameToCheck) -> None:
     change.health = HealthVerdict(
         played_beats=200,
         real_time_factor=0.5,
@@ -585,21 +585,21 @@ def _health(change: Change, game: Game) -> None:
     )
 
 
-def _second(change: Change, game: Game) -> None:
+def _second(change: Change, game: GameToCheck) -> None:
     """Write a second segment, as a court that was killed does; it names no arithmetic."""
     if not change.is_open:
         change.second_at = change.chance.choice((1, 40, 120))
     change.nudge = change.chance.choice((0.0, 9e-6))
 
 
-def _open(change: Change, game: Game) -> None:
+def _open(change: Change, game: GameToCheck) -> None:
     """Leave the record without an end; most of the time, claim another result in it."""
     change.is_open, change.second_at = True, None
     if change.chance.random() < 0.8:
         change.claims = change.chance.choice(((30, 0), (0, 30), (7, 7)))
 
 
-def _fact(change: Change, game: Game) -> None:
+def _fact(change: Change, game: GameToCheck) -> None:
     played = game.played
     name = change.chance.choice(("scores", "outcome", "record_hash", "steer", "void"))
     change.names.append(name)
@@ -614,7 +614,7 @@ def _fact(change: Change, game: Game) -> None:
     change.fact |= values[name]
 
 
-def _called(change: Change, game: Game) -> None:
+def _called(change: Change, game: GameToCheck) -> None:
     """Say that the game was called to a court, and perhaps taken back again."""
     what = {"pairing": game.played.pairing, "game": game.played.game}
     change.before.append(new(Called, court="main", teams=game.played.teams, **what))
@@ -630,14 +630,14 @@ def _called(change: Change, game: Game) -> None:
         )
 
 
-def _tried(change: Change, game: Game) -> None:
+def _tried(change: Change, game: GameToCheck) -> None:
     """Say that the game was played before, without a result, so that its bots start later."""
     void = replace(game.played, outcome="void", scores=(0, 0))
     change.before.append(void)
     change.late_ticks = [ticks + 1 for ticks in change.late_ticks]
 
 
-_Changes = dict[str, Callable[[Change, Game], None]]
+_Changes = dict[str, Callable[[Change, GameToCheck], None]]
 
 DEEDS: _Changes = {
     "silent": _silent,

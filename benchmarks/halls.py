@@ -41,7 +41,7 @@ from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Closed, Played, new
 from lacoc_shared import codec
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import Frame
 from lacoc_shared.network.session import Mail, open_client
 from lacoc_shared.record.files import segment_paths
@@ -251,7 +251,7 @@ async def _lose(hall: int, court: str, halls: int) -> dict[str, Any]:
     port = _PORT + halls - 1
     there, here = f"tcp/{address(hall)}:{port}", f"tcp/{address(_OFFICE)}:{port}"
     with open_client([there, here]) as session:
-        frames = session.mailbox(Keys(court).frame, 100_000)
+        frames = session.mailbox(KeySpace(court).frame, 100_000)
         await asyncio.sleep(2.0)
         seen = page.frames
         assert seen, "the page shows the match"

@@ -28,7 +28,7 @@ from benchmarks.processes import free_port
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_shared.codec import decode
 from lacoc_shared.contest.file import load
 from lacoc_shared.contest.secrets import Secrets
@@ -261,7 +261,7 @@ class _Trial:
             figures.lost_decisions += found is None or found.beat != reply.beat
         *_, verdict = verify(record)
         assert isinstance(verdict, Verdict)
-        if verdict.kind is Kind.SAME:
+        if verdict.kind is VerdictKind.SAME:
             figures.verified += 1
         else:
             figures.not_same.append(render(verdict.said))

@@ -25,9 +25,9 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
-from lacoc_server.match.entry import Admission
-from lacoc_shared.contest.tokens import hash_token, new_token
-from lacoc_shared.keyspace import Keys
+from lacoc_server.match.entry import JoinCheck
+from lacoc_shared.contest.tokens import new_token, new_token_hash
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SentFile
 from lacoc_shared.messages.office import open_match
 from lacoc_shared.seat import Phase
@@ -82,12 +82,12 @@ def measured_court(name: str = NAME) -> Iterator[Measured]:
     """Open a court of Robot-Othello, whose matches last an hour; the caller runs the court."""
     loaded = arenas.load("othello", {"match": {"duration_s": 3600.0, "countdown_s": 0.02}})
     tokens, referee = {seat.id: new_token() for seat in loaded.seats}, new_token()
-    keys = Keys(name)
+    keys = KeySpace(name)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    admission = Admission(*files, Limits(), loaded.match.open_levels)
-    opened = open_match({seat: [hash_token(token)] for seat, token in tokens.items()})
-    inbox = Inbox(keys, list(tokens), admission, secrets.token_bytes)
-    desk = DecisionDesk([hash_token(referee)])
+    join_check = JoinCheck(*files, Limits(), loaded.match.open_levels)
+    opened = open_match({seat: [new_token_hash(token)] for seat, token in tokens.items()})
+    inbox = Inbox(keys, list(tokens), join_check, secrets.token_bytes)
+    desk = DecisionDesk([new_token_hash(referee)])
     with (
         tempfile.TemporaryDirectory() as folder,
         CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, desk) as network,

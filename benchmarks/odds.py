@@ -28,9 +28,16 @@ from msgspec.structs import replace
 from lacoc_arenas import arena as arenas
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks import odds
-from lacoc_server.simulate.forks.chances import ChanceJob, Course, Odds, Wish, compute, margins
-from lacoc_server.simulate.forks.odds import Moment, Swing
-from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.simulate.forks.chances import (
+    ChanceJob,
+    MatchCourse,
+    Odds,
+    Wish,
+    compute_odds,
+    margins,
+)
+from lacoc_server.simulate.forks.odds import MomentOdds, Swing
+from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.words import Phrase
@@ -92,7 +99,7 @@ def _odds(moments: int, forks: int, seconds: float, number: int) -> dict[str, An
     """Play a match, and ask for its odds at some moments."""
     with tempfile.TemporaryDirectory() as folder:
         source, bots, chance = _match(Path(folder), number, seconds)
-        course = Course(source)
+        course = MatchCourse(source)
         assert course.end is not None
         asked = []
         for beat in sorted(chance.sample(course.playing, moments)):
@@ -110,7 +117,7 @@ def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
         source, bots, _ = _match(Path(folder), number, seconds)
         file = str(Path(folder, f"{source.match_id}.mcap"))
         wish = Wish(file=file, bots=bots, forks=forks + _OTHERS, step_s=1.0)
-        *_, curve = compute(wish, _Here(), None, lambda done, of: None)
+        *_, curve = compute_odds(wish, _Here(), None, lambda done, of: None)
         chosen = odds.highlights(_from_forks(curve, slice(forks)), least=_LEAST)
         largest = odds.steps(_from_forks(curve, slice(forks, None)))
         largest.sort(key=lambda step: -abs(step.change))
@@ -119,11 +126,11 @@ def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
             "largest": [_stretch(one) for one in largest[:_LARGEST]],
             "highlights": [_stretch(one) for one in chosen],
             "moments": len(curve.moments),
-            "playing": len(Course(source).playing),
+            "playing": len(MatchCourse(source).playing),
         }
 
 
-def _from_forks(curve: Odds, which: slice) -> tuple[Moment, ...]:
+def _from_forks(curve: Odds, which: slice) -> tuple[MomentOdds, ...]:
     """Return the moments of a curve with the odds that follow from some of its forks."""
     return odds.pooled(
         replace(one, margins=one.margins[which]) if one.key else one for one in curve.moments
@@ -147,7 +154,7 @@ class _Here:
 
 def _match(
     folder: Path, number: int, seconds: float
-) -> tuple[Source, tuple[str, str], random.Random]:
+) -> tuple[ForkSource, tuple[str, str], random.Random]:
     """Play a match whose game, opening, bots and delays follow from its number."""
     chance = random.Random(number)
     name, settings = chance.choice(_GAMES)

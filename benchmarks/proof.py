@@ -27,8 +27,8 @@ from benchmarks.forger import Forger
 from benchmarks.played import elsewhere, play
 from lacoc_server.journal.judge import Judge
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.section import Finding, Worlds, simulate
-from lacoc_server.journal.verdict import Kind, Verdict, conclude
+from lacoc_server.journal.section import SectionFinding, Worlds, simulate_section
+from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude
 from lacoc_server.match.match import Match
 from lacoc_server.world import arithmetic
 from lacoc_server.world.world import World
@@ -49,7 +49,7 @@ class Prover:
 
     def __init__(self) -> None:
         self._worlds = Worlds()
-        self._findings: dict[bytes, Finding] = {}
+        self._findings: dict[bytes, SectionFinding] = {}
 
     def verdict(self, record: Record) -> Verdict | str:
         """Verify a record; return the verdict, or why the record can't be verified."""
@@ -61,7 +61,7 @@ class Prover:
         judged, other = [judge.difference], judge.other_model
         return conclude(record.headers, judge.beats, judge.frames, judged, findings, other)
 
-    def _simulate(self, section: Any) -> Finding:
+    def _simulate(self, section: Any) -> SectionFinding:
         # The number of a build means something only within its own record.
         build, section.build = section.build, None
         content = pickle.dumps((build.setup, build.entries, section))
@@ -69,7 +69,7 @@ class Prover:
         name = hashlib.blake2b(content, digest_size=16).digest()
         if name not in self._findings:
             worlds = Worlds() if build.number or section.start is None else self._worlds
-            self._findings[name] = simulate(section, worlds)
+            self._findings[name] = simulate_section(section, worlds)
         return self._findings[name]
 
 
@@ -157,13 +157,13 @@ def _honest(matches: int, seconds: float) -> bool:
         worst = max(verdicts, key=lambda verdict: float(verdict["distance"]))
         print(f"{kind}: {dict(counts)}; worst {worst['distance']:.1e} in {worst['name']}")
         for verdict in verdicts:
-            if verdict["kind"] == Kind.DIFFERS:
+            if verdict["kind"] == VerdictKind.DIFFERS:
                 print(f"  {verdict['name']}: {verdict['text']}")
     print("distances: " + ", ".join(f"{verdict['distance']:.0e}" for verdict in there))
     return (
         len(left) == len(here) == len(there)
-        and all(verdict["kind"] == Kind.SAME for verdict in here)
-        and all(verdict["kind"] == Kind.OTHER_ARITHMETIC for verdict in there)
+        and all(verdict["kind"] == VerdictKind.SAME for verdict in here)
+        and all(verdict["kind"] == VerdictKind.OTHER_ARITHMETIC for verdict in there)
     )
 
 
@@ -208,7 +208,7 @@ def _time(seconds: float, rounds: int) -> None:
         *_, verdict = verify(record)
         sections_s.append(time.perf_counter() - begin_s)
         assert isinstance(verdict, Verdict)
-        assert verdict.kind is Kind.SAME
+        assert verdict.kind is VerdictKind.SAME
     ratios = [one / other for one, other in zip(sections_s, whole_s, strict=True)]
     print(
         f"verify {statistics.median(sections_s):.2f} s, simulated whole on one core "

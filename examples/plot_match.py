@@ -23,7 +23,7 @@ MOST_LINES = 8
 STEPS = (1, 2, 5, 10, 20, 50, 100)
 
 
-def picture(match: notebook.Match) -> str:
+def picture(match: notebook.MatchArrays) -> str:
     """Return an SVG with the paths of the robots on the left and their points on the right."""
     wide = 2 * SIZE_PX + 3 * MARGIN_PX
     high = SIZE_PX + 2 * MARGIN_PX + LEGEND_PX
@@ -37,7 +37,7 @@ def picture(match: notebook.Match) -> str:
     )
 
 
-def _paths(match: notebook.Match, left: float, top: float) -> str:
+def _paths(match: notebook.MatchArrays, left: float, top: float) -> str:
     """Draw the floor from above: markers, and each robot's path while play was on."""
     reach_m = 1.1 * max(1.0, float(np.abs(match.marker_position_m).max(initial=0.0)))
     scale = SIZE_PX / (2 * reach_m)
@@ -59,7 +59,7 @@ def _paths(match: notebook.Match, left: float, top: float) -> str:
     return "".join(parts)
 
 
-def _points(match: notebook.Match, left: float, top: float) -> str:
+def _points(match: notebook.MatchArrays, left: float, top: float) -> str:
     """Draw the score over the clock, from the fewest points of a seat to the most."""
     clock_s, score = match.clock_s[match.playing], match.score[match.playing]
     last_s = max(1.0, float(clock_s.max(initial=0.0)))
@@ -86,7 +86,7 @@ def _points(match: notebook.Match, left: float, top: float) -> str:
     return "".join(parts)
 
 
-def _teams(match: notebook.Match, left: float, y: float) -> str:
+def _teams(match: notebook.MatchArrays, left: float, y: float) -> str:
     """Name the teams below the drawings, each beside a line of its colour."""
     parts = []
     for seat, (robot, colour) in enumerate(zip(match.robots, COLOURS, strict=False)):

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from lacoc_arenas.bot import BotFactory
-from lacoc_arenas.checked_game import Source, checked
+from lacoc_arenas.checked_game import ArenaCode, checked
 from lacoc_arenas.game import AnyGame
 from lacoc_shared.command import plugins
 from lacoc_shared.contest.toml_text import BadToml, read_toml
@@ -65,14 +65,14 @@ class SeatSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     pattern: Pattern = "plain"
 
 
-class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class _ArenaFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     title: str
     match: MatchSettings = MatchSettings()
     seat: tuple[SeatSettings, ...]
     game: dict[str, Any] = {}
 
 
-class _WrongSetting(UserError):
+class _WrongEntry(UserError):
     """An entry of the file, or of what replaces it, is wrong.
 
     Args:
@@ -116,23 +116,23 @@ class Arena:
         self.folder = folder
         """The folder of an arena that is not installed; its code runs because a user named it."""
         self._module = module.__name__
-        self._source = Source(name, str(plugins.folder_of(module)))
+        self._source = ArenaCode(name, str(plugins.folder_of(module)))
         try:
-            file = msgspec.convert(settings, _File)
+            file = msgspec.convert(settings, _ArenaFile)
         except msgspec.ValidationError as error:
-            where, wrong = place_and_words(error, _File)
-            raise _WrongSetting(name, where, wrong, _entries(where, wrong)) from None
+            where, wrong = place_and_words(error, _ArenaFile)
+            raise _WrongEntry(name, where, wrong, _entries(where, wrong)) from None
         try:
             self.game: AnyGame = self._make(file.game)
         except msgspec.ValidationError as error:
             where, wrong = place_and_words(error)
-            raise _WrongSetting(name, f"game.{where}".rstrip("."), wrong) from None
+            raise _WrongEntry(name, f"game.{where}".rstrip("."), wrong) from None
         except ValueError as error:
-            raise _WrongSetting(name, "game", str(error)) from None
+            raise _WrongEntry(name, "game", str(error)) from None
         ids = [seat.id for seat in file.seat]
         if len(ids) != len(self.game.starts) or len(set(ids)) != len(ids):
             needed = len(self.game.starts)
-            raise _WrongSetting(name, "", say("arena.seats-needed", needed=needed, found=ids))
+            raise _WrongEntry(name, "", say("arena.seats-needed", needed=needed, found=ids))
         self.title = file.title
         self.match = file.match
         self.seats = file.seat
@@ -212,7 +212,7 @@ def load(
         merged["seat"] = [seat | looks.get(seat["id"], {}) for seat in merged["seat"]]
     try:
         return Arena(shown, merged, module, folder)
-    except _WrongSetting as wrong:
+    except _WrongEntry as wrong:
         if not overrides:
             raise
         Arena(shown, settings, module, folder)  # raises if the file itself is wrong
@@ -291,7 +291,7 @@ def _entries(where: str, wrong: Phrase | str) -> Sequence[str] | None:
     """Return the entries that a table of the file can have, if one in it is unknown."""
     if isinstance(wrong, str) or wrong.code != "value.no-entry":
         return None
-    kind = {"": _File, "match": MatchSettings}.get(where, SeatSettings)
+    kind = {"": _ArenaFile, "match": MatchSettings}.get(where, SeatSettings)
     return kind.__struct_fields__
 
 

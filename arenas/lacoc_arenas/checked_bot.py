@@ -10,7 +10,7 @@ from typing import Any
 
 from lacoc_arenas import time_limit
 from lacoc_arenas.bot import BotFactory, Brain, Key
-from lacoc_arenas.time_limit import NoAnswer, Timer
+from lacoc_arenas.time_limit import Timer, TimeUp
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import RESTART_KEY
@@ -62,7 +62,7 @@ def loaded(name: str, load: Callable[[], Any]) -> Any:
     """
     try:
         return Timer(name).begin(load)
-    except (Exception, SystemExit, NoAnswer) as error:  # whatever a person's code may raise
+    except (Exception, SystemExit, TimeUp) as error:  # whatever a person's code may raise
         raise broken(name, error, name) from error
 
 
@@ -71,7 +71,7 @@ def broken(name: str, error: BaseException, file: str | None) -> UserError:
 
     Args:
         name: the bot's name, as the user typed it.
-        error: the exception; `NoAnswer` if the bot took too long.
+        error: the exception; `TimeUp` if the bot took too long.
         file: the file of the bot's code, as tracebacks name it; None if the bot has no file. Then
             the error names no line.
     """
@@ -79,7 +79,7 @@ def broken(name: str, error: BaseException, file: str | None) -> UserError:
     lines = [call.lineno for call in calls if call.filename == file]
     line = lines[-1] if lines else getattr(error, "lineno", None)  # a SyntaxError has its own
     place = None if file is None or line is None else f"{file}:{line}"
-    if isinstance(error, NoAnswer):
+    if isinstance(error, TimeUp):
         return UserError(say("bot.no-answer", bot=name, place=place, why=error.why))
     if isinstance(error, ModuleNotFoundError) and error.name:
         return UserError(say("bot.no-module", bot=name, place=place, module=error.name))
@@ -93,7 +93,7 @@ def _call(
 ) -> Any:
     try:
         return timed(function, *arguments)
-    except (Exception, SystemExit, NoAnswer) as error:  # whatever a person's code may raise
+    except (Exception, SystemExit, TimeUp) as error:  # whatever a person's code may raise
         called = error.__traceback__
         while called is not None and called.tb_frame.f_code.co_filename in _OURS:
             called = called.tb_next

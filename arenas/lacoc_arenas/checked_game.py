@@ -21,7 +21,7 @@ _VALUES = ("state_type", "markers", "starts", "size_m")
 _RULES = ("start", "step", "board", "score", "over", "winner", "set")
 
 
-class Source(NamedTuple):
+class ArenaCode(NamedTuple):
     """The name and the folder of an arena's code, for error messages."""
 
     arena: str
@@ -65,7 +65,7 @@ class Source(NamedTuple):
         return say("game.raised", what=what, file=file, line=line, kind=kind, error=told)
 
 
-def checked(source: Source, game: Any) -> AnyGame:
+def checked(source: ArenaCode, game: Any) -> AnyGame:
     """Check a game and everything that it returns later.
 
     Args:
@@ -98,7 +98,7 @@ def checked(source: Source, game: Any) -> AnyGame:
 class CheckedGame:
     """A game that checks each result of its rules; all other attributes are the game's own."""
 
-    def __init__(self, source: Source, game: AnyGame) -> None:
+    def __init__(self, source: ArenaCode, game: AnyGame) -> None:
         self._source = source
         self._game = game
         self.rule = getattr(game, "rule", None)
@@ -216,7 +216,7 @@ class CheckedGame:
         return self._source.wrong(say("game.returned", rule=rule, found=shown, expected=expected))
 
 
-def _check_values(source: Source, game: AnyGame) -> None:
+def _check_values(source: ArenaCode, game: AnyGame) -> None:
     """Check what a game has besides its rules.
 
     Raises:

@@ -43,7 +43,7 @@ class Most(NamedTuple):
 MOST = Most()
 
 
-class NoAnswer(BaseException):
+class TimeUp(BaseException):
     """Raised in the code of a bot that takes too long; `except Exception` does not catch it."""
 
     def __init__(self, why: Phrase | None = None) -> None:
@@ -69,7 +69,7 @@ class _Value:
         self.value = value
 
 
-class Shown(NamedTuple):
+class ShownBots(NamedTuple):
     """What another process may see of the bots of this one, in shared memory.
 
     A bot may hold Python's lock, as in a sum without an end, so that no other thread of its process
@@ -82,7 +82,7 @@ class Shown(NamedTuple):
     """`looks.value`: how often this process has looked at its bots."""
 
 
-shown = Shown(_Value(b""), _Value(0))
+shown = ShownBots(_Value(b""), _Value(0))
 
 
 class Timer:
@@ -105,7 +105,7 @@ class Timer:
         """Show a frame to a brain: call a function, within the limits of a frame and of a match.
 
         Raises:
-            NoAnswer: if it takes too long.
+            TimeUp: if it takes too long.
         """
         return self._call(True, function, arguments)
 
@@ -113,7 +113,7 @@ class Timer:
         """Load a bot or make a brain: call a function, within the limit for that.
 
         Raises:
-            NoAnswer: if it takes too long.
+            TimeUp: if it takes too long.
         """
         return self._call(False, function, arguments)
 
@@ -133,9 +133,9 @@ class Timer:
                 call.end()
                 shown.bot.value = b""
             if call.why is not None:  # it went on after the interruption, and answered then
-                raise NoAnswer
+                raise TimeUp
             return found
-        except NoAnswer as error:
+        except TimeUp as error:
             call.end()  # it may have been interrupted while it ended
             error.why = call.why
             raise
@@ -240,21 +240,21 @@ def _look() -> None:
 
 
 def _interrupt(thread: int) -> None:
-    """Let a thread raise `NoAnswer`."""
+    """Let a thread raise `TimeUp`."""
     if sys.platform != "win32" and _signals_come and thread == threading.main_thread().ident:
         signal.pthread_kill(thread, signal.SIGVTALRM)  # this wakes a sleeper too
     else:
-        _raise_in(thread, NoAnswer)
+        _raise_in(thread, TimeUp)
 
 
 def _on_signal(number: int, stack: FrameType | None) -> None:
-    """Raise `NoAnswer` in the main thread, if its bot still takes too long."""
+    """Raise `TimeUp` in the main thread, if its bot still takes too long."""
     call = _calls.get(threading.get_ident())
     if call is not None and call.why is not None:
-        raise NoAnswer(call.why)
+        raise TimeUp(call.why)
 
 
-def _raise_in(thread: int, error: type[NoAnswer] | None) -> None:
+def _raise_in(thread: int, error: type[TimeUp] | None) -> None:
     """Let a thread raise an error; None takes back what it has not raised yet."""
     raised = None if error is None else ctypes.py_object(error)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), raised)

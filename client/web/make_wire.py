@@ -26,7 +26,7 @@ from lacoc_client.play import simulation
 from lacoc_client.web.gateway import scores
 from lacoc_client.web.gateway.page import TRY_LATER
 from lacoc_client.web.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.web.office import links
 from lacoc_client.workshop.classroom import cards, tournament
 from lacoc_client.workshop.design import folder, requests
@@ -76,7 +76,7 @@ from lacoc_shared.words.render import (
     LONGEST_TEXT,
     Language,
 )
-from lacoc_shared.words.table import ON_PAGES, Entry, read, table
+from lacoc_shared.words.table import ON_PAGES, Wording, read, table
 
 _SOURCE = Path(__file__).parent / "src"
 _TEXTS = Path(__file__).parent / "texts"
@@ -115,9 +115,9 @@ STRUCTS = (
     studio.TrialReply,
     studio.Progress,
     studio.Weight,
-    studio.Change,
+    studio.CellChange,
     studio.CoachReply,
-    studio.Difference,
+    studio.GaitDifference,
     studio.OtherGait,
     studio.MapCell,
     studio.MapReply,
@@ -125,13 +125,13 @@ STRUCTS = (
     FileRow,
     FileTable,
     folder.FolderFile,
-    rules.Rules,
+    rules.StudentRules,
     diary.PhaseState,
     diary.Phases,
     draft.Draft,
     cards.Card,
-    tournament.Played,
-    simulation.Standing,
+    tournament.ClassMatch,
+    simulation.PlayerStanding,
     tournament.LeftOut,
     tournament.TournamentState,
     learner.Judged,
@@ -140,17 +140,17 @@ STRUCTS = (
 )
 CONTEST_STRUCTS = (
     draws.Team,
-    league_facts.Settings,
+    league_facts.StageSettings,
     league_facts.Planned,
     league_facts.Called,
     formats.Stage,
-    pairing.Entry,
+    pairing.Entrant,
     pairing.WinnerOf,
     pairing.LoserOf,
     pairing.Bye,
     pairing.Pairing,
-    matches.Game,
-    matches.Match,
+    matches.CountedGame,
+    matches.ContestMatch,
     standings.Standing,
     standings.Table,
     contest.StageView,
@@ -164,13 +164,13 @@ CONTEST_STRUCTS = (
     sheet.ContestSheet,
 )
 DESK_STRUCTS = (
-    desk.Files,
+    desk.TeamFiles,
     *typing.get_args(desk.AnyRequest),
     desk.EventInfo,
     desk.OwnEntry,
     desk.TeamRow,
     desk.CourtRow,
-    desk.Moved,
+    desk.MatchMove,
     desk.Slot,
     desk.ToDraw,
     desk.Undrawable,
@@ -184,7 +184,7 @@ DESK_STRUCTS = (
     links.RefereeLink,
     links.SeatLink,
     links.StaffLink,
-    links.Links,
+    links.ContestLinks,
     scores.CourtScore,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
@@ -303,7 +303,7 @@ def _constants(constants: Mapping[str, float | str]) -> str:
 
 
 def _kinds() -> str:
-    names = "".join(f'  "{kind.name.lower()}",\n' for kind in Kind)
+    names = "".join(f'  "{kind.name.lower()}",\n' for kind in MessageKind)
     return (
         "/** What a message of the gateway is, by its first byte; 0 is none. */\n"
         f'export const MESSAGE_KINDS = [\n  "",\n{names}] as const;'
@@ -396,7 +396,7 @@ def limits() -> str:
     return f"// Made by client/web/make_wire.py; not edited by hand.\n\n{_constants(LIMITS)}\n"
 
 
-def texts() -> dict[str, dict[str, Entry]]:
+def texts() -> dict[str, dict[str, Wording]]:
     """Return what pages say, by group and code.
 
     Raises:

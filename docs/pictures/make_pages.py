@@ -31,7 +31,7 @@ from show import Show
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_arenas import arena as arenas
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.record.schema import Setup
 
@@ -118,7 +118,7 @@ def classroom(folder: Path, open_page: Open) -> None:
         for number, name in enumerate(NAMES.split()):
             student = room.student(name)
             stack.callback(student.close)
-            student.until(lambda page=student: page.last(Kind.STUDIO).get("present"))
+            student.until(lambda page=student: page.last(MessageKind.STUDIO).get("present"))
             table = student.sample()
             student.ask("edit", table=table, sequences=SEQUENCES)
             for row in range(1, 1 + chance.randint(0, 3)):

@@ -8,7 +8,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_robots.header.importing import Source, import_robot
+from lacoc_robots.header.importing import CFile, import_robot
 from lacoc_robots.library import find_robot, installed_robots, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
@@ -40,7 +40,7 @@ _Robot = Annotated[
 
 
 @app.command()
-def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
+def check(robot: _Robot, contest: options.ContestOption = None, json: options.Json = False) -> None:
     """Weigh a robot in: list every mistake in its file, or describe the robot.
 
     The robot is tried in physics: it must stay in place when it stands, with the gait files beside
@@ -89,7 +89,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
 def export(
     robot: _Robot,
     out: Annotated[Path, typer.Argument(metavar="OUT", help="The MJCF file to write (.xml).")],
-    contest: options.ContestFile = None,
+    contest: options.ContestOption = None,
 ) -> None:
     """Write a robot as plain MJCF, which any MuJoCo opens.
 
@@ -123,7 +123,7 @@ def import_header(
     such as 0.5*ROBOT_BODY_W. Nothing is compiled. Each line that can't be read is named, and the
     workshop's own numbers stand in its place. A file of the same name is kept.
     """
-    sources = [Source(file.name, _c_text(file)) for file in files]
+    sources = [CFile(file.name, _c_text(file)) for file in files]
     made = import_robot(sources, name)
     kept = save(out, made.toml.encode())
     for note in made.notes:

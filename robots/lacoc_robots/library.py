@@ -22,7 +22,7 @@ GAIT_NAMES = ("Loco-data.txt", "LocoTra-data.txt")
 """Names of the gait files in a folder, by level (rules 2)."""
 
 
-class GaitFiles(NamedTuple):
+class FolderGait(NamedTuple):
     """The gait files that lie beside a robot file."""
 
     postures: SentFile | None
@@ -47,7 +47,7 @@ def find_robot(name_or_path: str) -> tuple[str, bytes]:
     return text_of(file.name), read_content(file)
 
 
-def sample_gait_files(name_or_path: str) -> GaitFiles:
+def sample_gait_files(name_or_path: str) -> FolderGait:
     """Read the gait files beside a robot's file; None for a missing file.
 
     Raises:
@@ -56,7 +56,7 @@ def sample_gait_files(name_or_path: str) -> GaitFiles:
     return gait_files_in(robot_folder(name_or_path))
 
 
-def gait_files_in(folder: Path) -> GaitFiles:
+def gait_files_in(folder: Path) -> FolderGait:
     """Read the gait files of a folder; None for a missing file.
 
     Raises:
@@ -66,7 +66,7 @@ def gait_files_in(folder: Path) -> GaitFiles:
         SentFile(name, read_content(folder / name)) if (folder / name).exists() else None
         for name in GAIT_NAMES
     )
-    return GaitFiles(postures, locomotion)
+    return FolderGait(postures, locomotion)
 
 
 def robot_folder(name_or_path: str) -> Path:

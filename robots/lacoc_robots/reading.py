@@ -23,7 +23,7 @@ def read_robot_file(name: str) -> RobotSpec:
     return read_robot(data, file)
 
 
-def read_gait(file: Path, robot: RobotSpec) -> Gait:
+def load_gait(file: Path, robot: RobotSpec) -> Gait:
     """Read a gait file of a robot; postures are joined into the sequences of the sample's keys.
 
     Raises:

@@ -35,7 +35,7 @@ _ROUNDING_KG = 1e-9  # rounding error of a sum of decimal masses
 _ROUNDING_M = 1e-6  # lets a foot stand exactly on the floor
 
 
-class _Link(NamedTuple):
+class _LinkEntries(NamedTuple):
     """The entries of [link], which hold for all legs; a leg may replace any of them."""
 
     lengths_m: tuple[float, ...]
@@ -148,7 +148,9 @@ def _legs(root: Entries, size_m: tuple[float, ...], limits: Limits) -> tuple[Leg
     return tuple(legs)
 
 
-def _leg(table: Entries, size_m: tuple[float, ...], default: _Link, limits: Limits) -> LegSpec:
+def _leg(
+    table: Entries, size_m: tuple[float, ...], default: _LinkEntries, limits: Limits
+) -> LegSpec:
     label = table.text("label", 8)
     position = _position(table, size_m, limits)
     outward_deg = table.number("outward_deg", -180.0, 360.0, "degrees")
@@ -183,14 +185,14 @@ def _position(table: Entries, size_m: tuple[float, ...], limits: Limits) -> tupl
     return table.numbers("position_m", [(-size / 2, size / 2) for size in sizes], "m")
 
 
-def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
+def _link(table: Entries, default: _LinkEntries | None, limits: Limits) -> _LinkEntries:
     """Read the table [link], or a leg's own entries; `default` has what the leg leaves out."""
 
     def own(name: str) -> bool:
         table.ask(name)
         return default is None or name in table
 
-    link = default or _Link((), 0.0, (), ())
+    link = default or _LinkEntries((), 0.0, (), ())
     bounds_m = (limits.link_min_m, limits.link_max_m)
     if own("lengths_m"):
         root_bounds_m = (limits.radius_min_m, limits.link_max_m)

@@ -23,7 +23,7 @@ from lacoc_shared.words import say
 if TYPE_CHECKING:
     from lacoc_server.studio.answers import Trial
     from lacoc_shared.gait.tables import Gait
-    from lacoc_shared.record.notebook import Match
+    from lacoc_shared.record.notebook import MatchArrays
 
 __all__ = ["load_table", "make", "read_record", "simulate", "walk"]
 
@@ -44,9 +44,9 @@ def load_table(file: str | Path, robot: str = _ROBOT) -> Gait:
         UserError: if the file can't be read, or there is no such robot.
         FileRefused: with every mistake of a file.
     """
-    from lacoc_robots.reading import read_gait, read_robot_file
+    from lacoc_robots.reading import load_gait, read_robot_file
 
-    return read_gait(Path(file), read_robot_file(robot))
+    return load_gait(Path(file), read_robot_file(robot))
 
 
 def walk(
@@ -70,12 +70,12 @@ def walk(
         FileRefused: with every mistake of a file.
     """
     _need("mujoco", extra="server")
-    from lacoc_robots.reading import read_gait, read_robot_file
+    from lacoc_robots.reading import load_gait, read_robot_file
     from lacoc_server.studio.answers import try_gait
     from lacoc_server.world.sensed import make_course
 
     spec = read_robot_file(robot)
-    gait = read_gait(Path(table), spec) if isinstance(table, str | Path) else table
+    gait = load_gait(Path(table), spec) if isinstance(table, str | Path) else table
     return try_gait(make_course(spec), gait, keys, seconds)
 
 
@@ -87,7 +87,7 @@ def simulate(
     seconds: float | None = None,
     robot: str = _ROBOT,
     record: str | Path | None = None,
-) -> Match:
+) -> MatchArrays:
     """Play a match of two bots without a network, as fast as the machine can.
 
     Args:
@@ -118,7 +118,7 @@ def simulate(
 
 def _play(
     bots: tuple[str, str], arena: str, seconds: float | None, robot: str, folder: Path
-) -> Match:
+) -> MatchArrays:
     """Play a match, and read its record in the folder; errors are as of `simulate`."""
     from lacoc_arenas.arena import load
     from lacoc_server.contest.headless.pool import Job, first_number, match_id, play_alone
@@ -140,7 +140,7 @@ def _play(
     return read_record(job.record)
 
 
-def read_record(file: str | Path) -> Match:
+def read_record(file: str | Path) -> MatchArrays:
     """Read the record of a match as numpy arrays (docs/notebook.md).
 
     Raises:

@@ -44,6 +44,21 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
         raise BadMessage(str(error)) from None
 
 
+class _AnyVersion(msgspec.Struct):
+    """The one field that requests of all versions of the protocol have."""
+
+    protocol: int
+
+
+def protocol_of(data: bytes, max_bytes: int) -> int:
+    """Return the version of the protocol in which a request was sent.
+
+    Raises:
+        BadMessage: if there are too many bytes, or they say no version.
+    """
+    return decode(data, _AnyVersion, max_bytes).protocol
+
+
 def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
     # msgspec analyses a struct at its first use. If two threads do so at the same time, the process
     # crashes (SIGSEGV), so the lock lets only one do it.

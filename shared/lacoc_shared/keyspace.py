@@ -42,7 +42,7 @@ def check_name(name: str) -> None:
 
 
 @dataclass(frozen=True)
-class Keys:
+class KeySpace:
     """The key expressions of one court.
 
     Raises:

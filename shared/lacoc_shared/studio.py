@@ -258,7 +258,7 @@ class Weight(msgspec.Struct, frozen=True, kw_only=True):
     """Change of the score when the number is 10 degrees smaller."""
 
 
-class Change(msgspec.Struct, frozen=True, kw_only=True):
+class CellChange(msgspec.Struct, frozen=True, kw_only=True):
     """A number that the coach changed."""
 
     cell: CellPlace
@@ -273,7 +273,7 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
     """Key of level B that the search changed."""
     matters: tuple[Weight, ...]
     """All numbers of the key, those that matter most first."""
-    changes: tuple[Change, ...]
+    changes: tuple[CellChange, ...]
     before: dict[str, Any]
     """Figures of the student's own gait, by the names in docs/studio.md 2."""
     after: dict[str, Any]
@@ -284,7 +284,7 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
     cancelled: bool = False
 
 
-class Difference(msgspec.Struct, frozen=True, kw_only=True):
+class GaitDifference(msgspec.Struct, frozen=True, kw_only=True):
     """A direction in which a gait looks different from the gait in the request."""
 
     way: str
@@ -298,9 +298,9 @@ class OtherGait(msgspec.Struct, frozen=True, kw_only=True):
 
     table: tuple[int, ...]
     """All angles [deg], posture by posture in order of first use: 3 * legs each."""
-    changes: tuple[Change, ...]
+    changes: tuple[CellChange, ...]
     """What differs from the table of the request's files."""
-    differences: tuple[Difference, ...]
+    differences: tuple[GaitDifference, ...]
     """How it looks different from that table, what is easiest to see first."""
     figures: dict[str, Any]
     """Over three cycles."""

@@ -11,7 +11,7 @@ from lacoc_process import Lacoc
 from page_connection import PageConnection
 from waiting import LIMIT_S
 
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 
 
 class ClassRoom:
@@ -45,7 +45,7 @@ class ClassRoom:
         """Open the teacher's page."""
         page = TeacherPage(self.url)
         page.ask("hello", key=self.key)
-        page.until(lambda: page.told[Kind.TOURNAMENT])
+        page.until(lambda: page.told[MessageKind.TOURNAMENT])
         return page
 
     def close(self) -> None:
@@ -64,11 +64,11 @@ class StudentPage(PageConnection):
     def enter(self, **fields: str) -> None:
         """Enter the class, and wait until the page is told the six phases."""
         self.hello = self.ask("hello", **fields)
-        self.until(lambda: self.told[Kind.PHASES])
+        self.until(lambda: self.told[MessageKind.PHASES])
 
     @property
     def phases(self) -> dict[str, Any]:
-        return self.last(Kind.PHASES)
+        return self.last(MessageKind.PHASES)
 
     def sample(self) -> dict[str, Any]:
         """Return the sample table."""
@@ -84,16 +84,16 @@ class TeacherPage(PageConnection):
     @property
     def group(self) -> dict[str, Any]:
         """The newest settings of the class."""
-        return self.last(Kind.CLASS)
+        return self.last(MessageKind.CLASS)
 
     @property
     def cards(self) -> dict[str, dict[str, Any]]:
         """The newest card of each student."""
         cards: dict[str, dict[str, Any]] = {}
-        for message in self.told[Kind.CLASS]:
+        for message in self.told[MessageKind.CLASS]:
             cards |= {card["name"]: card for card in message["cards"] or ()}
-        cards |= {card["name"]: card for card in self.told[Kind.CARD]}
-        for gone in self.told[Kind.GONE]:
+        cards |= {card["name"]: card for card in self.told[MessageKind.CARD]}
+        for gone in self.told[MessageKind.GONE]:
             cards.pop(gone["name"], None)
         return cards
 

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from lacoc_client.workshop.classroom.cards import (
     QUIET_S,
-    Seen,
+    SeenStudent,
     card,
     failure,
     foot_runs,
     hand_times,
     stuck,
 )
-from lacoc_client.workshop.phases.evidence import Evidence, Hand, Moved, Tried
+from lacoc_client.workshop.phases.evidence import Evidence, Hand, Tried, WentToPhase
 from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_client.workshop.phases.progress import progress
 from lacoc_shared.studio import TrialReply
@@ -94,7 +94,7 @@ def test_a_card_says_who_needs_help() -> None:
     slow = [tried(speed_mm_s=0.0)] * 3
 
     def need(evidence: list[Evidence], online: bool = True, after_s: float = 1.0) -> str:
-        seen = Seen(name="Anna", online=online, seen_s=1000.0)
+        seen = SeenStudent(name="Anna", online=online, seen_s=1000.0)
         return card(seen, evidence, progress(evidence), 1000.0 + after_s).need
 
     assert need([]) == ""
@@ -108,13 +108,13 @@ def test_a_card_says_who_needs_help() -> None:
 def test_a_card_counts_only_walks_as_fast() -> None:
     """The best speed counts only trials of key 2 without a fall; the last speed is of any key."""
     evidence: list[Evidence] = [
-        Moved(phase=4),
+        WentToPhase(phase=4),
         tried(speed_mm_s=70.0),
         tried(speed_mm_s=200.0, upright=0.2),
         tried(speed_mm_s=300.0, belly_share=0.5),
         tried(speed_mm_s=90.0, keys=("B3",)),
     ]
-    shown = card(Seen(name="Anna"), evidence, progress(evidence), 0.0)
+    shown = card(SeenStudent(name="Anna"), evidence, progress(evidence), 0.0)
     assert (shown.best_mm_s, shown.last_mm_s, shown.tries) == (70.0, 90.0, 4)
     assert shown.phase == 4
     assert shown.states[0] == "skipped"

@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 from waiting import LIMIT_S
 
 from lacoc_client.commands import class_
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_robots.library import find_robot
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -94,8 +94,8 @@ def test_students_come_in_with_code_and_name(room: ClassRoom, closing: ExitStack
     assert code_of(refusal) == "class.name-taken"
 
     again = comes(closing, room, "Ada", stranger.hello["token"])
-    stranger.until(lambda: stranger.told[Kind.ELSEWHERE])
-    assert stranger.last(Kind.ELSEWHERE) == {"forgotten": False}
+    stranger.until(lambda: stranger.told[MessageKind.ELSEWHERE])
+    assert stranger.last(MessageKind.ELSEWHERE) == {"forgotten": False}
     with pytest.raises(Refused):
         stranger.ask("sample")
     assert again.sample()["legs"] == 6
@@ -112,7 +112,7 @@ def test_whoever_guesses_codes_disturbs_nobody(room: ClassRoom, closing: ExitSta
             guesser.reply(ask)
         assert code_of(refusal) == "class.wrong-code"
     assert comes(closing, room, "Bob").sample()["legs"] == 6
-    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    student.until(lambda: student.last(MessageKind.STUDIO).get("present"))
     assert student.ask("trial", table=student.sample())["ticks"] > 100
 
 
@@ -123,7 +123,7 @@ def test_the_teacher_sees_what_students_do(
     student = comes(closing, room, "Cem")
     teacher.until(lambda: teacher.card("Cem").get("online"))
     assert (teacher.card("Cem")["feet"], teacher.card("Cem")["tries"]) == (None, 0)
-    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    student.until(lambda: student.last(MessageKind.STUDIO).get("present"))
     student.ask("trial", table=student.sample(), sequences=SEQUENCES, keys="2")
     teacher.until(lambda: teacher.card("Cem")["tries"] == 1)
     card = teacher.card("Cem")
@@ -167,7 +167,7 @@ def test_the_teacher_closes_phases_and_the_coach(
 
     teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})
     assert student.ask("phase", number=4) == {}
-    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    student.until(lambda: student.last(MessageKind.STUDIO).get("present"))
     for seconds in (float("nan"), float("inf"), 1e308):
         with pytest.raises(Refused) as refusal:
             student.ask("coach", job="a", table=table, size="cell", seconds=seconds)
@@ -186,13 +186,13 @@ def test_the_teacher_hands_out_a_table(
     table = edit(student, table, 7.0)
     teacher.ask("hand_out", title="The sample")
     teacher.ask("hand_out", title="Eva's", student="Eva")
-    student.until(lambda: student.last(Kind.HANDED).get("title") == "Eva's")
-    first, second = student.told[Kind.HANDED][-2:]
+    student.until(lambda: student.last(MessageKind.HANDED).get("title") == "Eva's")
+    first, second = student.told[MessageKind.HANDED][-2:]
     assert second["number"] == first["number"] + 1
     assert second["table"] == table
     assert second["sequences"] == SEQUENCES
     later = comes(closing, room, "Eve")
-    later.until(lambda: later.last(Kind.HANDED) == second)
+    later.until(lambda: later.last(MessageKind.HANDED) == second)
     assert teacher.group["handed"]["title"] == "Eva's"
 
 
@@ -233,8 +233,8 @@ def test_the_class_plays_a_tournament(
     other = {"name": "mine.toml", "data": find_robot("quadruped")[1]}
     page.ask("edit", table=page.sample(), sequences=SEQUENCES, robot=other, by="hand")
     teacher.ask("play", arena="othello", rounds=1, seconds=1)
-    teacher.until(lambda: teacher.last(Kind.TOURNAMENT)["state"] in ("done", "stopped"))
-    played = teacher.last(Kind.TOURNAMENT)
+    teacher.until(lambda: teacher.last(MessageKind.TOURNAMENT)["state"] in ("done", "stopped"))
+    played = teacher.last(MessageKind.TOURNAMENT)
     assert (played["state"], played["trouble"]) == ("done", None)
     assert played["done"] == played["of"] == len(played["matches"]) >= 1
     assert {"Uma", "りく"} <= {one["name"] for one in played["standings"]}
@@ -258,8 +258,8 @@ def test_a_student_is_let_in_again_and_forgotten(
     assert code_of(refusal) == "class.unknown-token"
 
     teacher.ask("forget", student="Gil")
-    tablet.until(lambda: tablet.told[Kind.ELSEWHERE])
-    assert tablet.last(Kind.ELSEWHERE) == {"forgotten": True}
+    tablet.until(lambda: tablet.told[MessageKind.ELSEWHERE])
+    assert tablet.last(MessageKind.ELSEWHERE) == {"forgotten": True}
     assert "Gil" not in teacher.cards
     assert b"Gil" not in teacher.ask("export", what="evidence")["data"]
     with pytest.raises(Refused) as refusal:
@@ -315,7 +315,7 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     back = comes(closing, again, "Jo", token)
     assert back.hello["draft"]["table"] == table
     assert back.phases["rules"] == {"closed": [6], "coach": "three", "explain_first": False}
-    back.until(lambda: back.told[Kind.HANDED])
+    back.until(lambda: back.told[MessageKind.HANDED])
     desk = again.teacher()
     closing.callback(desk.close)
     assert desk.card("Jo")["need"] == "hand"

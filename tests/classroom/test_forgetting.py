@@ -18,7 +18,7 @@ from lacoc_client.workshop.design.studios.asker import Asker
 from lacoc_client.workshop.design.studios.studios import Studios
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import ClassFile
-from lacoc_client.workshop.phases.evidence import Moved, Named
+from lacoc_client.workshop.phases.evidence import Named, WentToPhase
 from lacoc_shared.mistakes import UserError
 
 WORD = "a-word-that-only-ada-has"
@@ -36,11 +36,11 @@ def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
         await diary.keep(DRAFT, "1")
         await asyncio.sleep(1.5)  # the table is on the disk
         assert any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
-        await asyncio.gather(diary.forget(), diary.add(Moved(phase=2)))
+        await asyncio.gather(diary.forget(), diary.add(WentToPhase(phase=2)))
         await diary.add(Named(word=WORD))
         await diary.vote(WORD, "A")
         await diary.keep(DRAFT, "2")
-        await other.add(Moved(phase=1))
+        await other.add(WentToPhase(phase=1))
         assert not any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
         await keeper.close()
 
@@ -89,16 +89,16 @@ def test_what_counts_is_kept_though_the_page_goes(tmp_path: Path) -> None:
         first.cancel()
         assert await keeper.opened() is not None, keeper.trouble
         diary = Diary(keeper, "Ada")
-        await diary.add(Moved(phase=1))
+        await diary.add(WentToPhase(phase=1))
         for number in range(2, 7):
-            moving = asyncio.create_task(diary.add(Moved(phase=number)))
+            moving = asyncio.create_task(diary.add(WentToPhase(phase=number)))
             await asyncio.sleep(0)
             moving.cancel()
         await keeper.close()
 
     run_async(go)
     file = ClassFile(path)
-    assert [one.evidence for one in file.evidence()] == [Moved(phase=n) for n in range(1, 7)]
+    assert [one.evidence for one in file.evidence()] == [WentToPhase(phase=n) for n in range(1, 7)]
     file.close()
 
 
@@ -114,7 +114,7 @@ def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
             return room.find(name)
 
         ada = await comes("Ada")
-        await ada.diary.add(Moved(phase=2))
+        await ada.diary.add(WentToPhase(phase=2))
         crowd = [comes(f"N{number}") for number in range(150)]
         await asyncio.gather(*crowd, return_exceptions=True)  # some make room for others at once
         bo = await comes("Bo")
@@ -135,14 +135,14 @@ import asyncio, resource, signal, sys
 from pathlib import Path
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.keeper import Keeper
-from lacoc_client.workshop.phases.evidence import Moved
+from lacoc_client.workshop.phases.evidence import WentToPhase
 from lacoc_shared.mistakes import UserError
 
 async def forget(path):
     keeper = Keeper(path)
     diary = Diary(keeper, "Ada")
     for phase in (1, 2):
-        await diary.add(Moved(phase=phase))
+        await diary.add(WentToPhase(phase=phase))
     size = max(one.stat().st_size for one in path.parent.iterdir())
     _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))
@@ -152,7 +152,7 @@ async def forget(path):
     except UserError as error:
         print(error.phrase.code)
     resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
-    await diary.add(Moved(phase=3))
+    await diary.add(WentToPhase(phase=3))
     store = await keeper.opened()
     print(len(await asyncio.wrap_future(store.evidence())))
     await diary.forget()

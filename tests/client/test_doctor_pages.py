@@ -18,7 +18,7 @@ from lacoc_client.commands.checks.machine import Finding, Status
 from lacoc_client.commands.checks.pages import _reached, pages, plain_courts
 from lacoc_client.web.gateway import server
 from lacoc_client.web.gateway.files import PageFiles
-from lacoc_client.web.gateway.health import Health
+from lacoc_client.web.gateway.health import GatewayHealth
 from lacoc_client.web.gateway.site import page_routes
 from lacoc_shared.contest import file as contests
 from lacoc_shared.network.public import PublicAddress
@@ -149,7 +149,7 @@ def test_what_is_wrong_with_a_proxy_is_said(
 )
 def test_a_replaced_host_is_known(pages_at: str, host: str, replaced: bool) -> None:
     """The host counts, however it is written; its port does not."""
-    health = Health(version="", contest="", host=host, unnamed_proxy=False)
+    health = GatewayHealth(version="", contest="", host=host, unnamed_proxy=False)
     codes = [code(one) for one in _reached(PublicAddress.of(pages_at), "", health)]
     assert ("pages-host" in codes) == replaced
 

@@ -5,7 +5,7 @@ import typer
 from typer.testing import CliRunner
 
 from lacoc_client.commands import entrance
-from lacoc_client.play.link.event import Event, Found
+from lacoc_client.play.link.event import FoundEvent, LinkedEvent
 from lacoc_shared.command import options
 from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.link import Link
@@ -25,8 +25,10 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let each link lead to an event of two courts."""
     courts = {"red": ("tls/red:1", "tls/red:2"), "blue": ("tls/blue:1",)}
 
-    def find(text: str) -> Found:
-        return Found(Link.read(text), Event(protocol=PROTOCOL, courts=courts, authority="PEM"))
+    def find(text: str) -> FoundEvent:
+        return FoundEvent(
+            Link.read(text), LinkedEvent(protocol=PROTOCOL, courts=courts, authority="PEM")
+        )
 
     monkeypatch.setattr(entrance, "find", find)
 

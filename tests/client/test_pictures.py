@@ -10,7 +10,7 @@ from rich.console import Console
 
 from lacoc_arenas import arena as arenas
 from lacoc_client.play.terminal import words
-from lacoc_client.play.terminal.board_picture import BoardPicture, Field, Grid, seat_letters
+from lacoc_client.play.terminal.board_picture import BoardPicture, Field, PixelGrid, seat_letters
 from lacoc_client.play.terminal.plain import event_dict, frame_dict
 from lacoc_shared.codec import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
@@ -190,7 +190,7 @@ def test_lists_are_joined_in_the_language() -> None:
 def draw(frame: Frame, sheet: Sheet, field: Field, rows: int, **options: Any) -> list[str]:
     text = io.StringIO()
     console = Console(file=text, width=200, **options)
-    console.print(BoardPicture(Grid(field, rows), frame, sheet))
+    console.print(BoardPicture(PixelGrid(field, rows), frame, sheet))
     return text.getvalue().splitlines()
 
 

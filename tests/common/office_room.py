@@ -14,17 +14,17 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.schedule import due
-from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
+from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
 from lacoc_shared.codec import encode
 from lacoc_shared.messages import Refusal, SentFile
 from lacoc_shared.messages.desk import (
     AnyRequest,
-    Files,
     OfficeView,
     Overview,
     Overviewed,
+    TeamFiles,
 )
 
 NOW_MS = 1_800_000_000_000
@@ -43,12 +43,12 @@ listen = ["127.0.0.1:0"]
 """
 
 
-def sample(change: bytes = b"") -> Files:
+def sample(change: bytes = b"") -> TeamFiles:
     """Return the files of a team; another `change` gives them another hash."""
     postures, locomotion = sample_gait_files("hexapod")
     assert locomotion is not None
     locomotion = SentFile(locomotion.name, locomotion.data.rstrip() + b"\n" + change)
-    return Files(postures=postures, locomotion=locomotion)
+    return TeamFiles(postures=postures, locomotion=locomotion)
 
 
 class Room:
@@ -65,8 +65,8 @@ class Room:
         code = EventCode(self.where.event_code, CODE)
         store = FactStore(self.where.facts)
         self.book = Book(self.where, store, self.applications, code)
-        courts = {"north": Seen(NOW_MS), "south": Seen(NOW_MS)}
-        known = Known(courts, Pace(NOW_MS, 60_000), {})
+        courts = {"north": SeenCourt(NOW_MS), "south": SeenCourt(NOW_MS)}
+        known = OfficeKnowledge(courts, ContestPace(NOW_MS, 60_000), {})
         self.desk = Desk(self.book, KEY, lambda: known)
 
     def ask(self, request: AnyRequest) -> object:

@@ -20,7 +20,7 @@ from websockets.frames import Opcode
 from websockets.sync.client import ClientConnection, connect
 from websockets.uri import parse_uri
 
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
@@ -59,7 +59,7 @@ class PageClient:
         self.socket: ClientConnection = self._stack.enter_context(
             connect(address, compression=None, max_size=None, **options)
         )
-        self.order: list[Kind] = []
+        self.order: list[MessageKind] = []
         self.welcome: dict[str, Any] = {}
         self.link: dict[str, Any] = {}
         self.links: list[dict[str, Any]] = []
@@ -159,7 +159,7 @@ class PageClient:
             for message in self.socket:
                 assert isinstance(message, bytes)
                 with self._changed:
-                    self._take(Kind(message[0]), message[1:])
+                    self._take(MessageKind(message[0]), message[1:])
                     self._changed.notify_all()
         except ConnectionClosed:
             pass
@@ -167,46 +167,46 @@ class PageClient:
             self.closed.set()
             self._changed.notify_all()
 
-    def _take(self, kind: Kind, payload: bytes) -> None:
+    def _take(self, kind: MessageKind, payload: bytes) -> None:
         self.order.append(kind)
         match kind:
-            case Kind.FRAME:
+            case MessageKind.FRAME:
                 self.frame = decode(payload, Frame)
                 self.frames.append((time.monotonic(), self.frame.beat))
                 self._sign()
-            case Kind.EVENT:
+            case MessageKind.EVENT:
                 event = decode(payload, Event)
                 if not any(event.number == known.number for known in self.events):
                     self.events.append(event)
-            case Kind.SHEET:
+            case MessageKind.SHEET:
                 self.sheet = decode(payload, Sheet)
-            case Kind.SCENE:
+            case MessageKind.SCENE:
                 self.scene = (payload[:8], decode(payload[8:], Scene, 1 << 20))
-            case Kind.HEALTH:
+            case MessageKind.HEALTH:
                 self.health = decode(payload, Health)
             case _:
                 self._take_own(kind, msgpack.unpackb(payload))
 
-    def _take_own(self, kind: Kind, body: dict[str, Any]) -> None:
+    def _take_own(self, kind: MessageKind, body: dict[str, Any]) -> None:
         match kind:
-            case Kind.WELCOME:
+            case MessageKind.WELCOME:
                 self.welcome = body
-            case Kind.LINK:
+            case MessageKind.LINK:
                 if self.link and self.link["log"] != body["log"]:
                     self.events = []
                 self.link = body
                 self.links.append(body)
-            case Kind.SEAT:
+            case MessageKind.SEAT:
                 self.seat = body
-            case Kind.REFEREE:
+            case MessageKind.REFEREE:
                 self.referee = body
-            case Kind.FILES:
+            case MessageKind.FILES:
                 self.files = body
-            case Kind.NOTICE:
+            case MessageKind.NOTICE:
                 self.notice = body
-            case Kind.REPLY if body["id"] in self._signed:
+            case MessageKind.REPLY if body["id"] in self._signed:
                 self._signed.discard(body["id"])
-            case Kind.REPLY:
+            case MessageKind.REPLY:
                 self._replies[body["id"]] = body
 
     def _sign(self) -> None:
@@ -246,7 +246,7 @@ class SleepyPage:
             for event in self._protocol.events_received():
                 data = bytes(getattr(event, "data", b""))
                 is_message = getattr(event, "opcode", None) is Opcode.BINARY  # not a ping
-                if is_message and data[:1] == bytes((Kind.FRAME,)):
+                if is_message and data[:1] == bytes((MessageKind.FRAME,)):
                     beats.append(decode(data[1:], Frame).beat)
         return beats
 

@@ -10,9 +10,15 @@ from waiting import LIMIT_S
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 
-_OF_COURTS = (Kind.FRAME, Kind.EVENT, Kind.SHEET, Kind.SCENE, Kind.HEALTH)
+_OF_COURTS = (
+    MessageKind.FRAME,
+    MessageKind.EVENT,
+    MessageKind.SHEET,
+    MessageKind.SCENE,
+    MessageKind.HEALTH,
+)
 """Kinds of messages that a gateway passes on from a court; the connection does not keep them."""
 
 
@@ -38,10 +44,10 @@ class PageConnection:
         self.socket = connect(address, max_size=None, max_queue=None, legacy=True)
         self._ids = itertools.count(1)
         self._replies: dict[int, dict[str, Any]] = {}
-        self.told: dict[Kind, list[dict[str, Any]]] = {kind: [] for kind in Kind}
+        self.told: dict[MessageKind, list[dict[str, Any]]] = {kind: [] for kind in MessageKind}
         """All messages of the gateway's own kinds, except replies."""
 
-    def last(self, kind: Kind) -> dict[str, Any]:
+    def last(self, kind: MessageKind) -> dict[str, Any]:
         """Return the newest message of a kind; {}: there is none yet."""
         return self.told[kind][-1] if self.told[kind] else {}
 
@@ -91,11 +97,11 @@ class PageConnection:
 
     def _take(self, message: str | bytes) -> None:
         assert isinstance(message, bytes)
-        kind = Kind(message[0])
+        kind = MessageKind(message[0])
         if kind in _OF_COURTS:
             return
         body = msgpack.unpackb(message[1:])
-        if kind is Kind.REPLY:
+        if kind is MessageKind.REPLY:
             self._replies[body["id"]] = body
         else:
             self.told[kind].append(body)

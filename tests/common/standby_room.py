@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from lacoc_robots.library import robot_folder, sample_gait_files
 from lacoc_server.contest.kept.applications import Applications
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.stand_ins import stand_in
@@ -44,11 +44,11 @@ def contest_text(port: int = 7446) -> str:
     return FILE.format(port=port)
 
 
-def entry(bot: str) -> Entry:
+def entry(bot: str) -> ContestEntry:
     """Return an entry that is played by a bot."""
     robot = (robot_folder("hexapod") / "robot.toml").read_bytes()
     postures, locomotion = sample_gait_files("hexapod")
-    return Entry(
+    return ContestEntry(
         robot=robot,
         postures=postures.data if postures else None,
         locomotion=locomotion.data if locomotion else None,

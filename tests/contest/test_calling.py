@@ -9,8 +9,8 @@ from lacoc_server.contest.league.facts import Called, Moved, Played, Recalled, W
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.timetable.calling import (
     LOST_MS,
-    Ended,
-    Seen,
+    GameEnd,
+    SeenCourt,
     calls,
     results,
     taken_back,
@@ -21,14 +21,18 @@ from lacoc_shared.words import render
 
 def called(cup: Cup, court: str = "north") -> Called:
     """Call the next game to a court."""
-    (call,) = calls(cup.contest, {court: Seen(NOW_MS)}, NOW_MS, 0)
+    (call,) = calls(cup.contest, {court: SeenCourt(NOW_MS)}, NOW_MS, 0)
     return cup.append(call)
 
 
 def test_free_courts_that_are_there_get_games() -> None:
     """Courts that were heard lately get a game each; no team gets two; games held back wait."""
     cup = Cup()
-    seen = {"north": Seen(NOW_MS), "gone": Seen(NOW_MS - LOST_MS), "south": Seen(NOW_MS)}
+    seen = {
+        "north": SeenCourt(NOW_MS),
+        "gone": SeenCourt(NOW_MS - LOST_MS),
+        "south": SeenCourt(NOW_MS),
+    }
     given = calls(cup.contest, seen, NOW_MS, 0)
     assert [one.court for one in given] == ["north", "south"]
     assert len({team for one in given for team in one.teams}) == 4
@@ -42,9 +46,9 @@ def test_a_game_that_was_moved_goes_back_unless_it_has_begun() -> None:
     """A moved game is taken back and called to its new court; one that has begun stays."""
     cup = Cup()
     call = called(cup)
-    seen = {"north": Seen(NOW_MS, call.id), "south": Seen(NOW_MS)}
+    seen = {"north": SeenCourt(NOW_MS, call.id), "south": SeenCourt(NOW_MS)}
     cup.add(Moved, pairing=call.pairing, court="south")
-    begun = {**seen, "north": Seen(NOW_MS, call.id, True)}
+    begun = {**seen, "north": SeenCourt(NOW_MS, call.id, True)}
     assert not list(taken_back(cup.contest, begun, NOW_MS))
     (back,) = taken_back(cup.contest, seen, NOW_MS)
     assert isinstance(back, Recalled)
@@ -63,36 +67,36 @@ def test_a_call_is_sent_until_the_court_has_it() -> None:
     cup = Cup()
     call = called(cup)
     assert list(wanted(cup.contest, {})) == [call]
-    assert list(wanted(cup.contest, {"north": Seen(NOW_MS, "f1")})) == [call]
-    assert list(wanted(cup.contest, {"north": Seen(NOW_MS, call.id)})) == []
+    assert list(wanted(cup.contest, {"north": SeenCourt(NOW_MS, "f1")})) == [call]
+    assert list(wanted(cup.contest, {"north": SeenCourt(NOW_MS, call.id)})) == []
 
 
 def test_the_result_of_a_call_is_taken_once() -> None:
     """A result counts once, if its court shows the call and the end of the match."""
     cup = Cup()
     call = called(cup)
-    end = Ended((20, 16), "left", "x.mcap")
-    assert not list(results(cup.contest, {"north": Seen(NOW_MS, "f1", True, end)}))
-    assert not list(results(cup.contest, {"north": Seen(NOW_MS, call.id, True)}))
-    (played,) = results(cup.contest, {"north": Seen(NOW_MS, call.id, True, end)})
+    end = GameEnd((20, 16), "left", "x.mcap")
+    assert not list(results(cup.contest, {"north": SeenCourt(NOW_MS, "f1", True, end)}))
+    assert not list(results(cup.contest, {"north": SeenCourt(NOW_MS, call.id, True)}))
+    (played,) = results(cup.contest, {"north": SeenCourt(NOW_MS, call.id, True, end)})
     assert isinstance(played, Played)
     assert (played.teams, played.scores, played.record) == (call.teams, (20, 16), "x.mcap")
     cup.append(played)
-    assert not list(results(cup.contest, {"north": Seen(NOW_MS, call.id, True, end)}))
+    assert not list(results(cup.contest, {"north": SeenCourt(NOW_MS, call.id, True, end)}))
 
 
 @pytest.mark.parametrize(
     ("seen", "is_lost"),
     [
         (None, True),
-        (Seen(NOW_MS + 1), False),
-        (Seen(NOW_MS), True),
-        (Seen(NOW_MS, "call"), True),
-        (Seen(NOW_MS, "call", begun=True), False),
+        (SeenCourt(NOW_MS + 1), False),
+        (SeenCourt(NOW_MS), True),
+        (SeenCourt(NOW_MS, "call"), True),
+        (SeenCourt(NOW_MS, "call", begun=True), False),
     ],
 )
 def test_a_court_that_is_gone_loses_a_game_that_has_not_begun(
-    seen: Seen | None, is_lost: bool
+    seen: SeenCourt | None, is_lost: bool
 ) -> None:
     """A game is taken back if its court was silent for `LOST_MS` and the game has not begun."""
     cup = Cup()
@@ -108,12 +112,12 @@ def test_a_game_that_is_not_needed_comes_back() -> None:
     """When a team leaves, its game is taken back, unless the game has begun."""
     cup = Cup()
     call = called(cup)
-    seen = {"north": Seen(NOW_MS, call.id)}
+    seen = {"north": SeenCourt(NOW_MS, call.id)}
     assert not list(taken_back(cup.contest, seen, NOW_MS))
     cup.add(Withdrawn, team=call.teams[0])
     (back,) = taken_back(cup.contest, seen, NOW_MS)
     assert isinstance(back, Recalled)
-    begun = {"north": Seen(NOW_MS, call.id, begun=True)}
+    begun = {"north": SeenCourt(NOW_MS, call.id, begun=True)}
     assert not list(taken_back(cup.contest, begun, NOW_MS))
 
 

@@ -23,7 +23,7 @@ from lacoc_shared.messages import Refusal, SentFile
 from lacoc_shared.messages.desk import (
     Apply,
     Approve,
-    Change,
+    ChangeFiles,
     CloseEntries,
     CourtDay,
     CourtPlan,
@@ -31,8 +31,7 @@ from lacoc_shared.messages.desk import (
     Draw,
     Effect,
     EventInfo,
-    Files,
-    Look,
+    LookAtEvent,
     Move,
     NewCode,
     Overview,
@@ -42,6 +41,7 @@ from lacoc_shared.messages.desk import (
     Rule,
     Said,
     TakeOut,
+    TeamFiles,
     ToDraw,
     TokenList,
     Tokens,
@@ -78,18 +78,18 @@ def test_a_workbook_is_read_as_at_a_court(room: Room) -> None:
     """A workbook enters under its own name; a broken one is a mistake of the team's own file."""
     locomotion = sample().locomotion
     data = (robot_folder("hexapod") / "Loco-data.xlsx").read_bytes()
-    files = Files(postures=SentFile("Loco-data.xlsx", data), locomotion=locomotion)
+    files = TeamFiles(postures=SentFile("Loco-data.xlsx", data), locomotion=locomotion)
     applied = room.ask(Apply(secret=CODE, team="Bees", files=files))
     assert isinstance(applied, OwnEntry), applied
     text = room.applications.waiting["Bees"].entry.postures
     assert text is not None
     assert read_gait(text, "") == read_gait(sample().postures.data, "")  # type: ignore[union-attr]
 
-    alone = Files(postures=files.postures)
+    alone = TeamFiles(postures=files.postures)
     assert isinstance(room.ask(Apply(secret=CODE, team="Crabs", files=alone)), OwnEntry)
 
     half = SentFile("mine.xlsx", data[: len(data) // 2])
-    refused = room.ask(Apply(secret=CODE, team="Ants", files=Files(postures=half)))
+    refused = room.ask(Apply(secret=CODE, team="Ants", files=TeamFiles(postures=half)))
     assert isinstance(refused, Refusal)
     (mistake,) = refused.mistakes
     assert (mistake.file, mistake.found) == ("mine.xlsx", say("gait.damaged"))
@@ -98,7 +98,7 @@ def test_a_workbook_is_read_as_at_a_court(room: Room) -> None:
 
 def test_a_mistake_in_a_text_has_the_team_s_own_name(room: Room) -> None:
     """A mistake names the file as the team called it."""
-    files = Files(locomotion=SentFile("walk.txt", b"z"))
+    files = TeamFiles(locomotion=SentFile("walk.txt", b"z"))
     refused = room.ask(Apply(secret=CODE, team="Ants", files=files))
     assert isinstance(refused, Refusal)
     assert {mistake.file for mistake in refused.mistakes} == {"walk.txt"}
@@ -109,16 +109,16 @@ def test_files_are_replaced_until_entries_close_then_with_a_reason(room: Room) -
     room.enter("Ants")
     applied = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert isinstance(applied, OwnEntry)
-    again = room.ask(Change(secret=applied.token, files=sample(b"\n")))
+    again = room.ask(ChangeFiles(secret=applied.token, files=sample(b"\n")))
     assert isinstance(again, OwnEntry)
     assert again.state == "waits"
     room.ask(Approve(secret=KEY, teams=("Bees",)))
-    early = room.ask(Change(secret=applied.token, files=sample(b"\n\n")))
+    early = room.ask(ChangeFiles(secret=applied.token, files=sample(b"\n\n")))
     assert isinstance(early, OwnEntry)
     assert early.state == "in"
 
     room.ask(CloseEntries(secret=KEY))
-    late = room.ask(Change(secret=applied.token, files=sample(b"\n\n\n")))
+    late = room.ask(ChangeFiles(secret=applied.token, files=sample(b"\n\n\n")))
     assert isinstance(late, OwnEntry)
     assert late.state == "late"
     assert room.states()["Bees"] == "late"
@@ -132,7 +132,7 @@ def test_files_are_replaced_until_entries_close_then_with_a_reason(room: Room) -
 def test_all_mistakes_are_told_and_the_organiser_sees_them(room: Room) -> None:
     """A refused team gets every mistake of its files, and the organiser's page shows them."""
     broken = SentFile("LocoTra-data.txt", b"1\t2\nx\ty\n")
-    answer = room.ask(Apply(secret=CODE, team="Bees", files=Files(locomotion=broken)))
+    answer = room.ask(Apply(secret=CODE, team="Bees", files=TeamFiles(locomotion=broken)))
     assert isinstance(answer, Refusal)
     assert answer.mistakes
     (row,) = room.view.teams
@@ -140,7 +140,7 @@ def test_all_mistakes_are_told_and_the_organiser_sees_them(room: Room) -> None:
     assert not room.applications.waiting
     assert isinstance(room.ask(Apply(secret=CODE, team="Bees", files=sample())), OwnEntry)
     assert room.states() == {"Bees": "waits"}
-    assert said(room.ask(Apply(secret=CODE, team="Ants", files=Files()))) == "desk.no-files"
+    assert said(room.ask(Apply(secret=CODE, team="Ants", files=TeamFiles()))) == "desk.no-files"
 
 
 @pytest.mark.parametrize("name", ["Ants", "ANTS", "Ａnts", " ants ", "Bees"])
@@ -354,7 +354,7 @@ def test_a_team_that_is_in_with_the_same_files_waits_for_nothing(room: Room) -> 
     organiser.enter_weighed(room.where, room.store, "Bees", entry, "")
     assert room.states() == {"Ants": "in", "Bees": "in"}
     room.ask(CloseEntries(secret=KEY))
-    room.ask(Change(secret=applied.token, files=sample(b"\n\n")))
+    room.ask(ChangeFiles(secret=applied.token, files=sample(b"\n\n")))
     assert room.states()["Bees"] == "late"
 
 
@@ -500,7 +500,7 @@ def test_roles_hold(room: Room) -> None:
         request = Apply(secret=secret, team="Crabs", files=sample())
         assert said(room.ask(request)) == "desk.wrong-code"
     for secret in ("", CODE, KEY, f"{token}x"):
-        assert said(room.ask(Change(secret=secret, files=sample()))) == "desk.no-such-team"
+        assert said(room.ask(ChangeFiles(secret=secret, files=sample()))) == "desk.no-such-team"
     assert (room.facts, room.applications.waiting) == before
     for _ in range(300):
         last = room.ask(Own(secret="guess"))
@@ -508,7 +508,7 @@ def test_roles_hold(room: Room) -> None:
     assert last.again
     assert last.why.code == "desk.slower"
     assert isinstance(room.ask(Own(secret=token)), OwnEntry), "a right one is always let in"
-    assert isinstance(room.ask(Look()), EventInfo)
+    assert isinstance(room.ask(LookAtEvent()), EventInfo)
 
 
 def test_what_is_no_request_is_refused(room: Room) -> None:

@@ -18,7 +18,7 @@ from lacoc_robots.seat_files import gaits_in
 from lacoc_server.commands.contest import playing
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.applications import Applications
-from lacoc_server.contest.kept.entries import EntryFolder, gather, weigh
+from lacoc_server.contest.kept.entries import EntryFolder, gather_entry, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
@@ -37,7 +37,7 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import LANGUAGES, render, say
 
 Run = Callable[..., tuple[int, str, str]]
-ENTRY = gather(None, "planner", "hexapod").entry
+ENTRY = gather_entry(None, "planner", "hexapod").entry
 SAMPLE = robot_folder("hexapod")
 
 
@@ -114,7 +114,7 @@ def test_a_team_that_withdrew_may_come_back_until_entries_close(cup: Cup) -> Non
 def test_each_part_changes_the_hash(change: dict[str, object]) -> None:
     """Another file or bot gives an entry another hash; the same files give the same one."""
     assert msgspec.structs.replace(ENTRY, **change).hash != ENTRY.hash
-    assert gather(None, "planner", "hexapod").entry.hash == ENTRY.hash
+    assert gather_entry(None, "planner", "hexapod").entry.hash == ENTRY.hash
 
 
 def test_frozen_files_that_were_changed_are_found(tmp_path: Path) -> None:
@@ -146,7 +146,7 @@ def test_every_mistake_of_every_file_is_told(tmp_path: Path) -> None:
     (own / "Loco-data.txt").write_text("x\ny\n")
     (own / "LocoTra-data.txt").write_text("z\n")
     with pytest.raises(FileRefused) as refused:
-        weigh(gather(own, "", "hexapod"), [arenas.load("othello")], {})
+        weigh(gather_entry(own, "", "hexapod"), [arenas.load("othello")], {})
     assert len(refused.value.mistakes) > 2
     assert len({mistake.file for mistake in refused.value.mistakes}) > 1
 
@@ -165,7 +165,7 @@ def test_of_a_workbook_and_a_text_the_newer_is_taken(
     (tmp_path / "Loco-data.xlsx").write_bytes((SAMPLE / "Loco-data.xlsx").read_bytes())
     os.utime(tmp_path / "Loco-data.xlsx", (book_s, book_s))
 
-    handed = gather(tmp_path, "", "hexapod")
+    handed = gather_entry(tmp_path, "", "hexapod")
 
     assert handed.taken == (taken, "LocoTra-data.txt")
     assert [path.name for path in gaits_in(tmp_path)] == [*handed.taken]
@@ -180,7 +180,7 @@ def test_of_a_workbook_and_a_text_the_newer_is_taken(
 def test_a_workbook_alone_is_enough(tmp_path: Path) -> None:
     """A folder with nothing but a workbook enters; level B is the sample's (README)."""
     (tmp_path / "Loco-data.xlsx").write_bytes((SAMPLE / "Loco-data.xlsx").read_bytes())
-    handed = gather(tmp_path, "", "hexapod")
+    handed = gather_entry(tmp_path, "", "hexapod")
     entry = weigh(handed, [arenas.load("othello")], {})
     assert handed.made
     assert (handed.taken, handed.notes) == (("Loco-data.xlsx",), ())
@@ -194,14 +194,14 @@ def test_a_broken_workbook_is_a_mistake_among_the_others(tmp_path: Path) -> None
     (tmp_path / "LocoTra-data.txt").write_bytes(ENTRY.locomotion or b"")
     for games in ([arenas.load("othello")], []):
         with pytest.raises(FileRefused) as refused:
-            weigh(gather(tmp_path, "", "hexapod"), games, {})
+            weigh(gather_entry(tmp_path, "", "hexapod"), games, {})
         (mistake,) = refused.value.mistakes
         assert (mistake.file, mistake.found) == ("Loco-data.xlsx", say("gait.damaged"))
 
     (tmp_path / "LocoTra-data.txt").write_text("z\n")
     (tmp_path / "robot.toml").write_text("legs = 3\n")
     with pytest.raises(FileRefused) as refused:
-        weigh(gather(tmp_path, "", "hexapod"), [arenas.load("othello")], {})
+        weigh(gather_entry(tmp_path, "", "hexapod"), [arenas.load("othello")], {})
     files = [mistake.file for mistake in refused.value.mistakes]
     assert set(files) == {"Loco-data.xlsx", "LocoTra-data.txt", "robot.toml"}
     assert files.count("Loco-data.xlsx") == 1
@@ -210,9 +210,9 @@ def test_a_broken_workbook_is_a_mistake_among_the_others(tmp_path: Path) -> None
 def test_a_folder_without_a_gait_is_told_what_belongs_there(tmp_path: Path) -> None:
     """The words for a missing folder or gait name the files, and no sign that `enter` lacks."""
     with pytest.raises(UserError, match=r"Loco-data\.xlsx") as no_gait:
-        gather(tmp_path, "", "hexapod")
+        gather_entry(tmp_path, "", "hexapod")
     with pytest.raises(UserError, match="no folder") as no_folder:
-        gather(tmp_path / "nowhere", "", "hexapod")
+        gather_entry(tmp_path / "nowhere", "", "hexapod")
     for error in (no_gait, no_folder):
         assert all("@" not in render(error.value.phrase, language) for language in LANGUAGES)
 
@@ -343,9 +343,9 @@ def test_an_own_robot_is_in_the_entry(tmp_path: Path) -> None:
     own = tmp_path / "own"
     own.mkdir()
     (own / "Loco-data.txt").write_bytes(ENTRY.locomotion or b"")
-    assert gather(own, "", "hexapod").entry.robot == find_robot("hexapod")[1]
+    assert gather_entry(own, "", "hexapod").entry.robot == find_robot("hexapod")[1]
     (own / "robot.toml").write_bytes(find_robot("long-legs")[1])
-    assert gather(own, "", "hexapod").entry.robot == find_robot("long-legs")[1]
+    assert gather_entry(own, "", "hexapod").entry.robot == find_robot("long-legs")[1]
 
 
 def test_standings_before_the_draw_list_who_has_entered(
@@ -390,7 +390,7 @@ def test_a_program_that_needs_another_file_is_refused(
     (tmp_path / "helper.py").write_text("raise SystemExit\n")
     bot = tmp_path / "my_bot.py"
     bot.write_text(f"{line}\ndef bot(sheet, seat):\n    return lambda frame: None\n")
-    handed = gather(None, str(bot), "hexapod")
+    handed = gather_entry(None, str(bot), "hexapod")
     if missing is None:
         assert weigh(handed, [], {}).program == bot.read_bytes()
         return

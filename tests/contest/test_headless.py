@@ -17,8 +17,8 @@ from waiting import LIMIT_S, until
 
 from lacoc_arenas import time_limit
 from lacoc_server.contest.acts import organiser
-from lacoc_server.contest.headless.play import play
-from lacoc_server.contest.headless.pool import Ended, Job, Pool, attempt
+from lacoc_server.contest.headless.play import play_contest
+from lacoc_server.contest.headless.pool import Job, PlayedAlone, Pool, attempt_match
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.publish import tables
 from lacoc_server.contest.kept.store import FactStore
@@ -79,9 +79,9 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     shutil.copytree(played / "records", again.parent / "records")
     damaged, endless, *_ = (again.parent / "records").iterdir()
     damaged.write_bytes(b"damaged")
-    messages = [one for one in pack.read([endless]) if one[0] != "/lacoc/result"]
+    messages = [one for one in pack.read_messages([endless]) if one[0] != "/lacoc/result"]
     endless.unlink()
-    pack.write(messages, endless)
+    pack.write_packed(messages, endless)
     again.with_suffix(".db").unlink()
     contest_played.enter(again.parent)
     assert contest_played.play(again) == 2
@@ -90,11 +90,11 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
 class _Damaged(Here):
     """Plays games whose records come back damaged, as from a worker of other software."""
 
-    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+    def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a game at once; return a future with a record that can't be read."""
-        found = attempt(job)
-        assert isinstance(found, Ended)
-        future: Future[Ended | Phrase] = Future()
+        found = attempt_match(job)
+        assert isinstance(found, PlayedAlone)
+        future: Future[PlayedAlone | Phrase] = Future()
         future.set_result(found._replace(record=b"damaged"))
         return future
 
@@ -175,7 +175,7 @@ def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> No
 
     with FactStore(where.facts) as store, Pool(2) as pool:
         organiser.prepare(where, store)
-        play(where, store, pool, "planner", changed, lambda _: None)
+        play_contest(where, store, pool, "planner", changed, lambda _: None)
     assert kills < 3
     assert tables(organiser.sheet(file)) == tables(organiser.sheet(played / "contest.toml"))
 
@@ -215,7 +215,7 @@ def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> N
 
     with FactStore(where.facts) as store:
         organiser.prepare(where, store)
-        play(where, store, Here(), "planner", changed, lambda _: None)
+        play_contest(where, store, Here(), "planner", changed, lambda _: None)
     view = organiser.sheet(file).stages[0]
     assert "Eve" not in view.stage.entries
     of_bob = [match for match in view.matches if "Bob" in match.teams]

@@ -24,13 +24,13 @@ from lacoc_client.play.team_way import where
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import OpenStage
-from lacoc_server.contest.league.timetable.calling import LOST_MS, Seen, calls, is_open_call
+from lacoc_server.contest.league.timetable.calling import LOST_MS, SeenCourt, calls, is_open_call
 from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
 from lacoc_shared.contest.file import load
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import Whereabouts, open_match
 from lacoc_shared.mistakes import UserError
@@ -126,7 +126,7 @@ def test_a_refusal_is_told_once() -> None:
 
 def test_each_seat_is_told_where_it_is() -> None:
     """A seat is open while its court has an open match; else its holder waits."""
-    seen = {"red": Seen(1, "open.1"), "blue": Seen(1, "f12")}
+    seen = {"red": SeenCourt(1, "open.1"), "blue": SeenCourt(1, "f12")}
     found = dict(OpenMatches(STAGE, token_of).whereabouts(seen, ADDRESSES))
     assert list(found) == [token_of(court, seat) for court in seen for seat in STAGE.seats]
     red = found[token_of("red", "right")]
@@ -142,9 +142,9 @@ def test_games_go_before_open_matches_that_have_not_begun() -> None:
     from cup import NOW_MS, Cup
 
     seen = {
-        "begun": Seen(NOW_MS, "open.1", begun=True),
-        "waits": Seen(NOW_MS, "open.2"),
-        "gone": Seen(NOW_MS - LOST_MS),
+        "begun": SeenCourt(NOW_MS, "open.1", begun=True),
+        "waits": SeenCourt(NOW_MS, "open.2"),
+        "gone": SeenCourt(NOW_MS - LOST_MS),
     }
     assert [one.court for one in calls(Cup().contest, seen, NOW_MS, 0)] == ["waits"]
 
@@ -171,7 +171,7 @@ def test_mistakes_in_an_open_stage_are_told(tmp_path: Path, stages: str, said: s
 
 def record_open_match(folder: Path) -> Path:
     """Record a short open match in a folder of a contest's records; return the file."""
-    tokens = {seat: [hash_token(seat)] for seat in ("left", "right")}
+    tokens = {seat: [new_token_hash(seat)] for seat in ("left", "right")}
     made = replace(
         setup("othello", QUICK),
         match_id="20260501-100000-main-001",

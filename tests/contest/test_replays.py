@@ -5,7 +5,7 @@ from pathlib import Path
 from msgspec.structs import replace
 
 from lacoc_client.web.gateway.recordings import Recordings
-from lacoc_client.web.gateway.shown import Shown
+from lacoc_client.web.gateway.shown import ShownRecords
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.replays import shown
 from lacoc_server.contest.league.sheet import ContestSheet, encode
@@ -51,7 +51,7 @@ def test_records_are_kept_back_until_their_time(played: Path, tmp_path: Path) ->
         assert records(public) == expected
         file = tmp_path / f"{when}.json"
         file.write_bytes(encode(public))
-        shelf = Recordings(plan.recordings, list, Shown(file))
+        shelf = Recordings(plan.recordings, list, ShownRecords(file))
         assert {one.name for one in shelf.listed()} == set().union(*expected.values())
         for name in set().union(*every.values()):
             assert (shelf.find(name) is not None) == (name in set().union(*expected.values()))
@@ -64,6 +64,6 @@ def test_no_record_is_shown_before_there_is_a_sheet(played: Path, tmp_path: Path
     for text in (None, "{", "[]"):
         if text is not None:
             (tmp_path / "contest.json").write_text(text)
-        shelf = Recordings(plan.recordings, list, Shown(tmp_path / "contest.json"))
+        shelf = Recordings(plan.recordings, list, ShownRecords(tmp_path / "contest.json"))
         assert shelf.listed() == []
         shelf.close()

@@ -38,9 +38,9 @@ from lacoc_server.contest.league.facts import (
     generation,
     new,
 )
-from lacoc_server.contest.standby.following import Ended
+from lacoc_server.contest.standby.following import CopyingEnded
 from lacoc_server.contest.standby.lookout import Lookout
-from lacoc_server.contest.standby.messages import AnyAsk, Knock, Known, Part, Step
+from lacoc_server.contest.standby.messages import AnyAsk, KnockAsk, OfficeThere, PartAsk, StepAsk
 from lacoc_server.contest.standby.other import LacksIt, NotThere, Other, OtherToken
 from lacoc_server.contest.standby.sealing import REQUEST, BadSeal, Sealing
 from lacoc_server.contest.standby.taking_over import set_aside, take_over
@@ -128,7 +128,7 @@ class Restless(Near):
 
     def ask(self, request: AnyAsk, kind: type[T]) -> T:
         answer = super().ask(request, kind)
-        if isinstance(request, Step) and self.changes:
+        if isinstance(request, StepAsk) and self.changes:
             self.changes -= 1
             self.room.where.secrets.write_text(f'{{"Ann": "token {self.changes}"}}')
             self.room.store.append(new(Withdrawn, team="Ann", reason=str(self.changes)))
@@ -220,10 +220,10 @@ def test_seals_open_with_the_token_for_their_purpose() -> None:
 def test_strangers_read_and_learn_nothing(room: OfficeRoom) -> None:
     """Without the token a request is refused; an answer shows no secret to whoever listens."""
     stranger = Sealing("the token of nobody")
-    asked = Part(generation=0, kind="file", name="secrets", offset=0)
+    asked = PartAsk(generation=0, kind="file", name="secrets", offset=0)
     for payload in (b"", b"x" * 100, encode(asked), stranger.seal(encode(asked), REQUEST)):
         assert isinstance(room.door.judge(payload), Refusal)
-    step = Step(generation=0, address="tcp/x:1", facts=0, last="", applications="")
+    step = StepAsk(generation=0, address="tcp/x:1", facts=0, last="", applications="")
     secrets = [room.where.secrets.read_bytes(), room.where.event_code.read_bytes()]
     secrets += [token for secret in secrets for token in secret.split(b'"') if len(token) > 8]
     for one in (asked, step, replace(asked, name="contest")):
@@ -233,7 +233,7 @@ def test_strangers_read_and_learn_nothing(room: OfficeRoom) -> None:
     for name in ("../contest.toml", "/etc/passwd", "contest.toml", ""):
         for kind in ("file", "entry", "application"):
             with pytest.raises(LacksIt):
-                Near(room).ask(Part(generation=0, kind=kind, name=name, offset=0), Known)
+                Near(room).ask(PartAsk(generation=0, kind=kind, name=name, offset=0), OfficeThere)
 
 
 def test_machines_find_each_other_over_the_network(room: OfficeRoom, tmp_path: Path) -> None:
@@ -242,7 +242,7 @@ def test_machines_find_each_other_over_the_network(room: OfficeRoom, tmp_path: P
     with DeskService(room.door.judge) as service:
         stranger = Other(service.address, Sealing("the token of nobody"))
         with stranger, pytest.raises(OtherToken):
-            stranger.ask(Knock(generation=9), Known)
+            stranger.ask(KnockAsk(generation=9), OfficeThere)
         with Other(service.address, room.sealing) as other:
             with following(where, other) as follower:
                 follower.step()
@@ -264,7 +264,7 @@ def test_machines_find_each_other_over_the_network(room: OfficeRoom, tmp_path: P
                 room.tenure.check()
     assert machine.read(room.where.machine).role == "retired"
     with Other(f"tcp/127.0.0.1:{free_port()}", room.sealing) as nobody, pytest.raises(NotThere):
-        nobody.ask(Knock(generation=0), Known)
+        nobody.ask(KnockAsk(generation=0), OfficeThere)
 
 
 def test_a_move_of_the_office_changes_nothing_else() -> None:
@@ -309,7 +309,7 @@ def test_a_machine_takes_over_once(room: OfficeRoom, tmp_path: Path) -> None:
         follower.step()
         machine.save(where.machine, Machine(role="copy", office=near.address, ends=True))
         near.answers = 0  # it ends also while the office is gone
-        with pytest.raises(Ended):
+        with pytest.raises(CopyingEnded):
             follower.step()
         machine.save(where.machine, Machine(role="copy", office=near.address, copied_ms=1))
     said = take_over(where.file)

@@ -23,9 +23,9 @@ from lacoc_shared.messages.desk import (
     Draw,
     Effect,
     Move,
-    Pause,
+    PauseContest,
     Publish,
-    Resume,
+    ResumeContest,
     Said,
     Shift,
     Staff,
@@ -98,12 +98,12 @@ def test_a_match_that_is_not_drawn_is_moved(room: Room) -> None:
 
 def test_the_day_is_paused_shifted_and_goes_on(room: Room) -> None:
     """Each is a fact; what can't be is told."""
-    assert said(room.ask(Resume(secret=KEY))) == "day.not-paused"
-    assert code_of(room.ask(Pause(secret=KEY, reason="a cable"))) == "day.paused"
+    assert said(room.ask(ResumeContest(secret=KEY))) == "day.not-paused"
+    assert code_of(room.ask(PauseContest(secret=KEY, reason="a cable"))) == "day.paused"
     assert (room.view.day.paused, room.view.day.reason) == (True, "a cable")
-    assert said(room.ask(Pause(secret=KEY))) == "day.paused-already"
-    assert said(room.ask(Pause(secret=KEY, until_ms=1))) == "day.in-the-past"
-    assert code_of(room.ask(Resume(secret=KEY))) == "day.goes-on"
+    assert said(room.ask(PauseContest(secret=KEY))) == "day.paused-already"
+    assert said(room.ask(PauseContest(secret=KEY, until_ms=1))) == "day.in-the-past"
+    assert code_of(room.ask(ResumeContest(secret=KEY))) == "day.goes-on"
     before = [slot.at_ms for slot in room.view.slots]
     assert code_of(room.ask(Shift(secret=KEY, by_ms=900_000))) == "day.shifted"
     assert min(slot.at_ms for slot in room.view.slots) >= min(before)
@@ -251,20 +251,27 @@ def test_the_staff_decide_under_their_names(room: Room) -> None:
     assert code_of(room.ask(Staff(secret=KEY, name="Aiko"))) == "desk.staff-added"
     tokens = cast("TokenList", room.ask(Tokens(secret=KEY)))
     token = tokens.staff["Aiko"]
-    assert isinstance(room.ask(Pause(secret=token, reason="a cable")), Said)
+    assert isinstance(room.ask(PauseContest(secret=token, reason="a cable")), Said)
     assert [fact.by for fact in room.facts][-1] == "Aiko"
-    assert isinstance(room.ask(Resume(secret=KEY)), Said)
+    assert isinstance(room.ask(ResumeContest(secret=KEY)), Said)
     assert [fact.by for fact in room.facts][-1] == ""
     assert cast("TokenList", room.ask(Tokens(secret=token))).staff == {}
     assert said(room.ask(Staff(secret=token, name="Ben"))) == "desk.not-organiser"
     room.ask(Staff(secret=KEY, name="Aiko", remove=True))
-    assert said(room.ask(Pause(secret=token))) == "desk.not-organiser"
+    assert said(room.ask(PauseContest(secret=token))) == "desk.not-organiser"
     assert room.view.staff == ()
 
 
 @pytest.mark.parametrize(
     "asked",
-    [Pause(), Resume(), Shift(by_ms=60_000), Announce(text="x"), Publish(), Staff(name="x")],
+    [
+        PauseContest(),
+        ResumeContest(),
+        Shift(by_ms=60_000),
+        Announce(text="x"),
+        Publish(),
+        Staff(name="x"),
+    ],
 )
 def test_only_the_staff_may(room: Room, asked: AnyRequest) -> None:
     """Neither the event code nor a team's token steers the day."""

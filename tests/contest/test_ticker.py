@@ -17,12 +17,12 @@ from lacoc_server.contest.league.facts import (
     Played,
     Recalled,
 )
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.ticker import Ticker
-from lacoc_server.contest.league.timetable.whereabouts import Known, Pace
+from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
 from lacoc_shared.words import Phrase, render, say
 
-PACE = Pace(now_ms=0, game_ms=1, least_rest_ms=0)
+PACE = ContestPace(now_ms=0, game_ms=1, least_rest_ms=0)
 TEAMS = ("t001", "t002")
 
 
@@ -31,13 +31,13 @@ class Terminal:
 
     def __init__(self, event: Event) -> None:
         self.event = event
-        self.seen: dict[str, Seen] = {}
+        self.seen: dict[str, SeenCourt] = {}
         self.held: dict[tuple[str, int], Phrase] = {}
         self._ticker = Ticker(event.facts)
 
     def lines(self) -> list[str]:
         """Return the newest lines, in English."""
-        known = Known(self.seen, PACE, self.held)
+        known = OfficeKnowledge(self.seen, PACE, self.held)
         said = self._ticker.newest(self.event.contest, self.event.facts, known)
         return [render(one) for one in said]
 
@@ -82,12 +82,12 @@ def test_a_draw_that_waits_is_told() -> None:
 def test_a_court_that_is_lost_and_comes_back_is_told() -> None:
     """A court that was never there is not lost; one that is back is told once."""
     terminal = Terminal(Cup())
-    terminal.seen = {"red": Seen(0), "blue": Seen(0, there=True)}
+    terminal.seen = {"red": SeenCourt(0), "blue": SeenCourt(0, there=True)}
     assert terminal.lines() == []
-    terminal.seen = {"red": Seen(0, there=True), "blue": Seen(0)}
+    terminal.seen = {"red": SeenCourt(0, there=True), "blue": SeenCourt(0)}
     assert terminal.lines() == ["Court blue does not answer any more."]
     assert terminal.lines() == []
-    terminal.seen = {"red": Seen(0, there=True), "blue": Seen(0, there=True)}
+    terminal.seen = {"red": SeenCourt(0, there=True), "blue": SeenCourt(0, there=True)}
     assert terminal.lines() == ["Court blue is back."]
 
 

@@ -44,9 +44,9 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.verify.alone import Checked, Side, check_inputs, ends_alike
+from lacoc_server.contest.verify.alone import InputCheck, Side, check_inputs, ends_alike
 from lacoc_server.contest.verify.check import check
-from lacoc_server.contest.verify.games import Found, check_game, games_of
+from lacoc_server.contest.verify.games import GameCheck, check_game, games_of
 from lacoc_server.contest.verify.history import (
     call_of,
     check_earlier,
@@ -209,7 +209,7 @@ def at_a_court(folder: Path, at: int, *, items: Mapping[int, Input]) -> list[Any
     return [*facts[:at], replace(call, id="x", number=played.number), replace(played, **changes)]
 
 
-def checked(folder: Path, facts: list[AnyFact], proven: bool = True) -> Found:
+def checked(folder: Path, facts: list[AnyFact], proven: bool = True) -> GameCheck:
     """Check the last game of the facts."""
     return check_game(folder, games_of(facts)[-1], proven)
 
@@ -254,7 +254,7 @@ def test_what_a_referee_decided_in_a_game_is_listed(copied: Path) -> None:
     assert [one.code for one in checked(folder, facts).wrong] == ["verify.other-game"]
 
 
-def forged(folder: Path, place: Path, names: Sequence[str]) -> tuple[bool, Found]:
+def forged(folder: Path, place: Path, names: Sequence[str]) -> tuple[bool, GameCheck]:
     """Play the last game of a published contest again with these changes, and check it.
 
     Details of the changes are drawn until the record claims another result.
@@ -268,7 +268,7 @@ def forged(folder: Path, place: Path, names: Sequence[str]) -> tuple[bool, Found
     entries = [kept.load(one[-1]) for one in game.files]
     (place / "records").mkdir(parents=True)
     shutil.copytree(folder / "entries", place / "entries")
-    other, found = False, Found()
+    other, found = False, GameCheck()
     for seed in range(5):
         shutil.rmtree(place / "records")
         (place / "records").mkdir()
@@ -398,7 +398,7 @@ def test_another_version_is_not_proven_if_its_bots_differ(played: Path) -> None:
     header = replace(record.header, versions={**record.header.versions, "lacoc": "0.0.1"})
     record.headers = [header]
 
-    def check_with(bot: str) -> Checked:
+    def check_with(bot: str) -> InputCheck:
         sides = [
             Side(team, replace(entry, bot=bot or entry.bot), "")
             for team, entry in zip(game.played.teams, entries, strict=True)
@@ -483,7 +483,7 @@ def test_a_team_that_a_bot_steered_is_checked(tmp_path: Path) -> None:
     facts = [*read(folder)]
     game = games_of(facts)[-1]
     assert game.played.steer == "planner"
-    assert check_game(folder, game, proven=True) == Found(has_bots=True)
+    assert check_game(folder, game, proven=True) == GameCheck(has_bots=True)
     assert "planner" in render(check(folder, lambda done, there: None, jobs=1).decisions[-1])
     for steer, code in (("", "unchecked.steer"), ("nobody", "unchecked.bot")):
         played = replace(game.played, steer=steer)

@@ -12,16 +12,16 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Planned,
     Played,
-    Settings,
+    StageSettings,
     Withdrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import assign
 from lacoc_server.contest.league.timetable.whereabouts import (
-    Courts,
-    Pace,
+    ContestPace,
+    SeenCourts,
     game_ms,
     starts,
     whereabouts,
@@ -35,7 +35,7 @@ GAME = 120_000
 """Length of a game in these tests [ms]."""
 
 
-def found_for(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Whereabouts]:
+def found_for(contest: Contest, courts: SeenCourts, pace: ContestPace) -> dict[str, Whereabouts]:
     """Return where each team is, with the estimate of when matches begin."""
     begins = dict(starts(contest, foreseen(contest, FORMATS), courts.seen, pace))
     return whereabouts(contest, courts, pace, begins)
@@ -43,8 +43,10 @@ def found_for(contest: Contest, courts: Courts, pace: Pace) -> dict[str, Whereab
 
 def where(cup: Cup, calls: dict[str, str], rest_ms: int = 0) -> dict[str, Whereabouts]:
     """Return where each team is; `calls` maps each court to the call that it shows."""
-    seen = {court: Seen(cup.now_ms, calls.get(court, "")) for court in ADDRESSES}
-    found = found_for(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, rest_ms))
+    seen = {court: SeenCourt(cup.now_ms, calls.get(court, "")) for court in ADDRESSES}
+    found = found_for(
+        cup.contest, SeenCourts(seen, ADDRESSES), ContestPace(cup.now_ms, GAME, rest_ms)
+    )
     for there in found.values():
         assert faults(there.said) == []
     return found
@@ -65,8 +67,8 @@ def playing(cup: Cup) -> dict[str, str]:
 def test_nobody_is_sent_to_a_silent_court() -> None:
     """A court that is not there yet, or not any more, is in no estimate."""
     cup = Cup()
-    seen = {"north": Seen(0), "south": Seen(cup.now_ms)}
-    found = found_for(cup.contest, Courts(seen, ADDRESSES), Pace(cup.now_ms, GAME, 0))
+    seen = {"north": SeenCourt(0), "south": SeenCourt(cup.now_ms)}
+    found = found_for(cup.contest, SeenCourts(seen, ADDRESSES), ContestPace(cup.now_ms, GAME, 0))
     assert {there.court for there in found.values()} == {"south"}
 
 
@@ -258,8 +260,8 @@ def test_a_stage_that_is_not_drawn() -> None:
 def test_before_the_first_draw_all_wait() -> None:
     """Before the first draw, all teams that have entered wait for the draw."""
     event = Event(3, 1, Random(1))
-    event.add(Planned, stage="cup", format="round-robin", settings=Settings())
-    found = found_for(event.contest, Courts({}, {}), Pace(0, GAME))
+    event.add(Planned, stage="cup", format="round-robin", settings=StageSettings())
+    found = found_for(event.contest, SeenCourts({}, {}), ContestPace(0, GAME))
     assert [there.said.code for there in found.values()] == ["team.awaits-draw"] * 3
     fixtures = {render(match.fixture) for match in foreseen(event.contest, FORMATS)}
     assert fixtures == {f"Round robin, round {number}" for number in (1, 2, 3)}
@@ -286,9 +288,9 @@ def test_any_contest(how: str, trouble: float) -> None:
     addresses = dict.fromkeys(event.courts, "tcp/10.0.0.1:7447")
     for contest, _ in event.play("cup"):
         calls = {call.court: call.id for call in event.contest.running}
-        seen = {court: Seen(event.now_ms, calls.get(court, "")) for court in event.courts}
-        pace = Pace(event.now_ms, GAME_MS, LEAST_REST_MS)
-        found = found_for(event.contest, Courts(seen, addresses), pace)
+        seen = {court: SeenCourt(event.now_ms, calls.get(court, "")) for court in event.courts}
+        pace = ContestPace(event.now_ms, GAME_MS, LEAST_REST_MS)
+        found = found_for(event.contest, SeenCourts(seen, addresses), pace)
         assert list(found) == [team.name for team in contest.teams]
         on_court = {name for name, there in found.items() if there.state == "court"}
         assert on_court == {team for call in event.contest.running for team in call.teams}

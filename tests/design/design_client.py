@@ -4,7 +4,7 @@ from typing import Any
 
 from page_connection import PageConnection, Refused
 
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 
 __all__ = ["DesignClient", "Refused"]
 
@@ -27,20 +27,20 @@ class DesignClient(PageConnection):
 
     @property
     def folder(self) -> dict[str, Any]:
-        return self.last(Kind.FOLDER)
+        return self.last(MessageKind.FOLDER)
 
     @property
     def folders(self) -> list[dict[str, Any]]:
-        return self.told[Kind.FOLDER]
+        return self.told[MessageKind.FOLDER]
 
     @property
     def studio(self) -> dict[str, Any]:
-        return self.last(Kind.STUDIO)
+        return self.last(MessageKind.STUDIO)
 
     @property
     def phases(self) -> dict[str, Any]:
-        return self.last(Kind.PHASES)
+        return self.last(MessageKind.PHASES)
 
     @property
     def progress(self) -> list[dict[str, Any]]:
-        return self.told[Kind.PROGRESS]
+        return self.told[MessageKind.PROGRESS]

@@ -20,7 +20,7 @@ from page_connection import PageConnection
 from ports import free_port
 from waiting import LIMIT_S, until
 
-from lacoc_client.web.gateway.wire import Kind, Unreadable
+from lacoc_client.web.gateway.wire import MessageKind, Unreadable
 from lacoc_client.workshop.design import requests
 from lacoc_robots.library import find_robot
 from lacoc_shared.studio import STUDIO_MAX_BYTES
@@ -283,12 +283,12 @@ def test_a_table_is_taken_to_practice(page: DesignClient) -> None:
     practice = PageConnection(address, "/ws")
     try:
         practice.ask("watch", key=key)
-        practice.until(lambda: practice.last(Kind.FILES))
-        first = practice.last(Kind.FILES)
+        practice.until(lambda: practice.last(MessageKind.FILES))
+        first = practice.last(MessageKind.FILES)
         assert "Loco-data.txt" in str(first)
         rows = [{**table["rows"][0], "angles_deg": [7.0] * 18}, *table["rows"][1:]]
         assert page.ask("play", table={**table, "rows": rows}, sequences=sequences)["url"] == url
-        practice.until(lambda: practice.last(Kind.FILES) != first)
+        practice.until(lambda: practice.last(MessageKind.FILES) != first)
     finally:
         practice.close()
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lacoc_client.workshop.design.files import file_bytes, read_file
-from lacoc_client.workshop.design.folder import ABSENT, Conflict, Folder, Saved
+from lacoc_client.workshop.design.folder import ABSENT, Conflict, Folder, SavedFile
 from lacoc_client.workshop.design.saving.text_edit import edit_text
 from lacoc_client.workshop.design.table import FileRow, FileTable, gait_of, page_table
 from lacoc_robots.library import find_robot, sample_gait_files
@@ -101,7 +101,7 @@ def test_a_table_is_saved_and_read_back(folder: Folder, name: str) -> None:
     known = {file.name: file.version for file in folder.files}
     table = turned(sample(), 4, -12.25)
     saved = folder.save(name, table, known.get(name, ABSENT), force=False)
-    assert isinstance(saved, Saved)
+    assert isinstance(saved, SavedFile)
     again = folder.read(name)
     assert (again.table, again.version) == (table, saved.version)
     assert saved.version in {file.version for file in folder.files}
@@ -125,7 +125,7 @@ def test_a_change_meanwhile_is_a_conflict(folder: Folder) -> None:
     assert answer.conflict.table == turned(sample(), 0, 10)
     assert answer.conflict.version == folder.read("Loco-data.xlsx").version
     # With `force` the page's table is saved, and the other program's remark stays.
-    assert isinstance(folder.save("Loco-data.xlsx", mine, version, force=True), Saved)
+    assert isinstance(folder.save("Loco-data.xlsx", mine, version, force=True), SavedFile)
     assert folder.read("Loco-data.xlsx").table == mine
     assert openpyxl.load_workbook(path)[INPUT_SHEET]["A20"].value == "my remark"
 

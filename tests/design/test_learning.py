@@ -11,7 +11,7 @@ from test_design_page import Gateway, sample
 
 from lacoc_client.workshop.design.designer import EVIDENCE_FILE
 from lacoc_client.workshop.phases.evidence import (
-    Checked,
+    CheckedGait,
     Compared,
     Edited,
     Evidence,
@@ -151,7 +151,7 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     assert any(isinstance(one, Compared) and "speed" in one.differs for one in evidence)
     assert [one.by for one in evidence if isinstance(one, Edited)] == ["tool"]
     assert {one.poll for one in evidence if isinstance(one, Voted)} == {"calm"}
-    assert [one.mistakes for one in evidence if isinstance(one, Checked)] == [0]
+    assert [one.mistakes for one in evidence if isinstance(one, CheckedGait)] == [0]
     assert page.phases["word"] == "calm"
     assert page.phases["trouble"] is None
 

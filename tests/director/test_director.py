@@ -14,7 +14,7 @@ from lacoc_client.web.director.courts import CourtNow
 from lacoc_client.web.director.director import AHEAD_S, RESULT_S, Director
 from lacoc_client.web.director.moments import Track
 from lacoc_client.web.director.plan import CUTS_MOST, MINUTE_S
-from lacoc_client.web.director.results import Result, Results
+from lacoc_client.web.director.results import Results, ShownResult
 from lacoc_client.web.director.stakes import USUAL, stake
 from lacoc_shared.seat import BEAT_S, Phase
 from lacoc_shared.words import Phrase, say
@@ -296,8 +296,8 @@ def test_a_halted_match_goes_on(ahead_s: float) -> None:
 def test_results_are_as_late_as_all_else() -> None:
     """Results are as late as their courts' pictures; if a match goes on, its result is dropped."""
 
-    def result(court: str, match: str, *scores: int) -> Result:
-        return Result(court, match, "Robot-Othello", None, ("A", "B"), scores, Phase.FINISHED)
+    def result(court: str, match: str, *scores: int) -> ShownResult:
+        return ShownResult(court, match, "Robot-Othello", None, ("A", "B"), scores, Phase.FINISHED)
 
     first, other = result("east", "1", 3, 4), result("west", "7", 9, 1)
     corrected, second = result("east", "1", 5, 4), result("east", "2", 2, 2)

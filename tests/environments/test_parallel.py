@@ -15,7 +15,7 @@ from pettingzoo.test import parallel_api_test
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.bot import Key
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.simulate import Player, player, simulate
 from lacoc_server.simulate.environments import LacocEnv, LacocParallelEnv
 from lacoc_shared.command import installing
@@ -135,7 +135,7 @@ def test_a_record_of_an_episode_is_proven(env: LacocParallelEnv, tmp_path: Path)
         env.write_record(file)
         *_, verdict = verify(Record.read(file), processes=1)
         assert isinstance(verdict, Verdict)
-        assert verdict.kind is Kind.SAME
+        assert verdict.kind is VerdictKind.SAME
     half = Record.read(tmp_path / "half.mcap")
     assert half.result is not None
     assert half.result.official == "void"

@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode
 
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate.environments import (
     LacocEnv,
@@ -96,7 +96,7 @@ def test_a_bot_remembers_after_a_load(opponent: str, tmp_path: Path) -> None:
     other.write_record(tmp_path / "episode.mcap")
     *_, verdict = verify(Record.read(tmp_path / "episode.mcap"), processes=1)
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict.kind is VerdictKind.SAME
     before = one.save()
     both = LacocParallelEnv(settings=SHORT)
     both.reset()

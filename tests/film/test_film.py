@@ -22,7 +22,7 @@ from lacoc_client.film import camera_page, contest, film, plan
 from lacoc_client.film.chromium import find
 from lacoc_client.film.look import Look, Quality, View
 from lacoc_client.film.site import served
-from lacoc_server.simulate.forks.jobs import ForkJob, play
+from lacoc_server.simulate.forks.jobs import ForkJob, play_fork
 from lacoc_shared.command import cli, installing
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEATS_PER_S
@@ -236,7 +236,7 @@ def test_a_request_to_end_leaves_nothing(
 def test_a_film_of_a_fork_is_marked(recorded: Path, with_browser: str, tmp_path: Path) -> None:
     """A film of a fork says on each picture that it is one, also without the overlay."""
     job = ForkJob(file=str(recorded), beat=200, bots=("straight", "-"), folder=str(tmp_path))
-    play(job)
+    play_fork(job)
     look = Look(width=WIDTH, height=HEIGHT, quality=Quality.LOW)
     yellow = []
     for record in (recorded, tmp_path / "fork.mcap"):

@@ -17,12 +17,12 @@ from lacoc_server.doors import network as court_network
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import Arrival, CourtNetwork
-from lacoc_server.doors.sessions import Sessions, Why, _Held
-from lacoc_server.match.entry import Admission
+from lacoc_server.doors.sessions import Sessions, Why, _SeatHolder
+from lacoc_server.match.entry import JoinCheck
 from lacoc_shared import codec, seal
 from lacoc_shared.decisions import DECISIONS, Adjust, Clock, Halt, Set, Start, TakeBack
 from lacoc_shared.inputs import Decide, HeardSeat, JoinSeat, KeySeat, LeaveSeat, SilentSeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import (
     PROTOCOL,
     Command,
@@ -39,7 +39,7 @@ from lacoc_shared.messages import (
 from lacoc_shared.messages.office import open_match
 from lacoc_shared.seat import RESTART_KEY, Phase
 
-KEYS = Keys("main")
+KEYS = KeySpace("main")
 SEATS = ("left", "right")
 TOKENS = {"left": "the-left-team-has-this", "right": "the-right-team-has-this"}
 REFEREE = "the-referee-has-this"
@@ -103,7 +103,7 @@ class _Sessions(Sessions):
 
     def begin(self, seat: int) -> tuple[int, bytes]:
         self.end(seat, Why.REPLACED)
-        self._held[SESSIONS[seat]] = _Held(seat, SECRETS[seat])
+        self._held[SESSIONS[seat]] = _SeatHolder(seat, SECRETS[seat])
         return SESSIONS[seat], SECRETS[seat]
 
 
@@ -135,7 +135,7 @@ class Doors:
 
     def __init__(self) -> None:
         robot, data = find_robot("hexapod")
-        self._admission = Admission(
+        self._join_check = JoinCheck(
             SentFile(robot, data), *sample_gait_files("hexapod"), Limits(), (1,)
         )
         self._hashes = {seat: _hash(token) for seat, token in TOKENS.items()}
@@ -148,7 +148,7 @@ class Doors:
         self._session = _Session()
         real, court_network.open_court = court_network.open_court, lambda *_: self._session  # type: ignore[assignment,return-value]
         try:
-            self._inbox = Inbox(KEYS, SEATS, self._admission, bytes)
+            self._inbox = Inbox(KEYS, SEATS, self._join_check, bytes)
             self._inbox._sessions = _Sessions(bytes)
             self._inbox.admit(
                 open_match({seat: [one] for seat, one in self._hashes.items()}), (0, 1)

@@ -21,7 +21,7 @@ from websockets.sync.client import connect
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.home import ACTING_MOST
 from lacoc_client.web.gateway.page import TRY_LATER
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase
 
@@ -425,7 +425,7 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
         took_s = time.monotonic() - begin_s
         assert set(said) == {"", "Too many tries. Wait a few seconds."}
         assert 5 <= said.count("") <= 6 + took_s
-        assert page.order.count(Kind.SCENE) <= said.count("")
+        assert page.order.count(MessageKind.SCENE) <= said.count("")
         page.wait(lambda: page.frame)
         time.sleep(1.1)  # the limit is a number of requests in a time
         page.ask("watch")

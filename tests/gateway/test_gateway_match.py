@@ -11,7 +11,7 @@ from page_client import PageClient, Refused, SleepyPage, refusal, x_of
 from venue import REFEREE, TOKENS, Venue
 from waiting import LIMIT_S
 
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import encode
 from lacoc_shared.messages import Event
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
@@ -50,8 +50,14 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     left.wait_own(lambda own: own.refused_seq >= refused)
 
     late = venue.page()
-    assert late.order[:5] == [Kind.WELCOME, Kind.NOTICE, Kind.LINK, Kind.SHEET, Kind.SCENE]
-    assert Kind.FRAME in late.order[: late.order.index(Kind.REPLY)]
+    assert late.order[:5] == [
+        MessageKind.WELCOME,
+        MessageKind.NOTICE,
+        MessageKind.LINK,
+        MessageKind.SHEET,
+        MessageKind.SCENE,
+    ]
+    assert MessageKind.FRAME in late.order[: late.order.index(MessageKind.REPLY)]
     assert [event.number for event in late.events] == [*range(1, len(late.events) + 1)]
     at_once = list(late.events)
     assert "PLAYING" in [event.data.get("after") for event in at_once]

@@ -81,7 +81,7 @@ def test_only_regular_files_are_recordings(tmp_path: Path) -> None:
 def test_the_document_has_every_kind() -> None:
     """docs/gateway.md has the number and name of each kind of message to a page."""
     found = [(int(number), name.upper()) for number, name, _ in rows("Gateway to page")]
-    assert found == [(kind.value, kind.name) for kind in wire.Kind]
+    assert found == [(kind.value, kind.name) for kind in wire.MessageKind]
 
 
 def test_the_document_has_every_request_with_its_fields() -> None:
@@ -144,7 +144,7 @@ def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> 
 @pytest.mark.parametrize("size", [0, 1, 124, 125, 126, 65_534, 65_535, 70_000])
 def test_a_message_is_a_websocket_frame(size: int) -> None:
     """A message becomes a WebSocket frame, whose length has one of RFC 6455's three forms."""
-    framed = wire.message(wire.Kind.EVENT, bytes(size))
+    framed = wire.message(wire.MessageKind.EVENT, bytes(size))
     assert framed[0] == 0x82
     length, head = framed[1], 2
     if length == 126:
@@ -154,7 +154,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
         length, head = int.from_bytes(framed[2:10]), 10
         assert length >= 65_536
     assert length == size + 1 == len(framed) - head
-    assert framed[head] == wire.Kind.EVENT
+    assert framed[head] == wire.MessageKind.EVENT
 
 
 class Wire:

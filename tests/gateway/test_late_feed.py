@@ -9,7 +9,7 @@ from lacoc_client.web.gateway.late_feed import LateFeed
 from lacoc_client.web.gateway.programme import Channel
 from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.contest.access import Access
 
 BEHIND_S = 10.0
@@ -22,28 +22,28 @@ class Written:
     heard_s = 0.0
 
     def __init__(self) -> None:
-        self.messages: list[tuple[Kind, bytes]] = []
+        self.messages: list[tuple[MessageKind, bytes]] = []
         self.drained: Any = None
 
     def write(self, framed: bytes) -> None:
         self.messages.append(wire.opened(framed))
 
     @property
-    def kinds(self) -> list[Kind]:
+    def kinds(self) -> list[MessageKind]:
         """The kinds of the messages, in order."""
         return [kind for kind, _ in self.messages]
 
 
 def link(log: int, *, connected: bool = True) -> bytes:
     """Make a message about the link to a court; `log` is the number of the court's log."""
-    return wire.map_message(Kind.LINK, {"court": "east", "connected": connected, "log": log})
+    return wire.map_message(MessageKind.LINK, {"court": "east", "connected": connected, "log": log})
 
 
 def test_messages_open_as_they_were_made() -> None:
     """Kind and payload of a message can be read back from it, however long it is."""
     for size in (0, 1, 124, 125, 65_534, 65_535, 70_000):
         payload = bytes(size)
-        assert wire.opened(wire.message(Kind.SCENE, payload)) == (Kind.SCENE, payload)
+        assert wire.opened(wire.message(MessageKind.SCENE, payload)) == (MessageKind.SCENE, payload)
 
 
 def test_a_page_sees_a_court_as_it_was() -> None:
@@ -52,9 +52,9 @@ def test_a_page_sees_a_court_as_it_was() -> None:
     feed = CourtFeed(Access(court="east", connect="tcp/127.0.0.1:1"), threads)
     late = LateFeed(feed, BEHIND_S)
     begun_s = time.monotonic()
-    event, other = (wire.message(Kind.EVENT, bytes([one])) for one in (1, 2))
-    frames = [wire.message(Kind.FRAME, bytes([one])) for one in (1, 2)]
-    sheet = wire.message(Kind.SHEET, b"s")
+    event, other = (wire.message(MessageKind.EVENT, bytes([one])) for one in (1, 2))
+    frames = [wire.message(MessageKind.FRAME, bytes([one])) for one in (1, 2)]
+    sheet = wire.message(MessageKind.SHEET, b"s")
     feed.audience.send(link(1), sheet, event)
     feed.audience.offer(frames[0], time.monotonic())
 
@@ -65,10 +65,21 @@ def test_a_page_sees_a_court_as_it_was() -> None:
 
     late.play(time.monotonic() + BEHIND_S)
     # The first link is what the feed said when it was tapped.
-    assert early.kinds == [Kind.LINK, Kind.LINK, Kind.SHEET, Kind.EVENT, Kind.FRAME]
+    assert early.kinds == [
+        MessageKind.LINK,
+        MessageKind.LINK,
+        MessageKind.SHEET,
+        MessageKind.EVENT,
+        MessageKind.FRAME,
+    ]
     comer = Written()
     late.add(Viewer(comer))  # type: ignore[arg-type]
-    assert comer.kinds == [Kind.LINK, Kind.SHEET, Kind.EVENT, Kind.FRAME]
+    assert comer.kinds == [
+        MessageKind.LINK,
+        MessageKind.SHEET,
+        MessageKind.EVENT,
+        MessageKind.FRAME,
+    ]
     assert comer.messages[2] == wire.opened(event)
 
     # Another log: the old events are no longer valid. A court that is away has no frame.
@@ -78,7 +89,7 @@ def test_a_page_sees_a_court_as_it_was() -> None:
     late.play(time.monotonic() + BEHIND_S)
     last = Written()
     late.add(Viewer(last))  # type: ignore[arg-type]
-    assert last.kinds == [Kind.LINK, Kind.SHEET, Kind.EVENT]
+    assert last.kinds == [MessageKind.LINK, MessageKind.SHEET, MessageKind.EVENT]
     assert last.messages[2] == wire.opened(other)
     threads.close()
 
@@ -90,8 +101,10 @@ def test_a_picture_goes_from_court_to_court() -> None:
         CourtFeed(Access(court=c, connect="tcp/127.0.0.1:1"), threads) for c in ("east", "west")
     ]
     east, west = (LateFeed(feed, 0.0) for feed in feeds)
-    told = [wire.map_message(Kind.PROGRAMME, {"why": why}) for why in ("first", "swing", "lead")]
-    sheets = [wire.message(Kind.SHEET, court) for court in (b"east", b"west")]
+    told = [
+        wire.map_message(MessageKind.PROGRAMME, {"why": why}) for why in ("first", "swing", "lead")
+    ]
+    sheets = [wire.message(MessageKind.SHEET, court) for court in (b"east", b"west")]
 
     def send(*framed: bytes) -> None:
         for feed, one in zip(feeds, framed, strict=True):
@@ -106,11 +119,17 @@ def test_a_picture_goes_from_court_to_court() -> None:
     channel.add(viewer)
     channel.show(east, told[0])
     opened = [wire.opened(one) for one in (*told, *sheets)]
-    assert [one for one in page.messages if one[0] is not Kind.LINK] == [opened[0], opened[3]]
+    assert [one for one in page.messages if one[0] is not MessageKind.LINK] == [
+        opened[0],
+        opened[3],
+    ]
 
     page.messages.clear()
     channel.show(west, told[1])
-    assert [one for one in page.messages if one[0] is not Kind.LINK] == [opened[1], opened[4]]
+    assert [one for one in page.messages if one[0] is not MessageKind.LINK] == [
+        opened[1],
+        opened[4],
+    ]
     page.messages.clear()
     send(*reversed(sheets))
     assert page.messages == [opened[3]]  # it came from west

@@ -14,13 +14,13 @@ from venue import REFEREE, TOKENS, Venue
 from waiting import LIMIT_S
 
 from lacoc_client.play.controller import Controller
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.contest.file import secrets_path
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
 
-KEYS = Keys("main")
+KEYS = KeySpace("main")
 SETTINGS = "settings.match.countdown_s = 0.1\n"
 
 
@@ -29,7 +29,7 @@ class HearingPage(PageClient):
 
     heard: bytes = b""
 
-    def _take(self, kind: Kind, payload: bytes) -> None:
+    def _take(self, kind: MessageKind, payload: bytes) -> None:
         self.heard += payload
         super()._take(kind, payload)
 

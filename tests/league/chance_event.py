@@ -20,13 +20,13 @@ from lacoc_server.contest.league.facts import (
     Replaced,
     Replay,
     RoundDrawn,
-    Settings,
+    StageSettings,
     Voided,
     Withdrawn,
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.timetable.schedule import Assignment, assign
 
 _Kind = TypeVar("_Kind", bound=AnyFact)
@@ -63,7 +63,7 @@ class Event:
         return self.append(new(kind, **values))
 
     def begin(self, stage: str, how: str, entries: list[str], **settings: object) -> None:
-        self.add(Planned, stage=stage, format=how, settings=Settings(**settings))
+        self.add(Planned, stage=stage, format=how, settings=StageSettings(**settings))
         self.add(Drawn, stage=stage, entries=tuple(entries))
 
     @property
@@ -153,7 +153,7 @@ class Event:
                         reason="protest",
                     )
 
-    def _earlier(self) -> Match | None:
+    def _earlier(self) -> ContestMatch | None:
         """Choose a match with a played game; None if no match has one, or if a court has a game."""
         if self.ends:
             return None

@@ -14,12 +14,12 @@ from py4swiss.engines.dutch.player import Player as TheirPlayer
 from py4swiss.engines.dutch.validity_matcher import ValidityMatcher
 from py4swiss.trf.results import ColorToken
 
-from lacoc_server.contest.league.formats.swiss import Player
+from lacoc_server.contest.league.formats.swiss import SwissTeam
 
 FLOATS = {"down": Float.DOWN, "up": Float.UP, "none": Float.NONE}
 
 
-def pairs(players: Sequence[Player], round_number: int) -> set[frozenset[int]] | None:
+def pairs(players: Sequence[SwissTeam], round_number: int) -> set[frozenset[int]] | None:
     """Pair a round by the Dutch system.
 
     A team that has sat more often on one side must now sit on the other side.
@@ -44,7 +44,7 @@ def pairs(players: Sequence[Player], round_number: int) -> set[frozenset[int]] |
     return found
 
 
-def _their(player: Player, numbers: dict[str, int]) -> TheirPlayer:
+def _their(player: SwissTeam, numbers: dict[str, int]) -> TheirPlayer:
     if player.balance:
         strength = ColorPreferenceStrength.ABSOLUTE
     else:

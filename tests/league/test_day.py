@@ -9,7 +9,7 @@ from cup import Cup
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.contest.league.draws import apart, by_lot
+from lacoc_server.contest.league.draws import by_lot, clubs_apart
 from lacoc_server.contest.league.facts import (
     Announced,
     Closed,
@@ -20,16 +20,16 @@ from lacoc_server.contest.league.facts import (
     Planned,
     Recalled,
     Resumed,
-    Settings,
     Shifted,
+    StageSettings,
     Substituted,
     Undrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import assign, due
-from lacoc_server.contest.league.timetable.whereabouts import Pace, starts
+from lacoc_server.contest.league.timetable.whereabouts import ContestPace, starts
 from lacoc_shared.words import render
 
 MINUTE_MS = 60_000
@@ -64,7 +64,7 @@ def play_open(cup: Cup, *pairings: str) -> None:
 def test_what_is_played_was_foreseen(how: str, settings: dict[str, object], teams: int) -> None:
     """Before a stage is drawn, the timetable has exactly the matches that it will have."""
     event = Event(teams, 2, Random(1))
-    event.add(Planned, stage="cup", format=how, settings=Settings(**settings))
+    event.add(Planned, stage="cup", format=how, settings=StageSettings(**settings))
     early = foreseen(event.contest, FORMATS)
     assert all(one.match.teams == (None, None) for one in early)
     assert all(render(who) for one in early for who in one.who)
@@ -80,7 +80,9 @@ def test_what_is_played_was_foreseen(how: str, settings: dict[str, object], team
 def test_a_match_to_come_says_who_it_waits_for() -> None:
     """A bracket that is not drawn has seeds, then winners and losers of its matches, by name."""
     event = Event(6, 2, Random(1))
-    event.add(Planned, stage="cup", format="single-knockout", settings=Settings(third_place=True))
+    event.add(
+        Planned, stage="cup", format="single-knockout", settings=StageSettings(third_place=True)
+    )
     told = {
         render(one.fixture): tuple(map(render, one.who)) for one in foreseen(event.contest, FORMATS)
     }
@@ -116,8 +118,8 @@ def test_a_break_a_court_and_a_later_stage() -> None:
         final_break_s=120.0,
     )
     coming = foreseen(event.contest, FORMATS)
-    seen = {court: Seen(event.now_ms) for court in COURTS}
-    early = dict(starts(event.contest, coming, seen, Pace(event.now_ms, MINUTE_MS)))
+    seen = {court: SeenCourt(event.now_ms) for court in COURTS}
+    early = dict(starts(event.contest, coming, seen, ContestPace(event.now_ms, MINUTE_MS)))
     rounds = [start.at_ms for pairing, start in early.items() if pairing.startswith("cup:")]
     semi, final = early["finals:w1.1"], early["finals:w2.1"]
     assert semi.at_ms == max(rounds) + MINUTE_MS + 600_000
@@ -295,7 +297,7 @@ def test_teams_of_one_club_are_kept_apart(clubs: list[str], groups: int) -> None
     def clash(order: tuple[str, ...]) -> int:
         return sum(club_of[one] == club_of[two] != "" for one, two in met(order))
 
-    found = apart(names, club_of, met)
+    found = clubs_apart(names, club_of, met)
     assert sorted(found) == sorted(names)
     assert clash(found) <= clash(names)
     if not clash(names):

@@ -22,7 +22,7 @@ from lacoc_server.contest.league.facts import (
     Replaced,
     Replay,
     RoundDrawn,
-    Settings,
+    StageSettings,
     Voided,
     Withdrawn,
     decode,
@@ -32,8 +32,8 @@ from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.formats.knockout import double_bracket, single_bracket
 from lacoc_server.contest.league.formats.round_robin import groups
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import Entry, WinnerOf
+from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.league.pairing import Entrant, WinnerOf
 from lacoc_server.contest.league.timetable.schedule import assign
 from lacoc_shared.mistakes import UserError
 
@@ -48,7 +48,7 @@ class Facts(list[AnyFact]):
         super().__init__()
         for team in teams:
             self.add(Entered, team=team, files="f")
-        self.add(Planned, stage="s", format=how, settings=Settings(**settings))
+        self.add(Planned, stage="s", format=how, settings=StageSettings(**settings))
         self.add(Drawn, stage="s", entries=tuple(teams))
 
     def add(self, kind: type[AnyFact], **values: object) -> "Facts":
@@ -66,7 +66,7 @@ class Facts(list[AnyFact]):
     def contest(self) -> Contest:
         return compute(self, FORMATS)
 
-    def match(self, pairing: str = FIRST) -> Match:
+    def match(self, pairing: str = FIRST) -> ContestMatch:
         (found,) = (one for one in self.contest.stage("s").matches if one.pairing.id == pairing)
         return found
 
@@ -244,7 +244,7 @@ def test_double_knockout_plays_a_second_final_only_if_it_must() -> None:
 def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> None:
     """A bracket has the right number of pairings; each takes teams from seeds or earlier ones."""
     stage = Stage(
-        name="s", settings=Settings(), entries=tuple(f"t{number}" for number in range(teams))
+        name="s", settings=StageSettings(), entries=tuple(f"t{number}" for number in range(teams))
     )
     known: set[str] = set()
     for pairing in bracket(stage):
@@ -258,7 +258,7 @@ def test_brackets_name_only_earlier_pairings(teams: int, bracket: object) -> Non
 
 def test_groups_are_dealt_in_snake_order() -> None:
     """Seeds are dealt to the groups a to c, then back from c to a, and so on."""
-    stage = Stage(name="s", settings=Settings(groups=3), entries=tuple("abcdefgh"))
+    stage = Stage(name="s", settings=StageSettings(groups=3), entries=tuple("abcdefgh"))
     assert groups(stage) == {"a": ("a", "f", "g"), "b": ("b", "e", "h"), "c": ("c", "d")}
 
 
@@ -368,7 +368,7 @@ def test_every_team_meets_every_other() -> None:
     """A round robin of any size has each pair once, with sides that differ by at most one."""
     for teams in range(2, 12):
         names = tuple(f"t{number}" for number in range(teams))
-        stage = Stage(name="s", settings=Settings(), entries=names)
+        stage = Stage(name="s", settings=StageSettings(), entries=names)
         pairings = FORMATS["round-robin"].pairings(stage)
         met = [frozenset(source.team for source in pairing.sources) for pairing in pairings]
         assert {*met} == {frozenset(pair) for pair in itertools.combinations(names, 2)}
@@ -386,7 +386,7 @@ def test_every_team_meets_every_other() -> None:
 def test_losers_meet_again_late(teams: int) -> None:
     """In the first half of the losers' bracket no two teams meet again (30 random contests)."""
     names = tuple(f"t{number}" for number in range(teams))
-    stage = Stage(name="s", settings=Settings(), entries=names)
+    stage = Stage(name="s", settings=StageSettings(), entries=names)
     half = teams.bit_length() - 2  # of the rounds of the losers' bracket
     for seed in range(30):
         random = Random(seed)
@@ -396,7 +396,7 @@ def test_losers_meet_again_late(teams: int) -> None:
         for pairing in double_bracket(stage):
             pair = [
                 source.team
-                if isinstance(source, Entry)
+                if isinstance(source, Entrant)
                 else (won if isinstance(source, WinnerOf) else lost)[source.pairing]
                 for source in pairing.sources
             ]

@@ -9,9 +9,16 @@ import pytest
 from chance_event import Event
 
 from lacoc_server.contest.league.contest import Contest
-from lacoc_server.contest.league.facts import Drawn, Planned, Played, Replaced, Settings, Withdrawn
+from lacoc_server.contest.league.facts import (
+    Drawn,
+    Planned,
+    Played,
+    Replaced,
+    StageSettings,
+    Withdrawn,
+)
 from lacoc_server.contest.league.formats.sequential import lead
-from lacoc_server.contest.league.matches import Game
+from lacoc_server.contest.league.matches import CountedGame
 from lacoc_server.contest.league.timetable.schedule import Assignment
 
 TEAMS = 4
@@ -111,12 +118,14 @@ def test_a_correction_opens_only_the_last_stage_again() -> None:
             reason="the score was read wrongly",
         )
     assert event.contest.stage("main").may_draw
-    event.add(Planned, stage="final", format="single-knockout", settings=Settings(), after="main")
+    event.add(
+        Planned, stage="final", format="single-knockout", settings=StageSettings(), after="main"
+    )
     event.add(Drawn, stage="final", entries=("t001", "t002"))
     assert event.contest.stage("main").over
 
 
-def results(elo: Sequence[float], seed: int, laps: int) -> list[Game]:
+def results(elo: Sequence[float], seed: int, laps: int) -> list[CountedGame]:
     """Return the games of some laps, both sides of each match, by the teams' strengths."""
     chance = Random(seed)
     found = []
@@ -125,7 +134,7 @@ def results(elo: Sequence[float], seed: int, laps: int) -> list[Game]:
             for left, right in (pair, pair[::-1]):
                 wins = chance.random() < 1 / (1 + 10 ** ((elo[right] - elo[left]) / 400))
                 found.append(
-                    Game(
+                    CountedGame(
                         number=number,
                         teams=(f"t{left}", f"t{right}"),
                         scores=(int(wins), int(not wins)),

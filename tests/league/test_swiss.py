@@ -11,18 +11,20 @@ from hypothesis import strategies as st
 
 from lacoc_server.contest.league.formats.swiss import (
     LARGEST,
-    Player,
+    SwissTeam,
     dutch,
     faults,
     fewest_faults,
     paired,
-    seated,
+    seat_pair,
 )
 
 
-def rounds(random: Random, teams: int, number: int, leaving: float = 0.0) -> Iterator[list[Player]]:
+def rounds(
+    random: Random, teams: int, number: int, leaving: float = 0.0
+) -> Iterator[list[SwissTeam]]:
     """Yield the players before each round; `random` decides the results and which teams leave."""
-    players = [Player(team=f"t{place}", number=place) for place in range(1, teams + 1)]
+    players = [SwissTeam(team=f"t{place}", number=place) for place in range(1, teams + 1)]
     for round_number in range(1, number + 1):
         yield players
         before = {player.number: player.points for player in players}
@@ -33,14 +35,14 @@ def rounds(random: Random, teams: int, number: int, leaving: float = 0.0) -> Ite
             return
 
 
-def play(random: Random, pair: Sequence[Player], before: dict[int, int]) -> None:
+def play(random: Random, pair: Sequence[SwissTeam], before: dict[int, int]) -> None:
     """Add a random result to both players."""
     if len(pair) == 1:
         pair[0].had_bye = True
         pair[0].points += 2
         pair[0].floats.append("down")
         return
-    left = seated(pair[0], pair[1])[0]
+    left = seat_pair(pair[0], pair[1])[0]
     points = random.choice([0, 1, 2])
     for player, other, won in ((*pair, points), (pair[1], pair[0], 2 - points)):
         apart = before[player.number] - before[other.number]
@@ -50,15 +52,15 @@ def play(random: Random, pair: Sequence[Player], before: dict[int, int]) -> None
         player.sides.append(1 if player.team == left else -1)
 
 
-def as_numbers(pairs: Sequence[Sequence[Player]]) -> set[frozenset[int]]:
+def as_numbers(pairs: Sequence[Sequence[SwissTeam]]) -> set[frozenset[int]]:
     return {frozenset(player.number for player in pair) for pair in pairs}
 
 
-def total_faults(pairs: Sequence[Sequence[Player]]) -> tuple[int, ...]:
+def total_faults(pairs: Sequence[Sequence[SwissTeam]]) -> tuple[int, ...]:
     return tuple(map(sum, zip(*map(faults, pairs), strict=True)))
 
 
-def can_do_without_faults(players: Sequence[Player]) -> bool:
+def can_do_without_faults(players: Sequence[SwissTeam]) -> bool:
     """Return whether all players can be paired without faults; a matching in a graph tells this."""
     graph = networkx.Graph()
     graph.add_nodes_from(range(len(players)))
@@ -70,7 +72,7 @@ def can_do_without_faults(players: Sequence[Player]) -> bool:
     return 2 * len(networkx.max_weight_matching(graph, True)) == len(players) + len(players) % 2
 
 
-def check_round(players: Sequence[Player], round_number: int) -> None:
+def check_round(players: Sequence[SwissTeam], round_number: int) -> None:
     """Check that everybody is paired once, without a fault if that is possible."""
     pairs = paired(players, round_number)
     assert sorted(one.number for pair in pairs for one in pair) == [one.number for one in players]
@@ -104,7 +106,9 @@ def test_a_round_that_needs_a_fault_is_paired_at_once() -> None:
     rule. The engine alone would try pairings for minutes.
     """
     players = [
-        Player(team=f"t{number}", number=number, sides=[1 if number <= 12 else -1], floats=["none"])
+        SwissTeam(
+            team=f"t{number}", number=number, sides=[1 if number <= 12 else -1], floats=["none"]
+        )
         for number in range(1, 23)
     ]
     for player in players[:11]:
@@ -135,7 +139,7 @@ def test_large_stages(teams: int) -> None:
         assert all(abs(player.balance) <= 1 for player in players)
 
 
-def brute_force(players: Sequence[Player]) -> tuple[int, ...]:
+def brute_force(players: Sequence[SwissTeam]) -> tuple[int, ...]:
     """Return the faults of the best of all possible pairings.
 
     Returns:
@@ -143,7 +147,7 @@ def brute_force(players: Sequence[Player]) -> tuple[int, ...]:
         due the same side.
     """
 
-    def pairings(left: tuple[Player, ...]) -> Iterator[tuple[tuple[Player, ...], ...]]:
+    def pairings(left: tuple[SwissTeam, ...]) -> Iterator[tuple[tuple[SwissTeam, ...], ...]]:
         if len(left) < 2:
             yield (left,) if left else ()
             return
@@ -193,7 +197,7 @@ def test_py4swiss_makes_the_same_pairs(least_rounds: int) -> None:
 
 
 def same_bye(
-    players: Sequence[Player], found: set[frozenset[int]], theirs: set[frozenset[int]]
+    players: Sequence[SwissTeam], found: set[frozenset[int]], theirs: set[frozenset[int]]
 ) -> bool:
     """Return whether both engines give the bye to the same team, or both give none.
 

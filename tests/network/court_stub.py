@@ -14,7 +14,7 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import (
     PROTOCOL,
     DecisionReply,
@@ -39,10 +39,10 @@ from lacoc_shared.network.certificate import Pair
 from lacoc_shared.seat import No, Phase
 from lacoc_shared.words import Phrase, say
 
-KEYS = Keys("main")
+KEYS = KeySpace("main")
 SEATS = ("left", "right")
 TOKENS = {"left": "token of left", "right": "token of right"}
-HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}
+HASHES = {seat: tokens.new_token_hash(token) for seat, token in TOKENS.items()}
 WHISTLE = "the referee's whistle"
 WRONG = SentFile("mine.txt", b"wrong")
 BOOK = SentFile("mine.xlsx", b"PK\x03\x04")
@@ -121,7 +121,7 @@ class CourtStub:
         self._links = inbox.links
         self.beat = 0
         """The newest beat; its frame may not be sent yet."""
-        desk = DecisionDesk([tokens.hash_token(WHISTLE)])
+        desk = DecisionDesk([tokens.new_token_hash(WHISTLE)])
         self.network = CourtNetwork(
             KEYS, [listen], inbox, desk, certificate, look_ahead=lambda _: lambda: SEEN
         )

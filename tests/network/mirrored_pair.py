@@ -18,14 +18,14 @@ from page_client import PageClient
 from slow_link import SlowLink
 from waiting import LIMIT_S, until
 
-from lacoc_client.play.controller import Controller, Seen
+from lacoc_client.play.controller import Controller, SeenFrame
 from lacoc_client.play.referee import RefereeClient
 from lacoc_client.play.spectator import Spectator
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import KeySeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import Frame, Health
 from lacoc_shared.network.session import open_client
 from lacoc_shared.record.files import record_paths
@@ -103,7 +103,7 @@ class _Player(threading.Thread):
         self._session = open_client([address], timeout_s=LIMIT_S)
         self.controller = Controller(self._session, COURT, seat, _TOKENS[seat], seat.title())
         # A mailbox of its own, because a controller keeps only the newest frame.
-        self._frames = self._session.mailbox(Keys(COURT).frame, 1000)
+        self._frames = self._session.mailbox(KeySpace(COURT).frame, 1000)
         self.controller.join()
         self.controller.ready()
         self.start()
@@ -115,7 +115,9 @@ class _Player(threading.Thread):
                 while (mail := self._frames.take()) is not None:
                     frame = decode(mail.payload, Frame)
                     if _answers(frame):
-                        self.controller.press(**_key(frame), upon=Seen(frame.match, frame.beat))
+                        self.controller.press(
+                            **_key(frame), upon=SeenFrame(frame.match, frame.beat)
+                        )
                 self.controller.poll(time.monotonic())
 
 
@@ -134,9 +136,9 @@ class _Page(PageClient):
         trips_ms = sorted(1000 * trip_s for trip_s in self.trips_s)
         return Trip(trips_ms[len(trips_ms) // 2], trips_ms[len(trips_ms) * 95 // 100])
 
-    def _take(self, kind: Kind, payload: bytes) -> None:
+    def _take(self, kind: MessageKind, payload: bytes) -> None:
         super()._take(kind, payload)
-        if kind is not Kind.FRAME or self.frame is None:
+        if kind is not MessageKind.FRAME or self.frame is None:
             return
         if _answers(self.frame):
             self.send("key", **_key(self.frame), **self.shown())
@@ -144,8 +146,11 @@ class _Page(PageClient):
             now_s = time.monotonic()
             self._pinged_s[self.send("ping")] = now_s
 
-    def _take_own(self, kind: Kind, body: dict[str, Any]) -> None:
-        if kind is Kind.REPLY and (sent_s := self._pinged_s.pop(body["id"], None)) is not None:
+    def _take_own(self, kind: MessageKind, body: dict[str, Any]) -> None:
+        if (
+            kind is MessageKind.REPLY
+            and (sent_s := self._pinged_s.pop(body["id"], None)) is not None
+        ):
             self.trips_s.append(time.monotonic() - sent_s)
         else:
             super()._take_own(kind, body)

@@ -18,7 +18,7 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.contest.access import Access
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.inputs import HeardSeat, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import Command, SentFile
@@ -365,7 +365,7 @@ def test_a_controller_comes_back_after_a_restart_of_the_court() -> None:
             assert one.reason is None
             assert one.press(1, 4) == 1  # this court has no record of the seat's earlier numbers
             until(lambda: one.wait_frame(0.1) and full.keys() == [(1, 4)])
-        others = {seat: hash_token("another token") for seat in SEATS}
+        others = {seat: new_token_hash("another token") for seat in SEATS}
         with CourtStub(address, token_hashes=others):
             until(lambda: one.wait_frame(0.1) and one.hold is Hold.REFUSED)
             assert one.link(time.monotonic()) == say("refused.wrong-token", seat="left")

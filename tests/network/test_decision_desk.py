@@ -15,7 +15,7 @@ from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import DecisionRequest, Done, Enter, OutlookRequest, Refusal
 from lacoc_shared.words import Phrase, faults, render, say
 
-HASHES = [tokens.hash_token("other"), tokens.hash_token("whistle")]
+HASHES = [tokens.new_token_hash("other"), tokens.new_token_hash("whistle")]
 
 
 def request(decision: d.Decision, token: str = "whistle", by: str = "Kubota") -> bytes:

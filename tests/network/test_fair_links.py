@@ -6,7 +6,7 @@ import pytest
 from mirrored_pair import play
 from verdicts import verdict
 
-from lacoc_server.journal.verdict import Kind
+from lacoc_server.journal.verdict import VerdictKind
 
 FAR = (0.1, 0.025)
 """Delay and jitter of the slow link, one way [s]: 200 ± 50 ms there and back."""
@@ -27,7 +27,7 @@ def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) 
     assert len(same) > 0.5 * len(pairs)
     assert all(any(pair.late) for pair in pairs if pair not in same)
     assert sum(map(any, (pair.late for pair in pairs))) <= fast.late + slow.late
-    assert verdict(played.record).kind is Kind.SAME
+    assert verdict(played.record).kind is VerdictKind.SAME
 
 
 @pytest.mark.slow

@@ -678,7 +678,7 @@ def team(name: str, seat: int) -> AssignedSeat:
     return AssignedSeat(
         id=SEATS[seat],
         team=name,
-        token_hashes=(tokens.hash_token(name),),
+        token_hashes=(tokens.new_token_hash(name),),
         robot=CONTEST_ROBOT,
         locomotion=SentFile("own.txt", b"frozen"),
     )

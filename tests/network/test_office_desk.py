@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.doors.office_desk import OfficeDesk, Wanted
+from lacoc_server.doors.office_desk import OfficeDesk, WantedMatch
 from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
@@ -26,13 +26,13 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
 
 OFFICE = "the token of the office"
-HASH = tokens.hash_token(OFFICE)
+HASH = tokens.new_token_hash(OFFICE)
 SEATS = ("left", "right")
 FINAL = say("fixture.final", stage=None)
 
 
 def seat(name: str, team: str, **changes: Any) -> AssignedSeat:
-    hashes = (tokens.hash_token(team),)
+    hashes = (tokens.new_token_hash(team),)
     return AssignedSeat(**({"id": name, "team": team, "token_hashes": hashes} | changes))
 
 
@@ -83,7 +83,7 @@ def test_an_assignment_is_answered_when_its_match_is_open() -> None:
     answer = desk.later("assign", assign())
     assert [answer(), answer(), desk.wanted] == [None, None, None]
     assert answer() is None
-    assert desk.wanted == Wanted("c1")
+    assert desk.wanted == WantedMatch("c1")
     assert answer() is None
     desk.hold("c1", Phase.LOBBY)
     assert (answer(), desk.wanted) == (Done(), None)
@@ -120,9 +120,9 @@ def test_a_match_is_withdrawn() -> None:
     desk = Desk()
     desk.hold("c1", Phase.READY)
     answer = desk.later("withdraw", withdraw())
-    assert (answer(), desk.wanted) == (None, Wanted(None))
+    assert (answer(), desk.wanted) == (None, WantedMatch(None))
     desk.hold("c1", Phase.VOID)
-    assert (answer(), desk.wanted) == (None, Wanted(None))
+    assert (answer(), desk.wanted) == (None, WantedMatch(None))
     desk.hold("", Phase.LOBBY)
     assert (answer(), desk.wanted) == (Done(), None)
     assert desk.judge("withdraw", withdraw()) == Done()
@@ -197,7 +197,7 @@ def test_an_official_match_is_closed_if_the_office_says_so() -> None:
     desk = Desk()
     desk.hold("c1", Phase.OFFICIAL)
     answer = desk.later("withdraw", withdraw(official=True))
-    assert (answer(), desk.wanted) == (None, Wanted(None))
+    assert (answer(), desk.wanted) == (None, WantedMatch(None))
     desk.hold("", Phase.LOBBY)
     assert answer() == Done()
 

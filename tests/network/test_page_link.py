@@ -13,7 +13,7 @@ from aside import run_async
 from court_stub import TOKENS, CourtStub
 from waiting import LIMIT_S, until
 
-from lacoc_client.play.controller import Controller, Seen
+from lacoc_client.play.controller import Controller, SeenFrame
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_seat import PageSeat
@@ -96,7 +96,7 @@ def test_repeats_name_no_frame_that_the_player_did_not_see(
     until(lambda: one.wait_frame(0.05) and court.beat > 30)
     assert court.named() == (0, 0)
     shown = _beat(court)
-    one.saw(Seen(1, shown))
+    one.saw(SeenFrame(1, shown))
     until(lambda: one.wait_frame(0.05) and court.named() == (1, shown))
     heard = court.network.doors()[0].heard
     until(lambda: one.wait_frame(0.05) and court.beat > shown + FRESH_BEATS)
@@ -104,7 +104,7 @@ def test_repeats_name_no_frame_that_the_player_did_not_see(
     assert court.named() == (1, shown)
     until(lambda: one.wait_frame(0.05) and SilentSeat(0) in court.inputs)
     assert court.refused["left"] == {}
-    one.press(1, 2, Seen(1, _beat(court)))
+    one.press(1, 2, SeenFrame(1, _beat(court)))
     until(lambda: one.wait_frame(0.05) and HeardSeat(0) in court.inputs)
     assert court.keys() == [(1, 2)]
 
@@ -116,7 +116,7 @@ def test_an_older_frame_takes_nothing_back(court: CourtStub, session: Session) -
     until(lambda: one.wait_frame(0.05) and court.beat > 40)
     for beat in (30, 28):
         heard = court.network.doors()[0].heard
-        one.saw(Seen(1, beat))
+        one.saw(SeenFrame(1, beat))
         until(lambda heard=heard: court.network.doors()[0].heard > heard)  # type: ignore[misc]
     assert court.named() == (1, 30)
     assert court.refused["left"] == {}

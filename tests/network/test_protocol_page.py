@@ -13,13 +13,13 @@ from court_stub import CourtStub
 from proxies import issue
 
 from lacoc_shared.codec import decode, encode
-from lacoc_shared.keyspace import JOIN_MAX_BYTES, Keys
+from lacoc_shared.keyspace import JOIN_MAX_BYTES, KeySpace
 from lacoc_shared.messages import Refusal
 from lacoc_shared.network.session import Session, open_court
 from lacoc_shared.words import say
 
 PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
-JOIN = Keys("main").request("left", "join")
+JOIN = KeySpace("main").request("left", "join")
 
 
 def of_page(court: str, authority: bytes = b"") -> zenoh.Config:

@@ -14,7 +14,7 @@ from contestant import Contestant
 from playwright.sync_api import expect
 from show import violations
 
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_robots.library import sample_gait_files
 
 pytestmark = pytest.mark.slow
@@ -81,7 +81,7 @@ def edits(student: StudentPage) -> dict[str, Any]:
 
 
 def tries(student: StudentPage) -> None:
-    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    student.until(lambda: student.last(MessageKind.STUDIO).get("present"))
     student.ask("trial", table=edits(student), sequences=SEQUENCES, keys="2")
 
 
@@ -147,8 +147,8 @@ def test_the_teacher_sets_rules_hands_out_and_takes_home(
     expect(desk.find(".handout input")).to_be_focused()
     desk.press("Enter")
     desk.is_toasted("Crab walk")
-    cem.until(lambda: cem.last(Kind.HANDED).get("title") == "Crab walk")
-    assert cem.last(Kind.HANDED)["table"] == cem.sample()
+    cem.until(lambda: cem.last(MessageKind.HANDED).get("title") == "Crab walk")
+    assert cem.last(MessageKind.HANDED)["table"] == cem.sample()
     broken = {"name": "broken.txt", "mimeType": "text/plain", "buffer": b"1\tx\t3\n"}
     desk.page.set_input_files("input[type=file]", broken)
     desk.sees(".mistakes", "broken.txt")

@@ -14,7 +14,7 @@ from venue import TOKENS, Venue
 
 from lacoc_server.contest.live.court_link import CourtLink
 from lacoc_shared.contest.file import load
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import AssignedSeat, Whereabouts
 from lacoc_shared.network.session import open_client
@@ -125,7 +125,7 @@ def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> N
     """A team's own colour and pattern show beside its score and on the board (rules 4)."""
     venue.started("serve", "--json", "--contest", str(venue.contest), name="court")
     plan = load(venue.contest)
-    hashes = {seat: (hash_token(token),) for seat, token in TOKENS.items()}
+    hashes = {seat: (new_token_hash(token),) for seat, token in TOKENS.items()}
     seats = (
         AssignedSeat(id="left", token_hashes=hashes["left"]),
         AssignedSeat(id="right", token_hashes=hashes["right"], colour="#cc3366", pattern="dots"),

@@ -16,8 +16,8 @@ from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.chances import Odds
 from lacoc_server.simulate.forks.fork import fork
 from lacoc_server.simulate.forks.kept import write_odds
-from lacoc_server.simulate.forks.line import Change
-from lacoc_server.simulate.forks.odds import Moment
+from lacoc_server.simulate.forks.line import ForkChange
+from lacoc_server.simulate.forks.odds import MomentOdds
 from lacoc_server.simulate.forks.origin import read_source
 from lacoc_shared.record.files import odds_path
 from lacoc_shared.record.schema import Setup
@@ -45,9 +45,9 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
         players = [player(arena, seat, bot) for seat, bot in enumerate(("planner", "nearest"))]
         simulate(setup, players, folder)
         file = folder / f"{MATCH}.mcap"
-        fork(read_source(file), 120, Change(restart=("left",)), match_id=FORK, folder=folder)
+        fork(read_source(file), 120, ForkChange(restart=("left",)), match_id=FORK, folder=folder)
         moments = tuple(
-            Moment(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
+            MomentOdds(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
             for beat, chance in ((62, 0.5), (100, 0.9), (161, 0.25))
         )
         odds = Odds(

@@ -9,19 +9,19 @@ from hypothesis import strategies as st
 
 from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
-    Checked,
+    CheckedGait,
     Coached,
     Compared,
     Edited,
     Evidence,
     Guessed,
     Hand,
-    Joined,
+    JoinedClass,
     LegEdit,
-    Moved,
     Named,
     Tried,
     Voted,
+    WentToPhase,
     edited,
     from_json,
     to_json,
@@ -81,8 +81,8 @@ LEG_EDITS = st.builds(
     st.tuples(*[st.integers(-3, 3).map(float)] * 3),
 )
 EVIDENCE = st.one_of(
-    st.builds(Joined),
-    st.builds(Moved, phase=st.integers(-1, 8)),
+    st.builds(JoinedClass),
+    st.builds(WentToPhase, phase=st.integers(-1, 8)),
     st.builds(
         Edited,
         version=SHORT,
@@ -97,7 +97,7 @@ EVIDENCE = st.one_of(
     ),
     st.builds(Tried, version=SHORT, facts=facts()),
     st.builds(
-        Checked, version=SHORT, keys=st.sampled_from([1, 4]), mistakes=st.sampled_from([0, 3])
+        CheckedGait, version=SHORT, keys=st.sampled_from([1, 4]), mistakes=st.sampled_from([0, 3])
     ),
     st.builds(
         Compared,
@@ -136,7 +136,9 @@ def test_every_outcome_is_whole(evidence: list[Evidence]) -> None:
 def test_progress_never_locks(evidence: list[Evidence]) -> None:
     """A student is at the phase visited last; each skipped phase is before the highest visited."""
     now = progress(evidence)
-    visited = [one.phase for one in evidence if isinstance(one, Moved) and 1 <= one.phase <= 6]
+    visited = [
+        one.phase for one in evidence if isinstance(one, WentToPhase) and 1 <= one.phase <= 6
+    ]
 
     assert now.phase == (visited[-1] if visited else 1)
     for number, (state, outcome) in enumerate(zip(now.states, now.outcomes, strict=True), 1):

@@ -8,17 +8,17 @@ import pytest
 from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
     By,
-    Checked,
+    CheckedGait,
     Coached,
     Compared,
     Evidence,
     Guessed,
     Hand,
-    Moved,
     Named,
     Rows,
     Tried,
     Voted,
+    WentToPhase,
     edited,
 )
 from lacoc_client.workshop.phases.facts import TrialFacts, differences
@@ -151,7 +151,7 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
 ) -> None:
     """Phase 6 needs a check without mistakes, and a trial of each of the four keys of that file."""
     file = to_locomotion(PostureTable(sample), SAMPLE_KEYS)
-    checked = Checked(version="1", keys=4, mistakes=0)
+    checked = CheckedGait(version="1", keys=4, mistakes=0)
     tries = [Tried(version="1", facts=try_gait(file, f"B{key}")) for key in range(4)]
     names = ["stand", "left", "forward", "right"]
 
@@ -161,13 +161,13 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
         assert codes([checked, *others], 6) == {f"phases.key-{name}"}
     posture = Tried(version="1", facts=try_gait(sample, "A2", 1.0))
     assert len(CREATIVE.look([checked, posture]).missing) == 4  # each key is named once
-    assert codes([Checked(version="1", keys=4, mistakes=2), *tries], 6) == {"phases.check"}
-    assert codes([Checked(version="2", keys=4, mistakes=0), *tries], 6) == {"phases.check"}
+    assert codes([CheckedGait(version="1", keys=4, mistakes=2), *tries], 6) == {"phases.check"}
+    assert codes([CheckedGait(version="2", keys=4, mistakes=0), *tries], 6) == {"phases.check"}
 
 
 def test_a_student_may_skip_and_come_back() -> None:
     """A student who goes to phase 4 skips phases 1 to 3, and may go back to phase 2."""
-    evidence = [Moved(phase=4), Moved(phase=2), Hand(up=True)]
+    evidence = [WentToPhase(phase=4), WentToPhase(phase=2), Hand(up=True)]
     now = progress(evidence)
 
     assert now.phase == 2
@@ -190,7 +190,13 @@ def test_evidence_that_no_task_asks_for_changes_no_task() -> None:
     """Progress that is updated after each piece of evidence equals progress computed anew."""
     evidence: list[Evidence] = [Named(word="calm")]
     before = progress(evidence)
-    for one in (Moved(phase=5), Hand(up=True), Voted(poll="calm"), Hand(up=False), Moved(phase=2)):
+    for one in (
+        WentToPhase(phase=5),
+        Hand(up=True),
+        Voted(poll="calm"),
+        Hand(up=False),
+        WentToPhase(phase=2),
+    ):
         evidence.append(one)
         before = progress(evidence, before)
         assert before == progress(evidence)

@@ -18,7 +18,7 @@ from lacoc_client.workshop.phases.evidence import (
     Evidence,
     Guessed,
     Hand,
-    Joined,
+    JoinedClass,
     LegEdit,
     Named,
 )
@@ -48,7 +48,7 @@ def names(path: Path) -> set[str]:
 def test_what_is_kept_can_be_read_again(path: Path) -> None:
     """After a store is closed and opened again, all evidence and the newest tables are there."""
     with ClassStore(path) as store:
-        numbers = [store.add("Ada", one, 1.5).result() for one in (Joined(), EDIT)]
+        numbers = [store.add("Ada", one, 1.5).result() for one in (JoinedClass(), EDIT)]
         numbers.append(store.add("りく", GUESS, 2.5).result())
         for version in ("1", "2"):
             store.keep(table("Ada", version))
@@ -58,7 +58,7 @@ def test_what_is_kept_can_be_read_again(path: Path) -> None:
 
         assert numbers == [one.number for one in kept] == [1, 2, 3]
         assert [(one.student, one.at_s) for one in kept] == [("Ada", 1.5)] * 2 + [("りく", 2.5)]
-        assert [one.evidence for one in kept] == [Joined(), EDIT, GUESS]
+        assert [one.evidence for one in kept] == [JoinedClass(), EDIT, GUESS]
         assert [one.number for one in store.evidence("Ada", after=1).result()] == [2]
         assert store.documents() == [table("Ada", "2"), table("りく", "7")]
         assert store.documents("りく") == [table("りく", "7")]

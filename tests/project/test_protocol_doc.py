@@ -109,7 +109,7 @@ def test_a_scene_is_named_by_the_hash_that_the_page_says() -> None:
 
 def test_every_key_expression() -> None:
     """The key expressions in docs/protocol.md are those of `lacoc_shared.keyspace`."""
-    keys = keyspace.Keys("main")
+    keys = keyspace.KeySpace("main")
     expected = {
         keys.frame,
         keys.event,

@@ -87,9 +87,9 @@ def test_each_shows_as_one_short_line(path: Path) -> None:
     """What a notebook shows of a match and its parts is a short line, not whole arrays."""
     match = notebook.read(path)
 
-    assert repr(match.robots[0]).startswith("Robot(seat='left', team='Ants', frames=")
-    assert repr(match.keys) == "Keys(8 keys)"
-    assert repr(match.events) == "Events(4 events)"
+    assert repr(match.robots[0]).startswith("RobotArrays(seat='left', team='Ants', frames=")
+    assert repr(match.keys) == "KeyArrays(8 keys)"
+    assert repr(match.events) == "EventArrays(4 events)"
     assert repr(match).endswith(", winner='left')")
     assert "match_id='" in repr(Record.read(path))
     for one in (match, match.robots[0], Record.read(path)):

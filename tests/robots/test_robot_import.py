@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from lacoc_robots.commands import app as robot_app
 from lacoc_robots.header.c_values import read_c
-from lacoc_robots.header.importing import Source, import_robot
+from lacoc_robots.header.importing import CFile, import_robot
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
 from lacoc_shared.words import Phrase
@@ -44,13 +44,13 @@ MAIN = "double AngMin=1.2, // modify this parameter can change the speed\n  spee
 
 def imported(header: str = HEADER, main: str = MAIN) -> tuple[dict[str, Any], tuple[Phrase, ...]]:
     """Import the files; return the robot file as TOML reads it, and the notes."""
-    made = import_robot([Source("robot6legs.h", header), Source("mainR.cpp", main)], "Hexapod")
+    made = import_robot([CFile("robot6legs.h", header), CFile("mainR.cpp", main)], "Hexapod")
     return tomllib.loads(made.toml), made.notes
 
 
 def test_the_workshops_header_is_the_sample_robot() -> None:
     """The workshop's own header gives the sample robot in all that the header says."""
-    made = import_robot([Source("robot6legs.h", HEADER), Source("mainR.cpp", MAIN)], "Hexapod")
+    made = import_robot([CFile("robot6legs.h", HEADER), CFile("mainR.cpp", MAIN)], "Hexapod")
     robot = read_robot(made.toml, "robot.toml")
     sample = read_robot(find_robot("hexapod")[1], "sample")
     assert robot.labels == sample.labels
@@ -141,7 +141,7 @@ def test_places_of_legs_are_in_shares_of_the_body() -> None:
     y = "0.05, 0, -0.05, -0.05, 0, 0.05"
     z = ", ".join(["ROBOT_LEG_R + Start_Pos[2]"] * 6)
     places = f"dReal Rjoint_x[18]={{{x}}}, Rjoint_y[18]={{{y}}}, Rjoint_z[18]={{{z}}};"
-    made = import_robot([Source("robot6legs.h", HEADER + places), Source("m.cpp", MAIN)], "Wide")
+    made = import_robot([CFile("robot6legs.h", HEADER + places), CFile("m.cpp", MAIN)], "Wide")
     assert made.notes == ()
     robot = read_robot(made.toml, "robot.toml")
     assert robot.legs[0].position_m == pytest.approx((0.05, 0.05, -0.01))

@@ -18,8 +18,8 @@ from lacoc_arenas import arena as arenas
 from lacoc_client.play.bot_player import BotPlayer
 from lacoc_client.play.controller import Controller
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.contest.live.court_link import Asked, CourtLink, CourtResult, NoAnswer
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_server.contest.live.court_link import Asked, CourtLink, CourtResult, Unanswered
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import AssignedSeat
 from lacoc_shared.network.session import Session, open_client
@@ -42,7 +42,7 @@ _calls = itertools.count(1)
 @functools.cache
 def hash_of(team: str) -> str:
     """Return the hash of a team's token; a team has one token for all its matches."""
-    return hash_token(token(team))
+    return new_token_hash(token(team))
 
 
 def token(team: str) -> str:
@@ -95,7 +95,7 @@ class Office:
     def answer(self, ask: Callable[[], Asked]) -> Done | Refusal:
         """Ask a court until it answers, as an office does: a busy machine may be late."""
         end_s = time.monotonic() + LIMIT_S
-        while isinstance(answer := ask().wait(), NoAnswer):
+        while isinstance(answer := ask().wait(), Unanswered):
             assert time.monotonic() < end_s, "the court does not answer"
         return answer
 

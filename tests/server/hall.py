@@ -13,7 +13,7 @@ from waiting import LIMIT_S
 from lacoc_client.play.asking import fetch
 from lacoc_client.play.referee import RefereeClient
 from lacoc_client.play.spectator import Spectator
-from lacoc_shared.contest.file import Contest, load
+from lacoc_shared.contest.file import ContestFile, load
 from lacoc_shared.decisions import Resume, Start
 from lacoc_shared.messages import Event, Frame, Health, SeatFrame
 from lacoc_shared.network.session import open_client
@@ -36,7 +36,7 @@ class Hall:
         self.contest.write_text(
             self.contest.read_text().replace("127.0.0.1", host).replace("= 0.2", "= 2.0")
         )
-        self.plan: Contest = load(self.contest)
+        self.plan: ContestFile = load(self.contest)
         name, self.court = self.plan.court()
         self.process = stack.enter_context(served(self.contest, folder / "recordings"))
         self.session = stack.enter_context(open_client([self.court.address()]))

@@ -12,7 +12,7 @@ import msgspec
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
-from lacoc_robots.library import GaitFiles, find_robot, sample_gait_files
+from lacoc_robots.library import FolderGait, find_robot, sample_gait_files
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.match.physics import Fault, MakePhysics
@@ -61,7 +61,7 @@ def join(
 
 
 @functools.cache
-def _files(robot: str) -> tuple[tuple[str, bytes], GaitFiles]:
+def _files(robot: str) -> tuple[tuple[str, bytes], FolderGait]:
     return find_robot(robot), sample_gait_files(robot)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from structlog.testing import capture_logs
 
-from lacoc_server.court.archive import Archive
+from lacoc_server.court.archive import RecordArchive
 from lacoc_server.court.log import CourtLog
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.record.writer import RecordWriter
@@ -28,7 +28,7 @@ HEADER = Header(
 def said(folder: Path, writer: RecordWriter) -> list[str]:
     """Let an archive finish a match's record; return the lines that this adds to the log."""
     with capture_logs() as lines:
-        archive = Archive(folder, "main", CourtLog("main"))
+        archive = RecordArchive(folder, "main", CourtLog("main"))
         archive.take(MATCH, writer)
         archive.close()
     assert all((line["match_id"], line["kind"]) == (MATCH, "record") for line in lines)

@@ -9,7 +9,7 @@ from lacoc_server.court.assigning import staying
 from lacoc_server.match.match import Match
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import decode, encode
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import WAITING, Assigned, AssignedSeat
@@ -18,7 +18,7 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
 SEATS = ("left", "right")
-HASHES = {team: hash_token(team) for team in ("Ants", "Bees", "Cats")}
+HASHES = {team: new_token_hash(team) for team in ("Ants", "Bees", "Cats")}
 OTHER = SentFile("other.txt", b"x")
 
 

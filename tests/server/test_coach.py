@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
-from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import STEP_DEG, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
@@ -144,10 +144,10 @@ def test_goals() -> None:
     task = sample_task(2)
     forward = try_table(task, task.table.angles_deg)
     left = try_table(sample_task(1), sample_task(1).table.angles_deg)
-    assert score(forward, Goal.FORWARD) == pytest.approx(forward.speed_mm_s, abs=5)
-    assert score(left, Goal.LEFT) > 40 > 0 > score(left, Goal.RIGHT)
+    assert goal_score(forward, Goal.FORWARD) == pytest.approx(forward.speed_mm_s, abs=5)
+    assert goal_score(left, Goal.LEFT) > 40 > 0 > goal_score(left, Goal.RIGHT)
     lies = Figures(**{**vars(forward), "belly_share": 0.5})
-    assert score(lies, Goal.FORWARD) < 0
+    assert goal_score(lies, Goal.FORWARD) < 0
 
 
 def sample_task(key: int) -> Task:

@@ -22,7 +22,7 @@ from lacoc_server.commands.replay.verify import app as verify_app
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import unfinished
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
@@ -107,7 +107,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
     """A cut record verifies up to the cut, and a court goes on from there."""
     path = segment(folder, left_behind[: round(share * len(left_behind))])
     found = verdict(path)
-    assert found.kind is Kind.SAME
+    assert found.kind is VerdictKind.SAME
     left = unfinished(folder, "main", OTHELLO)
     assert left is not None
     assert left.match.beats + 1 == found.beats
@@ -132,7 +132,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(
         path = segment(folder, bytes(data))
         try:
             found = verdict(path)
-            told["verify"] += found.kind is not Kind.SAME or found.beats < BEATS
+            told["verify"] += found.kind is not VerdictKind.SAME or found.beats < BEATS
         except UserError:
             told["verify"] += 1
         try:

@@ -4,7 +4,7 @@ import pytest
 from stage import join
 
 from lacoc_robots.limits import Limits
-from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_server.match.entry import JoinCheck, weigh_in
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import PROTOCOL, Join, SentFile
@@ -124,7 +124,7 @@ def asks(team: str = "Ants", **files: SentFile | None) -> Join:
     return Join(protocol=PROTOCOL, token="", name=team, **files)
 
 
-CONTEST = Admission(
+CONTEST = JoinCheck(
     HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion, Limits(), (Level.LOCOMOTION,)
 )
 SAMPLE = asks(robot=HEXAPOD.robot, postures=HEXAPOD.postures, locomotion=HEXAPOD.locomotion)

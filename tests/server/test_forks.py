@@ -15,14 +15,14 @@ from lacoc_arenas import arena as arenas
 from lacoc_server.commands.replay.fork import app as fork_app
 from lacoc_server.commands.replay.verify import app as verify_app
 from lacoc_server.contest.league.facts import Planned, Played, new
-from lacoc_server.contest.verify.games import Game, check_game
+from lacoc_server.contest.verify.games import GameToCheck, check_game
 from lacoc_server.journal.replay import resume, verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.fork import Forked, fork
-from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play
-from lacoc_server.simulate.forks.line import Change, of_bot
-from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play_fork
+from lacoc_server.simulate.forks.line import ForkChange, of_bot
+from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.simulate.forks.script import Script
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.decisions import TakeBack
@@ -45,7 +45,7 @@ MATCH = "20260501-100000-main-001"
 
 
 @pytest.fixture(scope="module")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
+def source(tmp_path_factory: pytest.TempPathFactory) -> ForkSource:
     """Give a whole match's record, to fork from it."""
     folder = tmp_path_factory.mktemp("record")
     arena = arenas.load("othello", QUICK)
@@ -55,16 +55,16 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
 
 
 @pytest.fixture(scope="module")
-def file(source: Source, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def file(source: ForkSource, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the path of the record in `source`."""
     return next(tmp_path_factory.getbasetemp().glob(f"record*/{MATCH}.mcap"))
 
 
-def beat_of(source: Source, phase: str) -> int:
+def beat_of(source: ForkSource, phase: str) -> int:
     return next(one.beat for one in source.record.events if one.data.get("after") == phase)
 
 
-def flips(source: Source) -> list[tuple[int, int]]:
+def flips(source: ForkSource) -> list[tuple[int, int]]:
     return [(one.beat, one.number) for one in source.record.events if "marker" in one.data]
 
 
@@ -73,12 +73,12 @@ def proven(forked: Forked) -> Record:
     assert forked.record is not None
     record = Record.read(forked.record)
     verdict = next(one for one in verify(record, processes=1) if isinstance(one, Verdict))
-    assert (record.cut, verdict.kind) == (None, Kind.SAME)
+    assert (record.cut, verdict.kind) == (None, VerdictKind.SAME)
     return record
 
 
 @pytest.mark.slow
-def test_a_fork_without_a_change_is_the_record(source: Source, tmp_path: Path) -> None:
+def test_a_fork_without_a_change_is_the_record(source: ForkSource, tmp_path: Path) -> None:
     """From any phase, a fork goes on as its record, bit for bit; only match id and court differ."""
     started, ended = beat_of(source, "PLAYING"), beat_of(source, "FINISHED")
     for beat in (30, started - 3, started + 120, ended):
@@ -93,7 +93,7 @@ def test_a_fork_without_a_change_is_the_record(source: Source, tmp_path: Path) -
         assert again.header.match_id == again.sheets[0][1].match_id == f"f{beat}"
 
 
-def test_a_fork_names_its_origin(source: Source, tmp_path: Path) -> None:
+def test_a_fork_names_its_origin(source: ForkSource, tmp_path: Path) -> None:
     """A fork's header names its origin: match, beat and record; a fork can be an origin too."""
     beat = beat_of(source, "FINISHED")
     first = fork(source, beat, match_id="first", folder=tmp_path)
@@ -111,7 +111,7 @@ def test_a_fork_names_its_origin(source: Source, tmp_path: Path) -> None:
         fork(source, beat, match_id="first", folder=tmp_path)
 
 
-def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> None:
+def test_a_take_back_agrees_with_the_dry_run(source: ForkSource, tmp_path: Path) -> None:
     """A fork that takes an event back ends with the scores that the referee's dry run gave."""
     events = flips(source)
     assert events
@@ -119,15 +119,17 @@ def test_a_take_back_agrees_with_the_dry_run(source: Source, tmp_path: Path) -> 
     asks = [Decide("referee", "", TakeBack(number, dry_run=True)) for _, number in events]
     for (beat, number), reply in zip(events, match.beat(asks).outcomes, strict=True):
         assert isinstance(reply, DecisionReply)
-        forked = fork(source, beat + 1, Change(take_back=number))
+        forked = fork(source, beat + 1, ForkChange(take_back=number))
         assert (forked.result.scores, forked.changes) == (reply.scores, reply.changes)
         assert (forked.phase, forked.result.official) == (Phase.FINISHED, "")
     with pytest.raises(UserError, match="refuses this change at beat"):
-        fork(source, events[0][0] - 5, Change(take_back=events[0][1]))  # it has not happened yet
+        fork(
+            source, events[0][0] - 5, ForkChange(take_back=events[0][1])
+        )  # it has not happened yet
 
 
 @pytest.mark.slow
-def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path) -> None:
+def test_bots_and_a_script_take_over(source: ForkSource, file: Path, tmp_path: Path) -> None:
     """If the recorded bots take over without a delay, a fork has the same result as its record.
 
     The same delays of the bots give the same result, and other delays another one. A script
@@ -139,7 +141,7 @@ def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path)
 
     def ended(beat: int, variant: int) -> str:
         players = {seat: of_bot(bot, seat, variant) for seat, bot in enumerate(bots)}
-        return fork(source, beat, Change(players=players)).result.digest
+        return fork(source, beat, ForkChange(players=players)).result.digest
 
     assert source.record.result is not None
     assert ended(beat, 0) == source.record.result.digest
@@ -152,7 +154,7 @@ def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path)
         match_id="scripted",
         folder=str(tmp_path),
     )
-    record = proven(play(job))
+    record = proven(play_fork(job))
     own = [
         (at, item.key)
         for at, items in record.inputs.items()
@@ -173,16 +175,16 @@ def test_bots_and_a_script_take_over(source: Source, file: Path, tmp_path: Path)
     assert quiet == []  # the record of the other seat goes on until the end
 
 
-def test_an_unfinished_match_goes_on(source: Source, tmp_path: Path) -> None:
+def test_an_unfinished_match_goes_on(source: ForkSource, tmp_path: Path) -> None:
     """A record that ends in play goes on: its seats fall silent, and play ends."""
     whole = source.record
-    cut = Source(whole.until(beat_of(source, "PLAYING") + 40), source.messages)
+    cut = ForkSource(whole.until(beat_of(source, "PLAYING") + 40), source.messages)
     forked = fork(cut, cut.last_beat + 1, match_id="on")
     assert (forked.phase, forked.result.computed != "") == (Phase.FINISHED, True)
     assert fork(cut, cut.last_beat, match_id="on", seconds=0.5).beats == 25
 
 
-def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
+def test_an_assigned_match_gives_its_fork_no_call(source: ForkSource) -> None:
     """A fork of an assigned match has the call "fork", and a fixture that names that match.
 
     A fork's id, such as "fork-1-at-60-of-MATCH", can't be read as the name of a court's match.
@@ -195,14 +197,14 @@ def test_an_assigned_match_gives_its_fork_no_call(source: Source) -> None:
     record.headers = [
         replace(one, setup=replace(one.setup, assigned=assigned)) for one in record.headers
     ]
-    made = stem(Source(record, source.messages), 60, "f").setup
+    made = stem(ForkSource(record, source.messages), 60, "f").setup
     assert made.assigned is not None
     assert made.assigned.call == "fork"
     assert MATCH in render(made.assigned.fixture)
     assert MatchName.parse(f"fork-1-at-60-of-{MATCH}") is None
 
 
-def test_a_contest_with_a_fork_is_found_out(source: Source, tmp_path: Path) -> None:
+def test_a_contest_with_a_fork_is_found_out(source: ForkSource, tmp_path: Path) -> None:
     """If a fork replaces a published record, the check says which match it is a fork of."""
     (tmp_path / "records").mkdir()
     forked = fork(source, source.last_beat, match_id="f", folder=tmp_path / "records")
@@ -212,7 +214,7 @@ def test_a_contest_with_a_fork_is_found_out(source: Source, tmp_path: Path) -> N
         record="f.mcap",
     )  # fmt: skip
     plan = new(Planned, stage="s", format="round-robin", arena="othello", arena_settings=QUICK)
-    game = Game(played=played, plan=plan, files=((), ()))
+    game = GameToCheck(played=played, plan=plan, files=((), ()))
     found = [render(one) for one in check_game(tmp_path, game, proven=False).wrong]
     assert any(f"it is a fork of match {MATCH}" in one for one in found), found
 
@@ -241,7 +243,7 @@ def test_the_command_writes_a_fork_and_verify_says_so(file: Path, tmp_path: Path
 
 
 @pytest.mark.slow
-def test_forks_can_be_told_apart(file: Path, source: Source, tmp_path: Path) -> None:
+def test_forks_can_be_told_apart(file: Path, source: ForkSource, tmp_path: Path) -> None:
     """The command, its JSON and `replay info` say in both languages how a fork was made.
 
     A bot's file is named without its folders, and each of several forks has other delays.
@@ -279,7 +281,7 @@ def test_forks_can_be_told_apart(file: Path, source: Source, tmp_path: Path) -> 
         use("en")
 
 
-def test_a_fork_of_an_older_version_does_not_say_how(source: Source, tmp_path: Path) -> None:
+def test_a_fork_of_an_older_version_does_not_say_how(source: ForkSource, tmp_path: Path) -> None:
     """A record whose origin has no changes, from an older version, is read, and says so."""
     older = {"match_id": MATCH, "beat": 60, "record_hash": source.hash}
     assert decode(encode(older), Origin).changes is None
@@ -332,7 +334,7 @@ def test_a_mistake_is_explained(
     assert [*file.parent.glob("fork*")] == []
 
 
-def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: Path) -> None:
+def test_a_record_that_can_not_be_forked(file: Path, source: ForkSource, tmp_path: Path) -> None:
     """A file that is no record, a damaged record and one of another MuJoCo can't be forked.
 
     Each is refused with its reason.
@@ -358,4 +360,4 @@ def test_a_record_that_can_not_be_forked(file: Path, source: Source, tmp_path: P
     versions = {**record.header.versions, "mujoco": "1.2.3"}
     record.headers = [replace(record.header, versions=versions)]
     with pytest.raises(UserError, match=r"made with MuJoCo 1\.2\.3"):
-        fork(Source(record, source.messages), 100)
+        fork(ForkSource(record, source.messages), 100)

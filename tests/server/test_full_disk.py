@@ -19,7 +19,7 @@ from running import Party, party, served, write_contest
 from waiting import LIMIT_S
 
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Abort, Halt, Next, Resume
 from lacoc_shared.gait.tables import Level
@@ -147,7 +147,7 @@ def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: P
         shutil.copytree(disk.records, kept)
     *_, verdict = verify(read(kept))
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict.kind is VerdictKind.SAME
 
 
 SYNC = """

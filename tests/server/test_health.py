@@ -15,7 +15,7 @@ from lacoc_server.court.health import MatchHealth, advice
 from lacoc_server.doors.inbox import Door
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.simulate import player, simulate
@@ -324,7 +324,7 @@ def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
     assert record.health.worst_late_ms == 300.0
     *_, verdict = verify(record)
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict.kind is VerdictKind.SAME
     said = CliRunner().invoke(app, ["info", str(path)]).output
     assert "Rematch advised: the worst beat began 300 ms late" in said
     exported = json.loads(result_json(record))

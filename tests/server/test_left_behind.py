@@ -18,7 +18,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import Unfinished, unfinished
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
@@ -245,7 +245,7 @@ def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
     (record,) = packed(folder, "001")
     *_, verdict = verify(Record.read(record))
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict.kind is VerdictKind.SAME
 
 
 def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:

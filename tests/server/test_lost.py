@@ -24,7 +24,7 @@ from lacoc_client.play.asking import NoAnswer, ask
 from lacoc_client.play.controller import Controller, Hold
 from lacoc_shared.decisions import Adjust, Declare, Halt, Start
 from lacoc_shared.inputs import SilentSeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import DecisionReply, DecisionRequest
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
@@ -136,7 +136,7 @@ def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall.bot("left")
     hall.bot("right")
     hall.play()
-    keys, decision = Keys("main"), Adjust(seat="left", points=3)
+    keys, decision = KeySpace("main"), Adjust(seat="left", points=3)
     token = hall.plan.secrets.referee("main")
     request = DecisionRequest(token=token, by="Kubota", reason="a test", decision=decision)
     os.kill(hall.process.pid, signal.SIGSTOP)

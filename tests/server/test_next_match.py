@@ -21,10 +21,10 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
-from lacoc_server.match.entry import Admission
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_server.match.entry import JoinCheck
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.decisions import Abort, Halt, Next, Set, Start
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SeatFrame, SentFile, Sheet
 from lacoc_shared.messages.office import open_match
 from lacoc_shared.network.session import Session, open_client
@@ -66,13 +66,13 @@ def room(tmp_path: Path) -> Iterator[Room]:
     """Run a court in a thread, so that a test can fake a full disk; give the court's clients."""
     arena = arenas.load("othello", {"match": {"countdown_s": 0.02}})
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    admission = Admission(*files, Limits(), arena.match.open_levels)
-    opened = open_match({seat: [hash_token(token)] for seat, token in TOKENS.items()})
-    inbox = Inbox(Keys("main"), list(TOKENS), admission, secrets.token_bytes)
-    desk = DecisionDesk([hash_token(WHISTLE)])
+    join_check = JoinCheck(*files, Limits(), arena.match.open_levels)
+    opened = open_match({seat: [new_token_hash(token)] for seat, token in TOKENS.items()})
+    inbox = Inbox(KeySpace("main"), list(TOKENS), join_check, secrets.token_bytes)
+    desk = DecisionDesk([new_token_hash(WHISTLE)])
     over = threading.Event()
     with (
-        CourtNetwork(Keys("main"), ["tcp/127.0.0.1:0"], inbox, desk) as network,
+        CourtNetwork(KeySpace("main"), ["tcp/127.0.0.1:0"], inbox, desk) as network,
         ExitStack() as stack,
     ):
         settings = CourtSettings("main", arena, {}, tmp_path / "recordings", assigned=opened)

@@ -18,9 +18,9 @@ from lacoc_client.film.moments import from_file
 from lacoc_server.commands.replay.highlights import app as highlights_app
 from lacoc_server.simulate import player, simulate, software
 from lacoc_server.simulate.forks import chances, odds
-from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute, margin, margins
+from lacoc_server.simulate.forks.chances import ChanceJob, Odds, Wish, compute_odds, margin, margins
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
-from lacoc_server.simulate.forks.odds import Moment
+from lacoc_server.simulate.forks.odds import MomentOdds
 from lacoc_server.simulate.forks.origin import read_source
 from lacoc_shared.record.files import odds_path
 from lacoc_shared.seat import BEAT_S
@@ -53,8 +53,8 @@ def test_student(t: float, freedom: int, expected: float) -> None:
     assert odds.student(t, freedom) == pytest.approx(expected, abs=5e-4)
 
 
-def moment(beat: int, chance: float) -> Moment:
-    return Moment(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
+def moment(beat: int, chance: float) -> MomentOdds:
+    return MomentOdds(beat=beat, clock_s=beat / 50, margins=(), chance=chance)
 
 
 def test_swings() -> None:
@@ -77,7 +77,7 @@ def test_five_seconds_are_near() -> None:
     """Moments five seconds apart share their forks, wherever they are in the match."""
     for beat in range(0, 4000, 7):
         pair = [
-            Moment(beat=at, clock_s=at * BEAT_S, margins=(margin,), chance=0.0, key="k")
+            MomentOdds(beat=at, clock_s=at * BEAT_S, margins=(margin,), chance=0.0, key="k")
             for at, margin in ((beat, 1.0), (beat + round(odds.NEAR_S / BEAT_S), -1.0))
         ]
         assert [one.chance for one in odds.pooled(pair)] == [0.5, 0.5]
@@ -87,10 +87,10 @@ def test_neighbours_share_their_forks() -> None:
     """Forks of the moments before and after count, but not far ones, and not at the end."""
     margins = {0: (3.0, 1.0), 50: (-2.0, -4.0), 100: (1.0, 1.0), 400: (7.0, 7.0)}
     found = [
-        Moment(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
+        MomentOdds(beat=beat, clock_s=beat / 50, margins=some, chance=0.0, key="k")
         for beat, some in margins.items()
     ]
-    end = Moment(beat=410, clock_s=8.2, margins=(9.0,), chance=0.5)
+    end = MomentOdds(beat=410, clock_s=8.2, margins=(9.0,), chance=0.5)
     pooled = odds.pooled([end, *found])
     assert [one.beat for one in pooled] == [0, 50, 100, 400, 410]
     assert [one.chance for one in pooled] == [
@@ -129,7 +129,7 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
     file = tmp_path / f"{MATCH}.mcap"
     wish = Wish(file=str(file), bots=("planner", "nearest"), forks=2, step_s=2.0)
     engine, told = Counting(), []
-    *_, found = compute(wish, engine, None, lambda done, of: told.append((done, of)))
+    *_, found = compute_odds(wish, engine, None, lambda done, of: told.append((done, of)))
     assert engine.forks == 2 * (len(found.moments) - 1)
     assert told[-1][0] == told[-1][1] == len(found.moments) == 3
     assert found.moments[-1].margins == (margin(result, ("left", "right")),)
@@ -141,14 +141,14 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
     write_odds(path, found)
     assert read_odds(path) == found
     more = Counting()
-    *_, again = compute(replace(wish, forks=3), more, read_odds(path), lambda done, of: None)
+    *_, again = compute_odds(replace(wish, forks=3), more, read_odds(path), lambda done, of: None)
     assert more.forks <= engine.forks  # of each moment that stays, one more fork
     for one in again.moments[:-1]:
         known = next((old for old in found.moments if old.beat == one.beat), None)
         assert known is None or one.margins[:2] == known.margins
     other = Counting()
     wished = replace(wish, bots=("straight", "nearest"))
-    assert [*compute(wished, other, read_odds(path), lambda done, of: None)]
+    assert [*compute_odds(wished, other, read_odds(path), lambda done, of: None)]
     assert other.forks == 4
 
     job = ChanceJob(file=str(file), beat=found.moments[0].beat, bots=wish.bots, variants=(1, 2))

@@ -24,13 +24,13 @@ from lacoc_client.play.asking import NotNow
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient
 from lacoc_client.play.team_way import where
-from lacoc_server.contest.live.court_link import CourtLink, NoAnswer
+from lacoc_server.contest.live.court_link import CourtLink, Unanswered
 from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_shared.command.child import NOT_AGAIN
 from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start
-from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, Keys
+from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, KeySpace
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import EARLIER_OFFICE, WAITING, Whereabouts
 from lacoc_shared.mistakes import UserError
@@ -128,7 +128,7 @@ def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
     assert played.result.official == result.outcome
     *_, verdict = verify(played)
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict.kind is VerdictKind.SAME
     waiting.until(lambda: waiting.link.call == other)
 
 
@@ -342,9 +342,9 @@ def test_strangers_are_refused_and_counted(waiting: Office) -> None:
 
 
 def test_a_link_without_a_court_says_that_there_is_no_answer(office: Office) -> None:
-    """A request to a court that does not exist gives `NoAnswer`; the link has no call or result."""
+    """A request to a court that does not exist gives `Unanswered`; the link has no call."""
     link = CourtLink(office.session, "nowhere", "any token of an office")
-    assert link.withdraw("a-call").wait() is NoAnswer.NO_ANSWER
+    assert link.withdraw("a-call").wait() is Unanswered.NO_ANSWER
     link.poll()
     assert (link.is_there, link.call, link.phase, link.result) == (False, None, None, None)
 
@@ -378,7 +378,7 @@ def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
         assert [seat.robot for seat in sheet.seats] == ["Quadruped", "Hexapod"]
     *_, verdict = verify(record(tmp_path, match_id))
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.SAME
+    assert verdict.kind is VerdictKind.SAME
 
 
 def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
@@ -411,7 +411,7 @@ def test_a_team_asks_where_it_plays(waiting: Office) -> None:
     Nobody else can answer for the court. A client that offers to answer such questions receives
     none, so it collects no token.
     """
-    keys = Keys("main")
+    keys = KeySpace("main")
     there = Whereabouts(team="Ants", state="waits", said=say("team.awaits-draw"))
     assert waiting.link.tell({hash_of("Ants"): there}).wait() == Done()
     thief = CourtLink(waiting.session, "main", "a guess").tell({hash_of("Ants"): there}).wait()

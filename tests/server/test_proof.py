@@ -14,8 +14,8 @@ from verdicts import verdict
 
 from lacoc_server.commands.replay.fork import app as fork_app
 from lacoc_server.commands.replay.verify import app as verify_app
-from lacoc_server.journal.section import Difference, Finding
-from lacoc_server.journal.verdict import Kind, Verdict, conclude, other_arithmetic
+from lacoc_server.journal.section import Difference, SectionFinding
+from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude, other_arithmetic
 from lacoc_server.world import arithmetic
 from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.messages import Frame
@@ -63,23 +63,31 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 @pytest.mark.parametrize(
     ("made_by", "finding", "kind"),
     [
-        (HERE, Finding(1, 9), Kind.SAME),
-        (THERE, Finding(1, 9), Kind.SAME),
-        ({}, Finding(1, 9), Kind.SAME),
-        (HERE, Finding(1, 9, Difference(5, ("poses",))), Kind.DIFFERS),
-        (THERE, Finding(1, 9, Difference(5, ("poses",)), None, 1e-9), Kind.OTHER_ARITHMETIC),
-        ({}, Finding(1, 9, Difference(5, ("poses",)), None, 1e-9), Kind.OTHER_ARITHMETIC),
-        (THERE, Finding(1, 9, *[Difference(5, ("poses",))] * 2, 1e-3), Kind.DIFFERS),
+        (HERE, SectionFinding(1, 9), VerdictKind.SAME),
+        (THERE, SectionFinding(1, 9), VerdictKind.SAME),
+        ({}, SectionFinding(1, 9), VerdictKind.SAME),
+        (HERE, SectionFinding(1, 9, Difference(5, ("poses",))), VerdictKind.DIFFERS),
+        (
+            THERE,
+            SectionFinding(1, 9, Difference(5, ("poses",)), None, 1e-9),
+            VerdictKind.OTHER_ARITHMETIC,
+        ),
+        (
+            {},
+            SectionFinding(1, 9, Difference(5, ("poses",)), None, 1e-9),
+            VerdictKind.OTHER_ARITHMETIC,
+        ),
+        (THERE, SectionFinding(1, 9, *[Difference(5, ("poses",))] * 2, 1e-3), VerdictKind.DIFFERS),
     ],
 )
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
-    made_by: Mapping[str, str], finding: Finding, kind: Kind
+    made_by: Mapping[str, str], finding: SectionFinding, kind: VerdictKind
 ) -> None:
     """A replay must have the record's bits; with another arithmetic, poses may differ a little."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
-    assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
-    assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
-    if kind is Kind.OTHER_ARITHMETIC:
+    assert (found.kind, found.same) == (kind, kind is not VerdictKind.DIFFERS)
+    assert found.differs_at == (5 if kind is VerdictKind.DIFFERS else None)
+    if kind is VerdictKind.OTHER_ARITHMETIC:
         assert found.worst == (1, 9)
         assert "at most by 1.0e-09 m or rad, in beats 1 to 9" in render(found.said)
 
@@ -88,16 +96,19 @@ def test_each_segment_says_what_made_it() -> None:
     """A section may be replayed with other bits only if another arithmetic recorded part of it."""
     headers = [header(), header(100, THERE)]
     bits = Difference(50, ("poses",))
-    for first, last, kind in ((1, 99, Kind.DIFFERS), (90, 110, Kind.OTHER_ARITHMETIC)):
-        found = conclude(headers, 200, 200, [None], [Finding(first, last, bits)])
+    for first, last, kind in (
+        (1, 99, VerdictKind.DIFFERS),
+        (90, 110, VerdictKind.OTHER_ARITHMETIC),
+    ):
+        found = conclude(headers, 200, 200, [None], [SectionFinding(first, last, bits)])
         assert found.kind is kind
 
 
 def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
     """The verdict names the first beat that differs, and all differences in that beat."""
     findings = [
-        Finding(1, 9, Difference(7, ("state-hash", "poses"))),
-        Finding(10, 19, Difference(12, ("poses",))),
+        SectionFinding(1, 9, Difference(7, ("state-hash", "poses"))),
+        SectionFinding(10, 19, Difference(12, ("poses",))),
     ]
     judged = [Difference(7, ("events", "seats"))]
     found = conclude([header()], 20, 20, judged, findings)
@@ -121,10 +132,10 @@ def test_a_fingerprint_names_the_machine() -> None:
 def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
     """The verdict on an honest record is "same", even if the record has no fingerprint."""
     for path in paths:
-        assert verdict(Record.read(path)).kind is Kind.SAME
+        assert verdict(Record.read(path)).kind is VerdictKind.SAME
     older = with_arithmetic(Record.read(paths[0]), {})
     found = verdict(older, processes=2)
-    assert found.kind is Kind.SAME
+    assert found.kind is VerdictKind.SAME
     assert found.sections == len(older.snapshots) + 1
 
 
@@ -134,7 +145,7 @@ def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> N
     """Verified with another arithmetic, honest records still pass, and no forgery does."""
     lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
     found = [json.loads(line) for line in lines]
-    assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found
+    assert [one["kind"] for one in found] == [VerdictKind.OTHER_ARITHMETIC] * len(paths), found
     assert all(0 < one["distance"] < 1e-5 for one in found)
     words = ["forge", *map(str, paths), "--forgeries", str(FORGERIES), "--seed", "2"]
     assert json.loads(elsewhere("benchmarks.proof", words))["passed"] == []
@@ -171,14 +182,14 @@ def test_a_pose_is_told_beyond_the_bound_only(
 @pytest.mark.parametrize(
     ("nudge_m", "made_by", "kind"),
     [
-        (1e-12, {**THERE, "model": "0" * 16}, Kind.OTHER_ARITHMETIC),
-        (1e-6, {**THERE, "model": "0" * 16}, Kind.DIFFERS),
-        (1e-12, THERE, Kind.DIFFERS),
-        (1e-12, {}, Kind.DIFFERS),
+        (1e-12, {**THERE, "model": "0" * 16}, VerdictKind.OTHER_ARITHMETIC),
+        (1e-6, {**THERE, "model": "0" * 16}, VerdictKind.DIFFERS),
+        (1e-12, THERE, VerdictKind.DIFFERS),
+        (1e-12, {}, VerdictKind.DIFFERS),
     ],
 )
 def test_a_model_may_have_other_last_bits(
-    nudge_m: float, made_by: Mapping[str, str], kind: Kind, paths: Sequence[Path]
+    nudge_m: float, made_by: Mapping[str, str], kind: VerdictKind, paths: Sequence[Path]
 ) -> None:
     """A replay's scene may have other last bits than the record's only if the models differ too."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
@@ -209,10 +220,10 @@ def test_a_model_may_have_other_last_bits(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("rule", "kind"), [(None, Kind.SAME), (say("rule.practice"), Kind.DIFFERS)]
+    ("rule", "kind"), [(None, VerdictKind.SAME), (say("rule.practice"), VerdictKind.DIFFERS)]
 )
 def test_a_sheet_of_an_earlier_version_says_no_rule(
-    rule: Phrase | None, kind: Kind, paths: Sequence[Path]
+    rule: Phrase | None, kind: VerdictKind, paths: Sequence[Path]
 ) -> None:
     """A record whose sheets lack the rule is the same; one with another rule differs."""
     record = Record.read(paths[0])

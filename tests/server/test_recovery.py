@@ -16,7 +16,7 @@ from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient
 from lacoc_client.play.spectator import Spectator
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.verdict import Kind
+from lacoc_server.journal.verdict import VerdictKind
 from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Declare, Halt, Next, Official, Resume, Start
 from lacoc_shared.gait.tables import Level
@@ -66,7 +66,7 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
         those.decide(Resume(), Phase.PLAYING)
         seq = those.left.press(Level.LOCOMOTION, 1)
         those.until(lambda: those.frame.seats[0].applied_seq == seq)
-    assert verdict(packed(folder)).kind is Kind.SAME
+    assert verdict(packed(folder)).kind is VerdictKind.SAME
 
 
 @pytest.mark.usefixtures("has_other_arithmetic")
@@ -98,7 +98,7 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
     made_by = [header.arithmetic["functions"] for header in record.headers]
     assert len(set(made_by)) == 2
     found = verdict(record)
-    assert found.kind is Kind.OTHER_ARITHMETIC, render(found.said)
+    assert found.kind is VerdictKind.OTHER_ARITHMETIC, render(found.said)
 
 
 def test_changed_settings_count_from_the_next_match(contest: Path, folder: Path) -> None:
@@ -148,7 +148,7 @@ def test_the_health_verdict_outlives_a_kill(contest: Path, folder: Path) -> None
     assert record.health.resumptions == 1
     assert record.health.played_beats > 150
     assert all(seat.expected >= 20 for seat in record.health.seats)
-    assert verdict(record).kind is Kind.SAME
+    assert verdict(record).kind is VerdictKind.SAME
 
 
 def kill(court: subprocess.Popen[str]) -> None:

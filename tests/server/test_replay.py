@@ -12,7 +12,7 @@ from verdicts import verdict
 from lacoc_arenas import arena as arenas
 from lacoc_server.journal.journal import SNAPSHOT_TICKS, Journal
 from lacoc_server.journal.replay import resume, verify
-from lacoc_server.journal.verdict import Kind
+from lacoc_server.journal.verdict import VerdictKind
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate import player, simulate
 from lacoc_server.world.world import World
@@ -23,7 +23,7 @@ from lacoc_shared.messages import Event, Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import KINDS
-from lacoc_shared.record.stream import walk
+from lacoc_shared.record.stream import walk_messages
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import render, say
@@ -86,7 +86,7 @@ def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
     record = Record.read(tmp_path / "m.mcap")
     assert (record.cut, record.result is not None) == (None, True)
     found = verdict(record)
-    assert (found.kind, found.differs_at) == (Kind.SAME, None)
+    assert (found.kind, found.differs_at) == (VerdictKind.SAME, None)
     assert found.beats == record.last_beat + 1
     assert found.frames > 1000
 
@@ -96,7 +96,7 @@ def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[
     record = Record.read(live[0])
     assert record.cut
     found = verdict(record)
-    assert (found.kind, found.beats, found.frames) == (Kind.SAME, BEATS, len(record.frames))
+    assert (found.kind, found.beats, found.frames) == (VerdictKind.SAME, BEATS, len(record.frames))
 
 
 def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
@@ -177,7 +177,7 @@ def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
         if topic != "/lacoc/header":
             writer._write(1 + list(KINDS).index(topic), beat, data)
 
-    walk(live, take)
+    walk_messages(live, take)
     writer.close()
     return writer.path
 
@@ -190,7 +190,7 @@ def test_a_record_of_protocol_1_is_read_and_verified(
     record = Record.read(path)
     first = Record.read(live[0]).events[0]
     assert record.events[0].said == say("plain.text", text=render(first.said))
-    assert verdict(record).kind is Kind.SAME
+    assert verdict(record).kind is VerdictKind.SAME
     event = record.events[-1]
     record.events[-1] = msgspec.structs.replace(event, kind="another")
     assert verdict(record).differs_at == event.beat
@@ -241,7 +241,7 @@ def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_p
     copy = tmp_path / path.name
     copy.write_bytes(data[: int(len(data) * part)])
     record = Record.read(copy)
-    assert verdict(record).kind is Kind.SAME
+    assert verdict(record).kind is VerdictKind.SAME
     match = resume(record).match
     assert match.beats in (record.last_beat, record.last_beat - 1)
     assert match.physics.digest == (
@@ -321,7 +321,7 @@ def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_p
             journal.close()
     record = Record.read(segment)
     assert [header.segment for header in record.headers] == [0, 1, 2]
-    assert verdict(record).kind is Kind.SAME
+    assert verdict(record).kind is VerdictKind.SAME
     events: list[Event] = [e for beat in beats[:401] for e in beat.events]
     assert encode(record.events) == encode(events)
     assert decode(record.frames[-1][1], Frame) == beats[400].frame

@@ -16,7 +16,14 @@ from hypothesis import strategies as st
 from lacoc_server.studio.coach.coach import task_of
 from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.trials import Task, Trials, try_table
-from lacoc_server.studio.styles.archive import Archive, Grid, Place, arousal_mm_s, grid_of, is_sound
+from lacoc_server.studio.styles.archive import (
+    Archive,
+    MapGrid,
+    MapPlace,
+    arousal_mm_s,
+    grid_of,
+    is_sound,
+)
 from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import Mapped, fill
 from lacoc_server.studio.styles.style import WAYS, Styles, Way, far_apart
@@ -24,7 +31,7 @@ from lacoc_server.studio.styles.variants import VARIANTS, vary
 from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
 
-GRID = Grid(20.0, 6.0)
+GRID = MapGrid(20.0, 6.0)
 
 
 @pytest.fixture(scope="module")
@@ -162,13 +169,13 @@ def test_only_sound_gaits_are_in_a_map() -> None:
 def test_arousal_is_height_over_period() -> None:
     """Arousal is step height over period; the last cells of a map have no upper end."""
     assert arousal_mm_s(replace(walk(50.0, 30.0), cycle_s=2.0)) == 15.0
-    assert GRID.place(walk(50.0, 13.0)) == Place(2, 1)
+    assert GRID.place(walk(50.0, 13.0)) == MapPlace(2, 1)
     for value in range(1, 200):
         place = GRID.place(walk(value, value))
         assert place is not None
         assert place.speed == sum(value >= low for low in GRID.speeds_mm_s) - 1
         assert place.arousal == sum(value >= low for low in GRID.arousals_mm_s) - 1
-    assert GRID.place(walk(1e4, 1e4)) == Place(5, 4)
+    assert GRID.place(walk(1e4, 1e4)) == MapPlace(5, 4)
     assert grid_of(entry_of("hexapod").robot, walk(60.4, 16.0)) == GRID
 
 

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lacoc_robots.library import find_robot
-from lacoc_robots.reading import read_gait
+from lacoc_robots.reading import load_gait
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import CYCLES, NO_CYCLE_S, SETTLE_TICKS, Course
@@ -42,7 +42,7 @@ def courses() -> dict[str, Course]:
 @pytest.fixture(scope="module")
 def sample(courses: dict[str, Course]) -> Walk:
     """Give a trial of the workshop's robot with key 2 (forward) of its sample gait."""
-    gait = read_gait(SAMPLE, entry_of("hexapod").robot)
+    gait = load_gait(SAMPLE, entry_of("hexapod").robot)
     return courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
 
 
@@ -89,7 +89,7 @@ def test_a_trial_is_what_a_court_would_do(
 
 def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> None:
     """A trial gives the same states again, even after another trial on the same floor."""
-    gait = read_gait(SAMPLE, entry_of("hexapod").robot)
+    gait = load_gait(SAMPLE, entry_of("hexapod").robot)
     courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 1)], 1.0)
     again = courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
     assert again.digests == sample.digests
@@ -189,7 +189,7 @@ def test_margin_of_few_feet() -> None:
 
 def test_keys_as_people_type_them() -> None:
     """Keys are read with levels and times; without a letter the level is B, or A if only A fits."""
-    gait = read_gait(SAMPLE, entry_of("hexapod").robot)
+    gait = load_gait(SAMPLE, entry_of("hexapod").robot)
     assert forward_key(gait) == (Level.LOCOMOTION, 2)
     assert parse_keys("1:3, A4:0.5,2", gait, 25) == [
         Press(25, Level.LOCOMOTION, 1),

@@ -16,12 +16,12 @@ from lacoc_server.doors.inbox import Door
 from lacoc_server.doors.network import Arrival
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.verdict import Kind
+from lacoc_server.journal.verdict import VerdictKind
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared.contest.tokens import hash_token
+from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import Done, Event, Outcome, SeatHealth
 from lacoc_shared.messages.office import open_match
@@ -37,7 +37,7 @@ LONG = 200
 """Four seconds, in beats."""
 TROUBLE = say("record.disk-trouble", file="m.mcap", why="Input/output error")
 
-HASH = hash_token("a token")
+HASH = new_token_hash("a token")
 
 
 class Quiet:
@@ -142,7 +142,7 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
     assert held.network.outcomes[-1] == Done()
     assert held.decided == ["halt", "resume"]
     held.kill()
-    assert verdict(Record.read(sorted(tmp_path.iterdir()))).kind is Kind.SAME
+    assert verdict(Record.read(sorted(tmp_path.iterdir()))).kind is VerdictKind.SAME
 
 
 def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from stage import join as sample
 from lacoc_robots.limits import Limits
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.match import entry
-from lacoc_server.match.entry import Admission
+from lacoc_server.match.entry import JoinCheck
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import PROTOCOL, Join, SentFile
 from lacoc_shared.mistakes import FileRefused
@@ -25,8 +25,8 @@ WHOLE = Join(
 )
 
 
-def admission() -> Admission:
-    return Admission(
+def join_check() -> JoinCheck:
+    return JoinCheck(
         HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion, Limits(), (Level.LOCOMOTION,)
     )
 
@@ -47,7 +47,7 @@ def changed(old: bytes, new: bytes) -> Join:
 
 def test_a_robot_is_tried_once() -> None:
     """Only the first join with a robot waits for a stand test; later joins use its outcome."""
-    with Weighing(admission()) as weighing:
+    with Weighing(join_check()) as weighing:
         assert weighing(WHOLE) is None
         assert known(weighing, WHOLE) == WHOLE
         nothing = Join(protocol=PROTOCOL, token="", name="Bees")  # the contest's robot is the same
@@ -56,7 +56,7 @@ def test_a_robot_is_tried_once() -> None:
 
 def test_wrong_files_are_told_without_a_trial() -> None:
     """Files with mistakes are refused at once, without a stand test."""
-    with Weighing(admission()) as weighing, pytest.raises(FileRefused, match="mass_kg"):
+    with Weighing(join_check()) as weighing, pytest.raises(FileRefused, match="mass_kg"):
         weighing(changed(b"mass_kg = 0.125", b"mass_kg = 125"))
 
 
@@ -64,7 +64,7 @@ def test_a_robot_that_does_not_stay_is_refused() -> None:
     """A robot that moves from its start is refused each time; other robots are still accepted."""
     legs = b"45,  0, -45, -45,  0, 45,  # root"
     rowing = changed(legs, b"100, 100, 100, 100, 100, 100,  # root")
-    with Weighing(admission()) as weighing:
+    with Weighing(join_check()) as weighing:
         for _ in range(2):
             with pytest.raises(FileRefused, match=r"moves 0\.\d+ m from its start within 2 s"):
                 known(weighing, rowing)

@@ -2,10 +2,10 @@
 
 import math
 from abc import ABC, abstractmethod
-from typing import NamedTuple
 
 from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_arenas.game import NEUTRAL
+from lacoc_arenas.routes import Route, best_route
 from lacoc_arenas.steering import Eyes, Pilot, Pose, straight
 from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import Frame, Sheet
@@ -18,7 +18,7 @@ _FLAG_REACH_M, _CORNER_REACH_M = 0.13, 0.12
 """Distance from the marker's middle at which a robot strikes a flag, or takes a corner."""
 
 _DEPTH, _BEAM = 4, 14
-"""How many targets a plan looks ahead, and how many plans are kept at each step."""
+"""How many targets a route has at most, and how many routes are kept at each step of the search."""
 _PATIENCE_S = 30.0
 """A point gained this much later is worth 1 / e of a point now, because plans often fail."""
 _RIVAL = 0.8
@@ -66,7 +66,7 @@ class _Hunter(ABC):
         """
 
 
-class Nearest(_Hunter):
+class NearestFlag(_Hunter):
     """Goes to the nearest standing flag; if all have fallen, to the nearest corner."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
@@ -79,31 +79,15 @@ class Nearest(_Hunter):
         )
 
 
-class _Plan(NamedTuple):
-    worth: float
-    """Points gained; later points count less."""
-    time_s: float
-    pose: Pose
-    route: tuple[int, ...]
-
-
-class Planner(_Hunter):
+class FlagPlanner(_Hunter):
     """Weighs the points of a route over flags and corners against the time it takes."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
         """Return the first target of the best route found."""
-        pose = poses[self.seat]
         worths = self._worths(board, scores, poses)
-        beam = [_Plan(0.0, 0.0, pose, ())]
-        best = beam[0]
-        for _ in range(_DEPTH):
-            beam = [grown for plan in beam for grown in self._grow(plan, worths)]
-            if not beam:
-                break
-            beam.sort(key=lambda plan: (-plan.worth, plan.time_s))
-            del beam[_BEAM:]
-            best = max(best, beam[0], key=lambda plan: plan.worth)
-        return best.route[0] if best.route else _NOWHERE
+        start = Route(pose=poses[self.seat])
+        best = best_route(start, lambda route: self._grow(route, worths), _DEPTH, _BEAM)
+        return best.markers[0] if best.markers else _NOWHERE
 
     def _worths(
         self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]
@@ -140,34 +124,29 @@ class Planner(_Hunter):
         after = State((*board[:corner], self.seat + 1, *board[corner + 1 :]), (-1, -1))
         return _DECISIVE if self.game.winner(after, finals) == self.seat else 0.0
 
-    def _grow(self, plan: _Plan, worths: dict[int, float]) -> list[_Plan]:
+    def _grow(self, route: Route, worths: dict[int, float]) -> list[Route]:
         grown = []
-        for marker, worth in worths.items():
-            if marker in plan.route:
+        for marker, gain in worths.items():
+            if marker in route.markers:
                 continue
             x_m, y_m = self.places[marker]
             reach_m = _CORNER_REACH_M if marker < CORNERS else _FLAG_REACH_M
-            time_s = plan.time_s + plan.pose.travel_s(x_m, y_m, reach_m)
-            heading_rad = math.atan2(y_m - plan.pose.y_m, x_m - plan.pose.x_m)
-            grown.append(
-                _Plan(
-                    plan.worth + worth * math.exp(-time_s / _PATIENCE_S),
-                    time_s,
-                    Pose(x_m, y_m, heading_rad, 1.0),
-                    (*plan.route, marker),
-                )
-            )
+            time_s = route.time_s + route.pose.travel_s(x_m, y_m, reach_m)
+            worth = route.worth + gain * math.exp(-time_s / _PATIENCE_S)
+            heading_rad = math.atan2(y_m - route.pose.y_m, x_m - route.pose.x_m)
+            pose = Pose(x_m, y_m, heading_rad, 1.0)
+            grown.append(Route(worth, time_s, pose, (*route.markers, marker)))
         return grown
 
 
 def nearest(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that goes to the nearest flag (`Nearest`)."""
-    return Nearest(sheet, seat)
+    """Make a brain that goes to the nearest flag (`NearestFlag`)."""
+    return NearestFlag(sheet, seat)
 
 
 def planner(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that plans routes over flags and corners (`Planner`)."""
-    return Planner(sheet, seat)
+    """Make a brain that plans routes over flags and corners (`FlagPlanner`)."""
+    return FlagPlanner(sheet, seat)
 
 
 BOTS: dict[str, BotFactory] = {"straight": straight, "nearest": nearest, "planner": planner}

@@ -53,7 +53,7 @@ class Layer(NamedTuple):
         return f"Layer(weights={np.shape(self.weights)}, biases={np.shape(self.biases)})"
 
 
-class _Saved(msgspec.Struct, frozen=True, array_like=True):
+class _SavedNetwork(msgspec.Struct, frozen=True, array_like=True):
     keys: tuple[int, ...]
     inputs: int
     every_ticks: int
@@ -164,7 +164,7 @@ def press(frame: Frame, seat: int, digit: int) -> Key | None:
 def export(network: Network) -> str:
     """Return a bot file's text."""
     parts = [part for layer in network.layers for part in layer]
-    saved = _Saved(
+    saved = _SavedNetwork(
         network.keys,
         network.inputs,
         network.every_ticks,
@@ -184,7 +184,7 @@ def read(text: str) -> Network:
     """
     try:
         packed = base64.b85decode("".join(text.split()))
-        saved = msgspec.msgpack.decode(zlib.decompress(packed), type=_Saved)
+        saved = msgspec.msgpack.decode(zlib.decompress(packed), type=_SavedNetwork)
         layers, at = [], 0
         numbers = np.frombuffer(saved.numbers, "<f8")
         for outputs, inputs in saved.shapes:

@@ -2,10 +2,10 @@
 
 import math
 from abc import ABC, abstractmethod
-from typing import NamedTuple
 
 from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_arenas.game import NEUTRAL
+from lacoc_arenas.routes import Route, best_route
 from lacoc_arenas.steering import Eyes, Pilot, Pose, straight
 from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import Frame, Sheet
@@ -14,7 +14,7 @@ from lacoc_shared.seat import BEATS_PER_S
 from .rules import NO_CELL, SIDE, make
 
 _DEPTH, _BEAM = 7, 20
-"""How many cells a plan looks ahead, and how many plans are kept at each step."""
+"""How many cells a route has, and how many routes are kept at each step of the search."""
 _PATIENCE_S = 25.0
 """A disc gained this much later is worth 1 / e of a disc now, because plans often fail."""
 _BLOCKED_M, _BLOCKED_S = 0.35, 12.0
@@ -68,7 +68,7 @@ class _Walker(ABC):
         """
 
 
-class Nearest(_Walker):
+class NearestDisc(_Walker):
     """Goes to the nearest disc that it can flip, or else to an own disc beside such a disc."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
@@ -91,41 +91,25 @@ class Nearest(_Walker):
         return [cell for cell in cells if not self.blocked(cell, poses)]
 
 
-class _Plan(NamedTuple):
-    worth: float
-    """Discs gained; later discs count less."""
-    time_s: float
-    pose: Pose
-    cell: int
-    cells: tuple[int, ...]
-    first: int
-    """The first cell of the route."""
-
-
-class Planner(_Walker):
+class DiscPlanner(_Walker):
     """Looks several cells ahead and weighs the discs of a route against the time it takes."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
         """Return the first cell of the best route found."""
-        pose = poses[self.seat]
-        beam = [_Plan(0.0, 0.0, pose, last, cells, NO_CELL)]
-        best = beam[0]
-        for _ in range(_DEPTH):
-            beam = [grown for plan in beam for grown in self._grow(plan, poses)]
-            beam.sort(key=lambda plan: (-plan.worth, plan.time_s))
-            del beam[_BEAM:]
-            best = max(best, beam[0], key=lambda plan: plan.worth)
-        return best.first
+        start = Route(pose=poses[self.seat], board=cells)
+        best = best_route(start, lambda route: self._grow(route, last, poses), _DEPTH, _BEAM)
+        return best.markers[0] if best.markers else NO_CELL
 
-    def _grow(self, plan: _Plan, poses: list[Pose]) -> list[_Plan]:
+    def _grow(self, route: Route, last: int, poses: list[Pose]) -> list[Route]:
         grown = []
-        for cell in _around(plan.cell):
+        before = route.markers[-1] if route.markers else last
+        for cell in _around(before):
             x_m, y_m = self.discs[cell]
-            time_s = plan.time_s + plan.pose.travel_s(x_m, y_m)
-            if plan.first == NO_CELL and self.blocked(cell, poses):
+            time_s = route.time_s + route.pose.travel_s(x_m, y_m)
+            if not route.markers and self.blocked(cell, poses):
                 time_s += _BLOCKED_S
-            worth, cells = plan.worth, plan.cells
-            flips = self.game.flips(cells, self.seat, plan.cell, cell)
+            worth, cells = route.worth, route.board
+            flips = self.game.flips(cells, self.seat, before, cell)
             if flips:
                 # A disc of the other team counts twice: one more for us, one less for them.
                 gain = sum(1 if cells[flip] == NEUTRAL else 2 for flip in flips)
@@ -134,9 +118,9 @@ class Planner(_Walker):
                 for flip in flips:
                     after[flip] = self.seat + 1
                 cells = tuple(after)
-            heading_rad = math.atan2(y_m - plan.pose.y_m, x_m - plan.pose.x_m)
-            first = cell if plan.first == NO_CELL else plan.first
-            grown.append(_Plan(worth, time_s, Pose(x_m, y_m, heading_rad, 1.0), cell, cells, first))
+            heading_rad = math.atan2(y_m - route.pose.y_m, x_m - route.pose.x_m)
+            pose = Pose(x_m, y_m, heading_rad, 1.0)
+            grown.append(Route(worth, time_s, pose, (*route.markers, cell), cells))
         return grown
 
 
@@ -152,13 +136,13 @@ def _around(cell: int) -> list[int]:
 
 
 def nearest(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that goes to the nearest disc to flip (`Nearest`)."""
-    return Nearest(sheet, seat)
+    """Make a brain that goes to the nearest disc to flip (`NearestDisc`)."""
+    return NearestDisc(sheet, seat)
 
 
 def planner(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that plans routes over several discs (`Planner`)."""
-    return Planner(sheet, seat)
+    """Make a brain that plans routes over several discs (`DiscPlanner`)."""
+    return DiscPlanner(sheet, seat)
 
 
 BOTS: dict[str, BotFactory] = {"straight": straight, "nearest": nearest, "planner": planner}

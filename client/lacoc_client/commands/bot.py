@@ -16,7 +16,7 @@ from lacoc_client.play.asking import NoCourt, NotNow, Patience
 from lacoc_client.play.bot_player import BotPlayer
 from lacoc_client.play.controller import Controller, Hold
 from lacoc_client.play.stopping import stop_signals
-from lacoc_client.play.team_way import TeamWay, is_gone, is_over
+from lacoc_client.play.team_way import TeamWay, call_is_over, is_gone
 from lacoc_robots.seat_files import SeatFiles, gather
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest.access import Access
@@ -163,11 +163,11 @@ def _play_match(
     access = way.access(there)
     with open_client(access.addresses, authority=access.authority) as session:
         controller = Controller(session, access.court, access.seat, access.token, there.team)
-        if is_over(controller.view, there.call):
+        if call_is_over(controller.view, there.call):
             return True
         player = BotPlayer(controller, _ground(controller, arena), name)
         controller.join()
-        while not stopping() and not is_over(controller.view, there.call):
+        while not stopping() and not call_is_over(controller.view, there.call):
             _look(controller, player)
             if controller.hold is Hold.REPLACED:
                 raise UserError(say("play.lost", why=controller.why_not_held))

@@ -18,7 +18,7 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.courts import LOOPBACK
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
 
@@ -35,7 +35,7 @@ _HOST_PORT = re.compile(r"(?:\w+/)?(?P<host>\[[^\]]+\]|[^:/]+):(?P<port>\d{1,5})
 @app.command(name="doctor")
 def doctor_command(
     link: options.Link = None,
-    contest: options.ContestFile = None,
+    contest: options.ContestOption = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
     recordings: Annotated[
@@ -93,7 +93,7 @@ def doctor_command(
 
 
 def _look(
-    plan: Contest | None,
+    plan: ContestFile | None,
     courts: Sequence[str | None],
     web: str | None,
     folder: Path,

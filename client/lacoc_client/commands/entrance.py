@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lacoc_client.play.link.event import Found, find
+from lacoc_client.play.link.event import FoundEvent, find
 from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
@@ -45,7 +45,7 @@ def courts(
     return reached(find(link), court)
 
 
-def reached(found: Found, court: str | None) -> dict[str, Access]:
+def reached(found: FoundEvent, court: str | None) -> dict[str, Access]:
     """Return the ways to all courts of a link that was found, or to the named one.
 
     Raises:

@@ -14,8 +14,8 @@ from lacoc_client.play.asking import NoCourt, NotNow, Patience
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.own_files import OwnFiles
 from lacoc_client.play.stopping import stop_signals
-from lacoc_client.play.team_way import TeamWay, is_gone, is_over
-from lacoc_client.play.terminal.keys import Keys, open_keys
+from lacoc_client.play.team_way import TeamWay, call_is_over, is_gone
+from lacoc_client.play.terminal.keys import KeySource, open_keys
 from lacoc_client.play.terminal.play import TerminalPlay, keys_table
 from lacoc_client.play.terminal.words import played
 from lacoc_client.web.gateway.home import Prefill, player_home
@@ -189,7 +189,7 @@ def _play_match(
     there: Whereabouts,
     team: str,
     files: SeatFiles,
-    keys: Keys,
+    keys: KeySource,
     stopping: Callable[[], bool],
     *,
     ready: bool,
@@ -201,11 +201,11 @@ def _play_match(
         view = controller.view
 
         def is_left() -> bool:
-            return is_over(view, there.call) or is_gone(view)
+            return call_is_over(view, there.call) or is_gone(view)
 
         left = None if there.open else is_left
         goes_on = TerminalPlay(controller, keys, Path(), left).run(stopping)
-        if goes_on and is_over(view, there.call):
+        if goes_on and call_is_over(view, there.call):
             way.played(there.call)
         return goes_on
 

@@ -10,9 +10,9 @@ import typer
 
 from lacoc_client.commands import entrance
 from lacoc_client.commands.pages import public_address
-from lacoc_client.play.link.event import Found, find
+from lacoc_client.play.link.event import FoundEvent, find
 from lacoc_client.play.link.mirror import SheetMirror
-from lacoc_client.web.gateway import server
+from lacoc_client.web.gateway import contest_sheet, server
 from lacoc_client.web.gateway.browser import open_browser
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.home import VIEWERS_MOST, Home
@@ -24,7 +24,7 @@ from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.network.public import is_loopback
@@ -38,7 +38,7 @@ _RECORDINGS = Path("recordings")
 @app.command(name="web")
 def web_command(
     link: options.Link = None,
-    contest: options.ContestFile = None,
+    contest: options.ContestOption = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
     listen: Annotated[
@@ -146,10 +146,10 @@ def web_command(
         server.run(site(home, PageFiles(), desk), port, ready, DESK_BYTES if desk else JOIN_BYTES)
 
 
-def _again(stack: ExitStack, found: Found, court: str | None) -> Home:
+def _again(stack: ExitStack, found: FoundEvent, court: str | None) -> Home:
     """Return the settings of a gateway that serves the pages of a link once more."""
     event = found.event
-    sheet = stack.enter_context(Scratch("mirror")) / "contest.json"
+    sheet = stack.enter_context(Scratch("mirror")) / contest_sheet.NAME
     stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
     courts = entrance.reached(found, court)
     return Home(
@@ -168,7 +168,7 @@ def _alone(courts: dict[str, Access]) -> Home:
     return Home(courts=courts, recordings=_RECORDINGS, told=told)
 
 
-def _of_contest(plan: Contest, file: Path, court: str | None, host: str) -> Home:
+def _of_contest(plan: ContestFile, file: Path, court: str | None, host: str) -> Home:
     """Return the settings of the gateway of a contest; `host` is that of its pages."""
     names = [plan.court(court)[0]] if court else [*plan.courts]
     return Home(
@@ -182,7 +182,7 @@ def _of_contest(plan: Contest, file: Path, court: str | None, host: str) -> Home
     )
 
 
-def _told(plan: Contest, court: str, host: str) -> tuple[str, ...]:
+def _told(plan: ContestFile, court: str, host: str) -> tuple[str, ...]:
     """Return the addresses of a court for others; none if it listens to its own machine only.
 
     Args:

@@ -2,33 +2,12 @@
 
 from pathlib import Path
 
-import msgspec
-
+from lacoc_client.web.gateway import contest_sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
 
-SHEET = "contest.json"
 _FOLDERS = ("records", "recordings", ".")
 """Where records are: in a published folder, and beside a contest file."""
-
-
-class _Game(msgspec.Struct):
-    record: str = ""
-    outcome: str = ""
-
-
-class _Match(msgspec.Struct):
-    games: list[_Game] = []
-
-
-class _Stage(msgspec.Struct):
-    matches: list[_Match] = []
-
-
-class _Sheet(msgspec.Struct):
-    """The part of a contest's sheet that names records."""
-
-    stages: list[_Stage] = []
 
 
 def records(folder: Path) -> list[Path]:
@@ -40,19 +19,20 @@ def records(folder: Path) -> list[Path]:
     Raises:
         UserError: if it has no sheet, no game was played yet, or a record is missing.
     """
-    path = folder / SHEET
+    path = folder / contest_sheet.NAME
     try:
-        sheet = msgspec.json.decode(path.read_bytes(), type=_Sheet)
+        sheet = contest_sheet.read(path)
     except FileNotFoundError:
-        raise UserError(say("film.no-contest", folder=str(folder), sheet=SHEET)) from None
+        raise UserError(
+            say("film.no-contest", folder=str(folder), sheet=contest_sheet.NAME)
+        ) from None
     except OSError as error:
         why = error.strerror or str(error)
         raise UserError(say("film.cannot-read", file=str(path), why=why)) from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:
         told = printable(str(error), 120)
         raise UserError(say("film.bad-sheet", file=str(path), error=told)) from None
-    games = [game for stage in sheet.stages for match in stage.matches for game in match.games]
-    names = [game.record for game in games if game.record and game.outcome != "void"]
+    names = [game.record for game in sheet.games if game.record and game.outcome != "void"]
     if not names:
         raise UserError(say("film.no-games", folder=str(folder)))
     return [_found(folder, name) for name in names]

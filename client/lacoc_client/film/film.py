@@ -30,7 +30,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Part:
+class FilmPart:
     """A record in a film."""
 
     record: Record
@@ -71,7 +71,7 @@ class Part:
         return (played[0] + played[-1]) // 2
 
 
-def part(path: Path, count: int | None = None, *, opening: bool = False) -> Part:
+def part(path: Path, count: int | None = None, *, opening: bool = False) -> FilmPart:
     """Read a record for a film.
 
     Args:
@@ -83,11 +83,11 @@ def part(path: Path, count: int | None = None, *, opening: bool = False) -> Part
         UserError: if it is no record, or is damaged so far that nothing can be shown.
     """
     paths = tuple(files.record_paths(path))
-    return Part(Record.read(paths), paths, count, opening=opening)
+    return FilmPart(Record.read(paths), paths, count, opening=opening)
 
 
 def make(
-    parts: Sequence[Part], out: Path, look: Look, fps: int, browsers: int, progress: Progress
+    parts: Sequence[FilmPart], out: Path, look: Look, fps: int, browsers: int, progress: Progress
 ) -> int:
     """Make a film.
 
@@ -111,7 +111,7 @@ def make(
     return film.count
 
 
-def still(one: Part, out: Path, look: Look) -> None:
+def still(one: FilmPart, out: Path, look: Look) -> None:
     """Write the still of a record as PNG; an older file with this name gets a number.
 
     Args:
@@ -133,7 +133,9 @@ def still(one: Part, out: Path, look: Look) -> None:
         keep.save(out, thread.submit(drawn).result())
 
 
-def _add(film: Movie, one: Part, look: Look, fps: int, browsers: int, progress: Progress) -> None:
+def _add(
+    film: Movie, one: FilmPart, look: Look, fps: int, browsers: int, progress: Progress
+) -> None:
     with served(one.paths) as site, drawn_by(browsers, site.address(look), look) as crew:
         pictures = plan.pictures(one.shots(*crew.ends()), fps)
         before = film.count

@@ -27,7 +27,7 @@ class Moment(msgspec.Struct, frozen=True):
     """How much it changed the match: the larger, the earlier it is chosen."""
 
 
-class _File(msgspec.Struct):
+class _MomentsFile(msgspec.Struct):
     """A file of moments."""
 
     moments: list[Moment]
@@ -112,7 +112,7 @@ def from_file(path: Path) -> list[Moment]:
         if path.stat().st_size > _LARGEST_BYTES:
             most_mib = _LARGEST_BYTES >> 20
             raise UserError(say("film.moments-too-large", file=str(path), most_mib=most_mib))
-        return msgspec.json.decode(path.read_bytes(), type=_File).moments
+        return msgspec.json.decode(path.read_bytes(), type=_MomentsFile).moments
     except OSError as error:
         why = error.strerror or str(error)
         raise UserError(say("film.cannot-read", file=str(path), why=why)) from None

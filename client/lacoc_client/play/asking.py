@@ -9,7 +9,7 @@ import msgspec
 
 from lacoc_shared import codec
 from lacoc_shared.command import screen
-from lacoc_shared.keyspace import EVERY_COURT, Keys
+from lacoc_shared.keyspace import EVERY_COURT, KeySpace
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.court_view import MAX_BYTES
@@ -82,7 +82,7 @@ class Patience:
 
 def ask(
     session: Session,
-    keys: Keys,
+    keys: KeySpace,
     key: str,
     message: msgspec.Struct,
     reply: type[T],
@@ -109,7 +109,7 @@ def ask(
 
 
 def fetch(
-    session: Session, keys: Keys, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
+    session: Session, keys: KeySpace, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
 ) -> bytes:
     """Ask a court and return its answer as bytes; see `ask`.
 

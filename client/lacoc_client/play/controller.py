@@ -76,7 +76,7 @@ _HOLDS = {
 }
 
 
-class Seen(NamedTuple):
+class SeenFrame(NamedTuple):
     """A frame that a player saw."""
 
     match: int
@@ -96,7 +96,7 @@ class RefusedKey(NamedTuple):
         return "x" if self.key == RESTART_KEY else str(self.key)
 
 
-class _Press(NamedTuple):
+class _PressedKey(NamedTuple):
     level: int
     key: int
     at_s: float
@@ -169,10 +169,10 @@ class Controller:
         self._standing = (0, 0, 0)
         """Sequence number, level and key of the standing command."""
         self._elsewhere = elsewhere
-        self._seen: Seen | None = None
+        self._seen: SeenFrame | None = None
         """The newest frame that a player elsewhere saw in this session."""
         self._sent_s = 0.0
-        self._pressed: dict[int, _Press] = {}
+        self._pressed: dict[int, _PressedKey] = {}
         self._refused: list[RefusedKey] = []
         self.repeating = True
         """Whether `poll` repeats the command and joins a restarted court again; False when the
@@ -258,7 +258,7 @@ class Controller:
         self.hold, self._joined = Hold.LEFT, None
         return said
 
-    def saw(self, frame: Seen) -> None:
+    def saw(self, frame: SeenFrame) -> None:
         """Send a sign of life of a player elsewhere.
 
         Args:
@@ -268,7 +268,7 @@ class Controller:
             self._note(frame)
             self._send(self._seen)
 
-    def press(self, level: int, key: int, upon: Seen | None = None) -> int:
+    def press(self, level: int, key: int, upon: SeenFrame | None = None) -> int:
         """Send a new command, which is repeated until the next one.
 
         Args:
@@ -284,7 +284,7 @@ class Controller:
         """
         self._session_held()
         self._seq += 1
-        self._pressed[self._seq] = _Press(level, key, time.monotonic())
+        self._pressed[self._seq] = _PressedKey(level, key, time.monotonic())
         if len(self._pressed) > _REMEMBERED:
             del self._pressed[next(iter(self._pressed))]
         self._standing = (self._seq, level, key)
@@ -360,24 +360,24 @@ class Controller:
         request = SeatRequest(session=joined.session, seq=self._requests, ready=ready, mac=mac)
         return ask(self._session, self._keys, key, request, Done).said
 
-    def _note(self, frame: Seen) -> None:
+    def _note(self, frame: SeenFrame) -> None:
         """Remember the newest frame that a player elsewhere saw."""
         self._seen = max(self._seen or frame, frame)
 
-    def _newest(self) -> Seen | None:
+    def _newest(self) -> SeenFrame | None:
         """Return the frame that a repeated command names; None: none can be named now.
 
         An old frame is no sign of life for the court.
         """
         frame, seen = self.view.frame, self._seen
         if not self._elsewhere:
-            return Seen(frame.match, frame.beat) if frame is not None else Seen(0, 0)
+            return SeenFrame(frame.match, frame.beat) if frame is not None else SeenFrame(0, 0)
         if frame is None or seen is None:
             return None
         is_fresh = seen.match == frame.match and frame.beat - seen.beat < _REPEATED_BEATS
         return seen if is_fresh else None
 
-    def _send(self, upon: Seen | None = None) -> None:
+    def _send(self, upon: SeenFrame | None = None) -> None:
         """Send the newest command, with the frame that the player saw."""
         assert self._joined is not None
         seen, key_expression = upon or self._newest(), self._keys.command(self.seat)

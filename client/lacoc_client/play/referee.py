@@ -2,7 +2,7 @@
 
 from lacoc_client.play.asking import ask
 from lacoc_shared.decisions import Decision
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import (
     DecisionReply,
     DecisionRequest,
@@ -29,7 +29,7 @@ class RefereeClient:
 
     def __init__(self, session: Session, court: str, token: str) -> None:
         self._session = session
-        self._keys = Keys(court)
+        self._keys = KeySpace(court)
         self._token = token
 
     def enter(self) -> None:

@@ -16,7 +16,7 @@ _LINE_BYTES = 1 << 24
 _LOOK_S = 0.5
 
 
-class Standing(msgspec.Struct, frozen=True, kw_only=True):
+class PlayerStanding(msgspec.Struct, frozen=True, kw_only=True):
     """Where a player stands after some matches."""
 
     name: str
@@ -27,11 +27,11 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     """Points of the player in all matches."""
 
 
-class Line(msgspec.Struct, frozen=True, tag_field="kind"):
+class OutputLine(msgspec.Struct, frozen=True, tag_field="kind"):
     """A line that `lacoc simulate --json` prints."""
 
 
-class LeftOutLine(Line, frozen=True, tag="left-out"):
+class LeftOutLine(OutputLine, frozen=True, tag="left-out"):
     """A player can't play."""
 
     player: str
@@ -39,7 +39,7 @@ class LeftOutLine(Line, frozen=True, tag="left-out"):
     why: Phrase | None
 
 
-class BeginLine(Line, frozen=True, tag="begin"):
+class BeginLine(OutputLine, frozen=True, tag="begin"):
     """The matches begin."""
 
     matches: int
@@ -52,7 +52,7 @@ class MatchResult(msgspec.Struct, frozen=True):
     official: str
 
 
-class MatchLine(Line, frozen=True, tag="match"):
+class MatchLine(OutputLine, frozen=True, tag="match"):
     """A match has ended."""
 
     players: tuple[str, str]
@@ -61,11 +61,11 @@ class MatchLine(Line, frozen=True, tag="match"):
     result: MatchResult
 
 
-class StandingsLine(Line, frozen=True, tag="standings"):
+class StandingsLine(OutputLine, frozen=True, tag="standings"):
     """Standings after a match."""
 
     done: int
-    standings: tuple[Standing, ...]
+    standings: tuple[PlayerStanding, ...]
 
 
 _lines = msgspec.json.Decoder(LeftOutLine | BeginLine | MatchLine | StandingsLine)
@@ -102,7 +102,7 @@ class Simulation:
             )
         )
 
-    async def lines(self) -> AsyncIterator[Line]:
+    async def lines(self) -> AsyncIterator[OutputLine]:
         """Yield the lines that the command prints, until the command ends.
 
         The end of the command counts, not the end of its output: after a kill, the command's

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from lacoc_client.play.asking import fetch, understand, understood
 from lacoc_shared.codec import message_hash
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.court_view import CourtView, Told
@@ -44,7 +44,7 @@ class Spectator:
     def __init__(
         self, session: Session, court: str, notify: Callable[[], None] | None = None
     ) -> None:
-        self.keys = Keys(court)
+        self.keys = KeySpace(court)
         self._session = session
         self._frames = session.mailbox(self.keys.frame, 1, notify)
         self._sheets = session.mailbox(self.keys.sheet, 1)

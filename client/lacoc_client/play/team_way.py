@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from lacoc_client.play.asking import NoCourt, NotNow, Patience, ask
 from lacoc_client.play.spectator import Spectator
 from lacoc_shared.contest.access import Access
-from lacoc_shared.keyspace import EVERY_COURT, Keys
+from lacoc_shared.keyspace import EVERY_COURT, KeySpace
 from lacoc_shared.messages.office import Where, Whereabouts
 from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.seat import Phase
@@ -35,7 +35,7 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
         NotNow: if the court does not know yet where the team plays.
         UserError: if no team has this token.
     """
-    keys = Keys(court)
+    keys = KeySpace(court)
     return ask(session, keys, keys.where, Where(token=token), Whereabouts)
 
 
@@ -167,7 +167,7 @@ class TeamWay:
             time.sleep(min(left_s, 0.1))
 
 
-def is_over(view: Spectator, call: str) -> bool:
+def call_is_over(view: Spectator, call: str) -> bool:
     """Return whether the match of a call has its official end, or its court has another match."""
     frame, sheet = view.frame, view.sheet
     if sheet.call != call:

@@ -27,7 +27,7 @@ _ANG_MIN_TICKS_S = 100
 _RANGE_DEG = "[-150, 150]"
 
 
-class Source(NamedTuple):
+class CFile(NamedTuple):
     """A C file."""
 
     name: str
@@ -41,7 +41,7 @@ class Imported(NamedTuple):
     notes: tuple[Phrase, ...]
 
 
-def import_robot(sources: Sequence[Source], name: str) -> Imported:
+def import_robot(sources: Sequence[CFile], name: str) -> Imported:
     """Make a robot file of the workshop's header and, if it is given, of its main file.
 
     Where a value is missing or can't be read, the workshop's own stands in the robot file, and a
@@ -62,7 +62,7 @@ def import_robot(sources: Sequence[Source], name: str) -> Imported:
         unread |= {one.name: (source.name, one) for one in wanted}
     for given in values:
         unread.pop(given, None)
-    header = _Header(values, places)
+    header = _HeaderRobot(values, places)
     lines = [*header.toml(name)]
     notes = []
     for file, one in unread.values():
@@ -73,7 +73,7 @@ def import_robot(sources: Sequence[Source], name: str) -> Imported:
     return Imported("\n".join(lines) + "\n", (*notes, *header.wrong.values()))
 
 
-class _Header:
+class _HeaderRobot:
     """The robot that the C files describe."""
 
     def __init__(self, values: dict[str, Value], places: dict[str, str]) -> None:

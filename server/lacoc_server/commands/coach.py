@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_robots.library import WORKSHOPS_ROBOT
-from lacoc_robots.reading import read_gait, read_robot_file
+from lacoc_robots.reading import load_gait, read_robot_file
 from lacoc_server.commands.coach_others import as_json as others_json
 from lacoc_server.commands.coach_others import (
     kept_tables,
@@ -24,7 +24,7 @@ from lacoc_server.commands.coach_others import (
     written,
 )
 from lacoc_server.commands.trial import GaitFile, RobotName
-from lacoc_server.studio.coach.coach import Tell, coach, coached_key, place, reply_of, task_of
+from lacoc_server.studio.coach.coach import Tell, cell_place, coach, coached_key, reply_of, task_of
 from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import STEP_DEG, Matter
@@ -136,7 +136,7 @@ def coach_command(
     if keep and (not variants or len(keep) > 2):
         raise UserError(say("coach.keep-variants"))
     spec = read_robot_file(robot)
-    gait = read_gait(file, spec)
+    gait = load_gait(file, spec)
     digit = coached_key(gait, goal, key)
     sequences = None if gait.postures is None else SAMPLE_KEYS
     task = task_of(spec, gait, digit, goal, sequences)
@@ -224,7 +224,7 @@ def _stop_on_interrupt() -> Iterator[threading.Event]:
 
 def _place(task: Task, digit: int, index: int) -> Phrase:
     """Say where a number of the table stands: its key, posture, leg and joint."""
-    cell = place(task.table, index)
+    cell = cell_place(task.table, index)
     legs = len(task.robot.legs)
     return say(
         "explain.cell",

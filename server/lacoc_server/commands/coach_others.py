@@ -9,7 +9,7 @@ from msgspec.structs import asdict
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_robots.reading import read_gait
+from lacoc_robots.reading import load_gait
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.studio.coach.trials import Task
@@ -118,7 +118,7 @@ def kept_tables(files: Sequence[Path], robot: RobotSpec, task: Task, digit: int)
     order = task.table.order
     found = []
     for file in files:
-        postures = read_gait(file, robot).sequence(Level.LOCOMOTION, digit) or ()
+        postures = load_gait(file, robot).sequence(Level.LOCOMOTION, digit) or ()
         rows = dict(zip(order, postures, strict=False))
         if len(postures) != len(order) or any(
             rows[row] != posture for row, posture in zip(order, postures, strict=True)

@@ -128,7 +128,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
     return bool(opened["built"]), bool(opened["shown"])
 
 
-class _Court:
+class _DemoCourt:
     """A court's process and what it prints.
 
     Raises:
@@ -171,7 +171,7 @@ class _Court:
         self._said.put(None)
 
 
-def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bool) -> str:
+def _follow(court: _DemoCourt, needed: Sequence[subprocess.Popen[str]], *, quiet: bool) -> str:
     """Show events until the match is official or void; return the sentence of the result.
 
     Raises:
@@ -195,12 +195,14 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
 
 
 @contextmanager
-def _court(arena: str, seconds: float | None, speed: float, recordings: Path) -> Iterator[_Court]:
+def _court(
+    arena: str, seconds: float | None, speed: float, recordings: Path
+) -> Iterator[_DemoCourt]:
     words = ["serve", "--json", "--fresh", "--arena", arena, "--listen", "tcp/127.0.0.1:0"]
     words += ["--recordings", str(recordings), "--speed", str(speed)]
     words += ["--seconds", str(seconds)] if seconds else []
     with _ended(_lacoc(*words, output=subprocess.PIPE)) as process:
-        yield _Court(process)
+        yield _DemoCourt(process)
 
 
 @contextmanager

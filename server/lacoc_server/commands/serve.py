@@ -25,16 +25,15 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk
 from lacoc_server.doors.team_desk import TeamDesk, alone
 from lacoc_server.journal.recovery import Unfinished, last_result, unfinished
-from lacoc_server.match.entry import Admission
+from lacoc_server.match.entry import JoinCheck
 from lacoc_shared.command import child, log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.courts import LOOPBACK
-from lacoc_shared.contest.courts import Court as CourtEntry
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.courts import LOOPBACK, ContestCourt
+from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.contest.secrets import Secrets
-from lacoc_shared.contest.tokens import hash_token, new_token
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.contest.tokens import new_token, new_token_hash
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SentFile
 from lacoc_shared.messages.office import TOKENS_MOST, WAITING, open_match
 from lacoc_shared.mistakes import UserError
@@ -46,7 +45,7 @@ app = typer.Typer()
 
 @app.command(name="serve")
 def serve_command(
-    contest: options.ContestFile = None,
+    contest: options.ContestOption = None,
     court: options.CourtName = None,
     arena: Annotated[
         str | None,
@@ -108,7 +107,7 @@ def serve_command(
     own_settings = _overrides(entry.settings, seconds)
     loaded = arenas.load(entry.arena, own_settings)
     seats = [seat.id for seat in loaded.seats]
-    keys = Keys(name)
+    keys = KeySpace(name)
     folder = recordings or plan.recordings
     left = None if fresh else unfinished(folder, name, loaded)
     over = last_result(folder, name, loaded) if contest and not (left or fresh) else None
@@ -122,7 +121,7 @@ def serve_command(
             screen.note(left.cut)
         if left.other_arithmetic:
             screen.warn(left.other_arithmetic)
-    admission = Admission(
+    join_check = JoinCheck(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),
         Limits.of(plan.limits),
@@ -141,7 +140,7 @@ def serve_command(
     )
     addresses = (endpoint(listen, plan.public.protocol),) if listen else entry.own_listen
     with ExitStack() as opened:
-        weighing = opened.enter_context(Weighing(admission))
+        weighing = opened.enter_context(Weighing(join_check))
         inbox = Inbox(
             keys,
             seats,
@@ -153,9 +152,9 @@ def serve_command(
         )
         office = None
         if contest:
-            prepare = Preparation(entry.arena, own_settings, seats, admission, weighing.aside)
+            prepare = Preparation(entry.arena, own_settings, seats, join_check, weighing.aside)
             copying = Copying(folder, name, weighing.aside)
-            office = OfficeDesk(hash_token(plan.secrets.office), seats, prepare, copying)
+            office = OfficeDesk(new_token_hash(plan.secrets.office), seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         outlooks, key_trials = Outlooks(weighing.aside), KeyTrials(weighing.aside)
         pair = plan.public.pair
@@ -165,7 +164,7 @@ def serve_command(
                 keys,
                 addresses,
                 inbox,
-                DecisionDesk([hash_token(whistle)]),
+                DecisionDesk([new_token_hash(whistle)]),
                 pair,
                 office,
                 outlooks,
@@ -197,16 +196,16 @@ def serve_command(
         raise typer.Exit(child.NOT_AGAIN)
 
 
-def _alone(arena: str | None, listen: str | None, court: str | None) -> Contest:
+def _alone(arena: str | None, listen: str | None, court: str | None) -> ContestFile:
     """Return what a contest file would say of a court that is started without one."""
-    entry = CourtEntry(arena=arena or "othello", listen=(endpoint(listen or LOOPBACK),))
+    entry = ContestCourt(arena=arena or "othello", listen=(endpoint(listen or LOOPBACK),))
     nobody = Secrets(Path())  # nobody asks it: the tokens are of this run alone
-    return Contest(courts={court or contests.MAIN: entry}, secrets=nobody)
+    return ContestFile(courts={court or contests.MAIN: entry}, secrets=nobody)
 
 
 def _opening(tokens: Mapping[str, str], left: Unfinished | None) -> dict[str, list[str]]:
     """Return the hashes of all tokens that open a seat: the new one, and those before a restart."""
-    found = {seat: [hash_token(token)] for seat, token in tokens.items()}
+    found = {seat: [new_token_hash(token)] for seat, token in tokens.items()}
     if left is not None:
         for one in left.match.assigned.seats if left.match.assigned else ():
             found[one.id] += one.token_hashes
@@ -241,7 +240,7 @@ def _open_doors(
     if metrics is not None:
         screen.note(say("command.metrics-at", where=metrics))
     if tokens is not None:
-        address = CourtEntry(listen=locators).address(own_address())
+        address = ContestCourt(listen=locators).address(own_address())
         for who, line in _lines(name, address, *tokens).items():
             screen.show(say("serve.enter", who=who, command=line))
 

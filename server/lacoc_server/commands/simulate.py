@@ -15,8 +15,8 @@ from rich.table import Table
 from lacoc_arenas import arena as arenas
 from lacoc_robots.stand_test import try_standing
 from lacoc_server.contest.headless.pool import (
-    Ended,
     Job,
+    PlayedAlone,
     first_number,
     interrupted_by_signals,
     match_id,
@@ -290,7 +290,7 @@ def _pairs(
 
 
 def _match_line(
-    job: Job, names: Sequence[str], found: Ended, seats: Sequence[str]
+    job: Job, names: Sequence[str], found: PlayedAlone, seats: Sequence[str]
 ) -> dict[str, Any]:
     return {
         "kind": "match",

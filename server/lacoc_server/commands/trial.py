@@ -8,7 +8,7 @@ import typer
 from rich.text import Text
 
 from lacoc_robots.library import WORKSHOPS_ROBOT
-from lacoc_robots.reading import read_gait, read_robot_file
+from lacoc_robots.reading import load_gait, read_robot_file
 from lacoc_server.studio.answers import Trial, try_gait
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import SETTLE_TICKS
@@ -70,7 +70,7 @@ def trial_command(
     averages of whole cycles, without the first cycle, in which the robot starts to move.
     """
     spec = read_robot_file(robot)
-    gait = read_gait(file, spec)
+    gait = load_gait(file, spec)
     trial = try_gait(make_course(spec), gait, keys, seconds)
     if json:
         screen.print_json(_as_json(trial))

@@ -13,7 +13,7 @@ from lacoc_shared.record.pack import pack_in_background
 from lacoc_shared.record.writer import RecordWriter
 
 
-class Archive:
+class RecordArchive:
     """Closes and packs the records of one court.
 
     Args:

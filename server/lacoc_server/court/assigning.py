@@ -17,7 +17,7 @@ from lacoc_robots.limits import Limits
 from lacoc_robots.stand_test import try_standing
 from lacoc_server.doors.inbox import MISTAKES_TOLD
 from lacoc_server.doors.openings import frozen_join
-from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_server.match.entry import JoinCheck, weigh_in
 from lacoc_server.world.world import World
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import PROTOCOL, Join, Refusal
@@ -43,7 +43,7 @@ class Preparation:
         arena: name or folder of the court's own arena.
         settings: entries of the contest file that replace those of this arena.
         seats: names of the court's seats, in the arena's order.
-        admission: fills in the files that a team does not have.
+        join_check: fills in the files that a team does not have.
         aside: calls a function on another thread than the beat's.
     """
 
@@ -52,13 +52,13 @@ class Preparation:
         arena: str,
         settings: Mapping[str, Any],
         seats: Sequence[str],
-        admission: Admission,
+        join_check: JoinCheck,
         aside: "Callable[[Callable[[], Prepared | Refusal]], Future[Prepared | Refusal]]",
     ) -> None:
         self._arena = arena
         self._settings = settings
         self._seats = list(seats)
-        self._admission = admission
+        self._join_check = join_check
         self._aside = aside
 
     def __call__(self, assign: Assign) -> Callable[[], Prepared | Refusal | None]:
@@ -74,10 +74,10 @@ class Preparation:
                 return Refusal(say("refused.assigned-seats", found=found, seats=self._seats))
             World(arena, ())  # what is wrong with the field must not appear in a beat
             levels = arena.match.open_levels
-            admission = replace(self._admission, limits=limits, levels=levels)
+            join_check = replace(self._join_check, limits=limits, levels=levels)
             seats = []
             for seat in assign.seats:
-                checked = _weighed(seat, admission)
+                checked = _weighed(seat, join_check)
                 if isinstance(checked, Refusal):
                     return checked
                 seats.append(checked)
@@ -114,7 +114,7 @@ def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str])
     ]
 
 
-def _weighed(seat: AssignedSeat, admission: Admission) -> AssignedSeat | Refusal:
+def _weighed(seat: AssignedSeat, join_check: JoinCheck) -> AssignedSeat | Refusal:
     """Weigh in the files of a team; return its seat with the robot file filled in.
 
     An open seat stays as it is: its files are weighed in when somebody joins.
@@ -131,11 +131,11 @@ def _weighed(seat: AssignedSeat, admission: Admission) -> AssignedSeat | Refusal
         locomotion=locomotion,
     )
     try:
-        whole, _ = admission(join)
-        assert whole.robot is not None, "an admission fills the robot file in"
+        whole, _ = join_check(join)
+        assert whole.robot is not None, "the check of a join fills the robot file in"
         files = whole.robot, whole.postures, whole.locomotion
-        entry = weigh_in(*files, admission.limits, admission.levels)
-        mistakes = try_standing(entry.robot, entry.gait, admission.levels, whole.robot.name)
+        entry = weigh_in(*files, join_check.limits, join_check.levels)
+        mistakes = try_standing(entry.robot, entry.gait, join_check.levels, whole.robot.name)
         if mistakes:
             raise FileRefused(mistakes)
     except FileRefused as refused:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from lacoc_arenas.arena import Arena
 from lacoc_server.court import unjudged
-from lacoc_server.court.archive import Archive
+from lacoc_server.court.archive import RecordArchive
 from lacoc_server.court.assigning import Prepared, staying
 from lacoc_server.court.health import MatchHealth
 from lacoc_server.court.key_trials import KeyTrials
@@ -24,7 +24,7 @@ from lacoc_server.court.metrics import CourtMetrics
 from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.court.pace import Pace
 from lacoc_server.doors.network import Arrival, CourtNetwork
-from lacoc_server.doors.office_desk import OfficeDesk, Wanted
+from lacoc_server.doors.office_desk import OfficeDesk, WantedMatch
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import Unfinished
 from lacoc_server.match.match import Beat, Match
@@ -107,7 +107,7 @@ class Court:
         self.metrics = CourtMetrics(settings.name)
         """The court's numbers for Prometheus."""
         self._scene = b""
-        self._archive = Archive(settings.recordings, settings.name, self._log)
+        self._archive = RecordArchive(settings.recordings, settings.name, self._log)
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(network.locators))
         self._inputs: list[Input] = []
         """The court's own inputs for the next beat."""
@@ -283,7 +283,7 @@ class Court:
         return own if assigned is None or assigned.is_alone else assigned
 
     @property
-    def _wanted(self) -> Wanted[Prepared] | None:
+    def _wanted(self) -> WantedMatch[Prepared] | None:
         return None if self._office is None else self._office.wanted
 
     @property

@@ -27,7 +27,7 @@ repeats and the next 9.
 """
 
 
-class _Link:
+class _LinkCounts:
     """Counts of one seat's link during PLAYING.
 
     Args:
@@ -116,7 +116,7 @@ class MatchHealth:
         self._faults = before.faults if before else 0
         seats = before.seats if before else [None] * len(match.seats)
         second_beats = max(1, round(BEATS_PER_S * speed))
-        self._links = [_Link(seat, second_beats) for seat in seats]
+        self._links = [_LinkCounts(seat, second_beats) for seat in seats]
 
     def begin(self, now_s: float, late_s: float, doors: Sequence[Door]) -> None:
         """Note that a beat begins.

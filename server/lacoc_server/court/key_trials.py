@@ -17,7 +17,7 @@ _REMEMBERED = 32
 """Number of gaits whose moves are kept; older ones are forgotten."""
 
 
-class _Tried(NamedTuple):
+class _RobotTrials(NamedTuple):
     """The trials of one robot's keys."""
 
     found: list[Future[str]]
@@ -35,7 +35,7 @@ class KeyTrials:
 
     def __init__(self, aside: Callable[[Callable[[], str]], Future[str]]) -> None:
         self._aside = aside
-        self._tried: dict[object, _Tried] = {}
+        self._tried: dict[object, _RobotTrials] = {}
         """By the files of robot and gait; the newest last."""
 
     def __call__(self, seat: Seat, may_begin: bool) -> tuple[str, ...]:
@@ -50,7 +50,7 @@ class KeyTrials:
         if join is None or entry is None:
             return ()
         files = join.robot, join.locomotion
-        tried = self._tried.pop(files, None) or _Tried([], [])
+        tried = self._tried.pop(files, None) or _RobotTrials([], [])
         self._tried[files] = tried
         if len(self._tried) > _REMEMBERED:
             del self._tried[next(iter(self._tried))]

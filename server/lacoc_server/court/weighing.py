@@ -9,7 +9,7 @@ from typing import Self, TypeVar
 
 from lacoc_robots.stand_test import try_standing
 from lacoc_robots.standing import standing_postures
-from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_server.match.entry import JoinCheck, weigh_in
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import Join
 from lacoc_shared.mistakes import FileRefused, Mistake
@@ -28,11 +28,11 @@ class Weighing:
     thread, one at a time, and its result is kept: a second join with the same robot does not wait.
 
     Args:
-        admission: reads the files.
+        join_check: reads the files.
     """
 
-    def __init__(self, admission: Admission) -> None:
-        self._admission = admission
+    def __init__(self, join_check: JoinCheck) -> None:
+        self._join_check = join_check
         self._worker = ThreadPoolExecutor(1, "weighing")
         self._tests: dict[object, Future[list[Mistake]]] = {}
         """Stand tests by everything that their result depends on; the newest last."""
@@ -60,12 +60,12 @@ class Weighing:
             FileRefused: with every mistake of every file, or with what the robot did when it should
                 stand.
         """
-        admission = self._admission
-        whole, notes = admission(join, held)
+        join_check = self._join_check
+        whole, notes = join_check(join, held)
         file = whole.robot
-        assert file is not None, "an admission fills the robot file in"
-        levels = admission.levels
-        entry = weigh_in(file, whole.postures, whole.locomotion, admission.limits, levels)
+        assert file is not None, "the check of a join fills the robot file in"
+        levels = join_check.levels
+        entry = weigh_in(file, whole.postures, whole.locomotion, join_check.limits, levels)
         robot, gait = entry.robot, entry.gait
         postures = tuple(standing_postures(gait, levels, robot.start_posture))
         mistakes = self._tried(

@@ -9,7 +9,7 @@ from collections.abc import Collection
 
 import msgspec
 
-from lacoc_server.doors.sessions import Why
+from lacoc_server.doors.sessions import AnyToken, Why
 from lacoc_shared import codec, seal
 from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.inputs import Decide
@@ -18,10 +18,6 @@ from lacoc_shared.messages import DecisionRequest, Done, Enter, OutlookRequest, 
 from lacoc_shared.words import Phrase, say
 
 _NUMBER_MAX = 1e6  # largest absolute value of seconds, points and event numbers
-
-
-class _Token(msgspec.Struct):
-    token: str
 
 
 class _Name(msgspec.Struct):
@@ -59,7 +55,7 @@ class DecisionDesk:
             name: the decision's name, from the key expression of the request.
             payload: should be a `DecisionRequest`.
         """
-        refusal = self._check_token(payload, _Token)
+        refusal = self._check_token(payload, AnyToken)
         if refusal is not None:
             return refusal
         try:
@@ -86,7 +82,7 @@ class DecisionDesk:
         Args:
             payload: should be an `OutlookRequest`.
         """
-        refusal = self._check_token(payload, _Token)
+        refusal = self._check_token(payload, AnyToken)
         if refusal is not None:
             return refusal
         try:
@@ -97,7 +93,7 @@ class DecisionDesk:
             return self._refuse(Why.OUT_OF_RANGE, say("why.number-too-large"))
         return request
 
-    def _check_token(self, payload: bytes, kind: type[_Token] | type[Enter]) -> Refusal | None:
+    def _check_token(self, payload: bytes, kind: type[AnyToken] | type[Enter]) -> Refusal | None:
         try:
             token = codec.decode(payload, kind, DECISION_MAX_BYTES).token
         except codec.BadMessage as error:

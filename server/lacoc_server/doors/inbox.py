@@ -26,7 +26,7 @@ from lacoc_shared.inputs import (
     ReadySeat,
     SilentSeat,
 )
-from lacoc_shared.keyspace import COMMAND_MAX_BYTES, JOIN_MAX_BYTES, Keys
+from lacoc_shared.keyspace import COMMAND_MAX_BYTES, JOIN_MAX_BYTES, KeySpace
 from lacoc_shared.messages import (
     PROTOCOL,
     Command,
@@ -92,7 +92,7 @@ class Door(NamedTuple):
     """Number of refusals by `Why`."""
 
 
-class _Seat:
+class _SeatDoor:
     def __init__(self, index: int, name: str, last_seq: int, joined: bool) -> None:
         self.index = index
         self.name = name
@@ -123,10 +123,6 @@ class _Seat:
         return Refusal(said, again=again)
 
 
-class _Version(msgspec.Struct):
-    protocol: int
-
-
 MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
 
 
@@ -145,7 +141,7 @@ class Inbox:
 
     def __init__(
         self,
-        keys: Keys,
+        keys: KeySpace,
         seats: Sequence[str],
         check_files: CheckFiles,
         random_bytes: Callable[[int], bytes],
@@ -158,7 +154,7 @@ class Inbox:
         self._openings = Openings()
         self._check_files = check_files
         self._seats = [
-            _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
+            _SeatDoor(index, name, (last_seqs or {}).get(name, 0), name in joined)
             for index, name in enumerate(seats)
         ]
         self.links = Links(len(seats), most_delay_ms)
@@ -227,7 +223,7 @@ class Inbox:
         """
         seat = self._seats[index]
         try:
-            protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
+            protocol = codec.protocol_of(payload, JOIN_MAX_BYTES)
             if protocol != PROTOCOL:
                 said = say("refused.wrong-version", court=PROTOCOL, program=protocol)
                 return seat.refuse(Why.WRONG_VERSION, said)
@@ -255,7 +251,7 @@ class Inbox:
             self._weighed, seat, join, token_hash
         )
 
-    def _own_name(self, seat: _Seat, name: str) -> str:
+    def _own_name(self, seat: _SeatDoor, name: str) -> str:
         """Add the seat to a team's name if the team in another seat has a name that looks like it.
 
         Else no sentence about one of them would say which one it is about.
@@ -271,7 +267,9 @@ class Inbox:
         }
         return told_apart(name, others, seat.name, NAME_MAX)
 
-    def _frozen(self, seat: _Seat, join: Join, assigned: AssignedSeat, token_hash: str) -> JoinSeat:
+    def _frozen(
+        self, seat: _SeatDoor, join: Join, assigned: AssignedSeat, token_hash: str
+    ) -> JoinSeat:
         """Seat a team with the name and files that the office froze, whatever its join brings."""
         sent = (join.robot, join.postures, join.locomotion)
         differs = any(
@@ -282,7 +280,7 @@ class Inbox:
         seat.notes = (say("note.files-frozen"),) if differs else ()
         return frozen_join(seat.index, assigned, token_hash)
 
-    def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
+    def _weighed(self, seat: _SeatDoor, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
         """Check a join's files; return None while they are being weighed in.
 
         Bad files keep no team out of its seat in a match that has begun: the join then has the
@@ -355,7 +353,7 @@ class Inbox:
         """Free a seat after the match has accepted a leave request."""
         self._empty(self._seats[index], Why.LEFT)
 
-    def _empty(self, seat: _Seat, why: Why) -> None:
+    def _empty(self, seat: _SeatDoor, why: Why) -> None:
         self._sessions.end(seat.index, why)
         seat.joined = False
         seat.heard_s = None
@@ -370,7 +368,7 @@ class Inbox:
         """Return the health of each seat's link."""
         return tuple(self._health(seat, now_s) for seat in self._seats)
 
-    def _health(self, seat: _Seat, now_s: float) -> SeatHealth:
+    def _health(self, seat: _SeatDoor, now_s: float) -> SeatHealth:
         trip = self.links.trip(seat.index)
         recent = sum(at_s > now_s - _RATE_WINDOW_S for at_s in seat.valid_s)
         return SeatHealth(
@@ -385,7 +383,7 @@ class Inbox:
             late=self.links.late(seat.index),
         )
 
-    def _own(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Command]:
+    def _own(self, seat: _SeatDoor, payloads: Sequence[bytes]) -> list[Command]:
         """Return the newest commands that the seat's holder sealed, the oldest of them first.
 
         Messages of others use up nothing of the seat's allowance.
@@ -407,7 +405,7 @@ class Inbox:
             seat.refused[Why.FLOOD.value] += len(payloads) - looked_at
         return own[::-1]
 
-    def _take(self, seat: _Seat, command: Command) -> None:
+    def _take(self, seat: _SeatDoor, command: Command) -> None:
         why = self._nonsense(seat, command)
         is_new = command.seq > seat.last_seq
         if why is None and not (self.links.heard(seat.index, command) or is_new):
@@ -422,7 +420,7 @@ class Inbox:
             seat.last_seq = command.seq
             self.links.hold(seat.index, command)
 
-    def _proven(self, seat: _Seat, payload: bytes) -> Command | Why:
+    def _proven(self, seat: _SeatDoor, payload: bytes) -> Command | Why:
         if len(payload) > COMMAND_MAX_BYTES:
             return Why.TOO_LONG
         try:
@@ -436,7 +434,7 @@ class Inbox:
         expected = seal.command_mac(secret, self._keys.command(seat.name), *numbers)
         return command if seal.same(mac, expected) else Why.BAD_SEAL
 
-    def _nonsense(self, seat: _Seat, command: Command) -> Why | None:
+    def _nonsense(self, seat: _SeatDoor, command: Command) -> Why | None:
         if command.level not in (Level.POSTURE, Level.LOCOMOTION):
             return Why.OUT_OF_RANGE
         if not 0 <= command.key <= RESTART_KEY:
@@ -468,7 +466,7 @@ class Inbox:
             return seat.refuse(Why.OLD, say("refused.request-old"))
         return request
 
-    def _presence(self, seat: _Seat, is_silent: bool) -> list[Input]:
+    def _presence(self, seat: _SeatDoor, is_silent: bool) -> list[Input]:
         """Return the input that corrects the match if it is wrong about a seat's silence.
 
         `is_silent` is what the match believes. A new match, or one that goes on after a restart of

@@ -42,7 +42,7 @@ class Trip(NamedTuple):
     p95_s: float
 
 
-class _Frame(NamedTuple):
+class _SentFrame(NamedTuple):
     sent_s: float
     delay_s: float
     """Time from sending the frame to the effect of answers to it [s]; 0: no common delay."""
@@ -53,21 +53,21 @@ class _Frame(NamedTuple):
         return self.sent_s + self.delay_s - BEAT_S / 2
 
 
-class _Held(NamedTuple):
+class _HeldCommand(NamedTuple):
     due_s: float
     tick: int
     command: Command
-    upon: _Frame | None
+    upon: _SentFrame | None
 
 
 @dataclass
-class _Link:
+class _LinkState:
     samples: deque[tuple[int, float]] = field(default_factory=deque)
     """Round trips [s], each with its tick."""
     newest: tuple[int, int] = _NONE
     """Match and beat of the newest frame that a command named."""
     trip: Trip | None = None
-    held: deque[_Held] = field(default_factory=deque)
+    held: deque[_HeldCommand] = field(default_factory=deque)
     """Held commands, in the order in which they arrived and take effect."""
     late: int = 0
 
@@ -81,14 +81,14 @@ class Links:
     """
 
     def __init__(self, seats: int, most_ms: int = 0) -> None:
-        self._links = [_Link() for _ in range(seats)]
+        self._links = [_LinkState() for _ in range(seats)]
         self._most_beats = round(most_ms / 1000 / BEAT_S)
         self._delay_beats = 0
         self._match, self._beat = 1, 0
         self._tick = 0
         """Number of beats so far, in all matches of the court."""
         self._begun_s: deque[float] = deque([0.0, 0.0], maxlen=2)
-        self._frames: deque[_Frame] = deque(maxlen=WINDOW_BEATS)
+        self._frames: deque[_SentFrame] = deque(maxlen=WINDOW_BEATS)
 
     @property
     def delay_ms(self) -> int:
@@ -144,14 +144,14 @@ class Links:
         """Take in a new key; `release` returns it when it takes effect."""
         link, now_s = self._links[seat], self._begun_s[-1]
         frame = self._seen(command)
-        upon = frame or (self._frames[-1] if self._frames else _Frame(now_s, 0.0))
+        upon = frame or (self._frames[-1] if self._frames else _SentFrame(now_s, 0.0))
         # A sender could name an older frame than it had, so that its keys are held for less time.
         # Its p95 limits that.
         believed_s = TRUST_S + (link.trip.p95_s if link.trip else 0.0)
         if upon.sent_s < now_s - believed_s:
             upon = self._frame(now_s - believed_s)
         last_s = link.held[-1].due_s if link.held else 0.0
-        link.held.append(_Held(max(upon.due_s, last_s), self._tick, command, frame))
+        link.held.append(_HeldCommand(max(upon.due_s, last_s), self._tick, command, frame))
 
     def release(self, seat: int) -> list[KeySeat]:
         """Return the keys that take effect in this beat, in their order."""
@@ -175,12 +175,12 @@ class Links:
 
     def drop(self, seat: int) -> None:
         """Forget the link of a seat and its held commands, because its contestant left."""
-        self._links[seat] = _Link()
+        self._links[seat] = _LinkState()
 
-    def _frame(self, sent_s: float) -> _Frame:
-        return _Frame(sent_s, self._delay_beats * BEAT_S)
+    def _frame(self, sent_s: float) -> _SentFrame:
+        return _SentFrame(sent_s, self._delay_beats * BEAT_S)
 
-    def _seen(self, command: Command) -> _Frame | None:
+    def _seen(self, command: Command) -> _SentFrame | None:
         """Find the frame that a command names, or the oldest known frame if it names an older one.
 
         None if the command names a frame of another match, or if no frame is known.
@@ -189,13 +189,13 @@ class Links:
             return None
         return self._frames[-min(self._beat - command.seen, len(self._frames))]
 
-    def _late(self, frame: _Frame | None) -> int:
+    def _late(self, frame: _SentFrame | None) -> int:
         """Count the beats by which an answer to a frame is late; 0: it is in time."""
         if frame is None or not frame.delay_s or frame.due_s > self._begun_s[-2]:
             return 0
         return max(1, int((self._begun_s[-1] - frame.due_s) / BEAT_S))
 
-    def _measure(self, link: _Link) -> None:
+    def _measure(self, link: _LinkState) -> None:
         samples = link.samples
         while samples and samples[0][0] <= self._tick - WINDOW_BEATS:
             samples.popleft()

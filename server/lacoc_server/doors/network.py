@@ -17,7 +17,7 @@ from lacoc_server.doors.outbox import Outbox
 from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
-from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, Keys
+from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, KeySpace
 from lacoc_shared.messages import (
     Done,
     Event,
@@ -33,7 +33,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.messages.office import Assigned, Copied, Whereabouts
 from lacoc_shared.network.certificate import Pair
-from lacoc_shared.network.session import Desk, Request, Ring, open_court
+from lacoc_shared.network.session import Request, RequestQueue, Ring, open_court
 from lacoc_shared.words import Phrase
 
 _RING = LOOKED_AT_PER_BEAT
@@ -84,7 +84,7 @@ class CourtNetwork:
 
     def __init__(
         self,
-        keys: Keys,
+        keys: KeySpace,
         listen: Sequence[str],
         inbox: Inbox,
         decision_desk: DecisionDesk,
@@ -104,7 +104,7 @@ class CourtNetwork:
         self._sheet = session.publisher(keys.sheet)
         self._health = session.publisher(keys.health)
         self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
-        self._desks: list[tuple[Desk, _Judge]] = [
+        self._desks: list[tuple[RequestQueue, _Judge]] = [
             (session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
             for what, judge in (
                 ("join", inbox.join),
@@ -120,7 +120,7 @@ class CourtNetwork:
         if office_desk is not None:
             self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
         self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk)))
-        self._waiting: dict[Desk, tuple[Request, _Later]] = {}
+        self._waiting: dict[RequestQueue, tuple[Request, _Later]] = {}
         """The request at each desk that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
@@ -258,7 +258,7 @@ class CourtNetwork:
             _serve(self._scene_desk, lambda: self._scene_bytes)
         _serve(self._log_desk, lambda: encode(tuple(self._log)))
 
-    def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
+    def _let_in(self, desk: RequestQueue, judge: _Judge) -> Iterator[Arrival]:
         for _ in range(_REQUESTS_PER_BEAT):
             if desk in self._waiting:
                 request, later = self._waiting.pop(desk)
@@ -327,7 +327,7 @@ def _empty(ring: Ring) -> list[bytes]:
     return waiting
 
 
-def _serve(desk: Desk, payload: Callable[[], bytes]) -> None:
+def _serve(desk: RequestQueue, payload: Callable[[], bytes]) -> None:
     """Answer clients that fetch something, at most 8 in a beat; the others wait."""
     for _ in range(_FETCHES_PER_BEAT):
         request = desk.take()

@@ -13,7 +13,7 @@ from typing import Annotated, Generic, NamedTuple, TypeVar
 import msgspec
 
 from lacoc_server.doors.inbox import FILE_NAME_MAX, NAME_MAX
-from lacoc_server.doors.sessions import Why
+from lacoc_server.doors.sessions import AnyToken, Why
 from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared import codec, seal
 from lacoc_shared.codec import encode
@@ -57,15 +57,14 @@ Answer = _Reply | Callable[[], _Reply | None]
 """An answer, or a function that is called in each beat until it returns one."""
 
 
-class Wanted(NamedTuple, Generic[T]):
+class WantedMatch(NamedTuple, Generic[T]):
     """What the office wants the court to open next."""
 
     prepared: T | None
     """The prepared match; None: the court shall wait."""
 
 
-class _Token(msgspec.Struct):
-    token: str
+class _OfficeToken(AnyToken):
     generation: Annotated[int, msgspec.Meta(ge=0)] = 0
 
 
@@ -88,7 +87,7 @@ class OfficeDesk(Generic[T]):
         self._copy_part = copy_part
         self.retired = False
         """Whether the court goes on at another machine, so that this process must end."""
-        self.wanted: Wanted[T] | None = None
+        self.wanted: WantedMatch[T] | None = None
         """What the court shall open next, as soon as its match allows it; None: nothing."""
         self.teams = TeamDesk()
         """Answers teams with what the office tells."""
@@ -123,7 +122,7 @@ class OfficeDesk(Generic[T]):
             payload: should be an `Assign`, a `Withdraw`, a `Tell`, a `Copy` or a `Retire`.
         """
         try:
-            asking = codec.decode(payload, _Token, ASSIGN_MAX_BYTES)
+            asking = codec.decode(payload, _OfficeToken, ASSIGN_MAX_BYTES)
             if not seal.verify_token(asking.token, self._token_hash):
                 return self._refuse(Why.WRONG_TOKEN, say("refused.no-office-token"))
             if asking.generation < self._generation:
@@ -176,7 +175,7 @@ class OfficeDesk(Generic[T]):
             if isinstance(found, Refusal):
                 self.refused[Why.BAD_FILES.value] += 1
                 return found
-            self.wanted = None if found is None else Wanted(found)
+            self.wanted = None if found is None else WantedMatch(found)
         return None
 
     def _withdraw(self, request: Withdraw) -> Answer:
@@ -190,7 +189,7 @@ class OfficeDesk(Generic[T]):
             return self._busy()
         if self._phase is Phase.OFFICIAL and not request.official:
             return self._refuse(Why.OLD, say("refused.call-is-over", call=request.call))
-        self.wanted = Wanted(None)
+        self.wanted = WantedMatch(None)
         return None
 
     @property

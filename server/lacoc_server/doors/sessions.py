@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
+import msgspec
+
 from lacoc_shared.seal import SECRET_BYTES
 
 _REMEMBERED = 64
@@ -32,8 +34,14 @@ class Why(StrEnum):
     BAD_DECISION = "bad-decision"
 
 
+class AnyToken(msgspec.Struct):
+    """The token of a request, whatever else the request has."""
+
+    token: str
+
+
 @dataclass
-class _Held:
+class _SeatHolder:
     seat: int
     secret: bytes
     requests: int = 0
@@ -49,7 +57,7 @@ class Sessions:
 
     def __init__(self, random_bytes: Callable[[int], bytes]) -> None:
         self._random_bytes = random_bytes
-        self._held: dict[int, _Held] = {}
+        self._held: dict[int, _SeatHolder] = {}
         """The sessions that hold a seat, by number."""
         self._ended: dict[int, tuple[int, Why]] = {}
         """Seat of each ended session and why it ended; only the newest are kept."""
@@ -64,7 +72,7 @@ class Sessions:
         # Random, so that a restarted court does not take an old number for one of its own.
         number = 1 + int.from_bytes(self._random_bytes(4)) % (2**32 - 1)
         secret = self._random_bytes(SECRET_BYTES)
-        self._held[number] = _Held(seat, secret)
+        self._held[number] = _SeatHolder(seat, secret)
         return number, secret
 
     def end(self, seat: int, why: Why) -> None:

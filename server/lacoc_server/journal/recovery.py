@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lacoc_arenas.arena import Arena, is_installed
-from lacoc_server.journal.replay import Resumed, resume
+from lacoc_server.journal.replay import ResumedMatch, resume
 from lacoc_server.journal.verdict import other_arithmetic
 from lacoc_server.match.match import Match
 from lacoc_server.world import arithmetic
@@ -155,7 +155,7 @@ def _can_not_go_on(path: Path, error: UserError) -> UserError:
     return UserError(say("resume.cannot", file=str(path), why=error.phrase))
 
 
-def _as_left(record: Record, resumed: Resumed, segment: int) -> Unfinished:
+def _as_left(record: Record, resumed: ResumedMatch, segment: int) -> Unfinished:
     match = resumed.match
     held = [seat for seat in match.seats if seat.join]
     return Unfinished(

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from lacoc_robots.model import MODEL_VERSION
 from lacoc_server.journal.judge import Judge, fits_together
-from lacoc_server.journal.section import BOUND, Finding, Section, Worlds, simulate
-from lacoc_server.journal.verdict import Kind, Verdict, conclude
+from lacoc_server.journal.section import BOUND, Section, SectionFinding, Worlds, simulate_section
+from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
 from lacoc_shared.mistakes import UserError
@@ -53,7 +53,7 @@ def verify(
     """
     _same_physics(record)
     judge = Judge(record, folder, dict(record.snapshots))
-    findings: list[Finding] = []
+    findings: list[SectionFinding] = []
     beats = 0
     for finding in _simulated(judge, bound, _processes(record, processes)):
         findings.append(finding)
@@ -71,7 +71,7 @@ def verify(
 
 
 @dataclass(frozen=True)
-class Resumed:
+class ResumedMatch:
     """A match that can go on."""
 
     match: Match
@@ -81,7 +81,7 @@ class Resumed:
     """
 
 
-def resume(record: Record, at: int | None = None, folder: Path | None = None) -> Resumed:
+def resume(record: Record, at: int | None = None, folder: Path | None = None) -> ResumedMatch:
     """Continue a match where its record ends.
 
     Up to the newest snapshot the recorded poses take the place of physics; only the rest is
@@ -109,13 +109,13 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     for _ in judge.sections():
         pass
     match, section = judge.match, judge.section
-    findings: list[Finding] = []
+    findings: list[SectionFinding] = []
     physics = match.physics
     if section is not None:
         with fits_together(record):
             world = judge.worlds.at_start(section)
         if section.steps:
-            findings.append(simulate(section, judge.worlds))
+            findings.append(simulate_section(section, judge.worlds))
             world.digest = section.steps[-1].digest
         # Keep what was published, even if this machine computes other last bits.
         world.scene, world.scene_hash = physics.scene, physics.scene_hash
@@ -125,18 +125,18 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     if not verdict.same:
         raise UserError(say("resume.differs", verdict=verdict.said, versions=_versions(record)))
     match.take_up(physics, World)
-    return Resumed(match, None if verdict.kind is Kind.SAME else verdict.distance)
+    return ResumedMatch(match, None if verdict.kind is VerdictKind.SAME else verdict.distance)
 
 
-def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
+def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[SectionFinding]:
     """Simulate each section of a record as soon as `judge` has reached it; yield in their order."""
     if processes <= 1:
         worlds = Worlds()
         for section in judge.sections():
-            yield simulate(section, worlds, bound)
+            yield simulate_section(section, worlds, bound)
         return
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin) as pool:
-        waiting: deque[Future[Finding]] = deque()
+        waiting: deque[Future[SectionFinding]] = deque()
         for section in judge.sections():
             waiting.append(pool.submit(_simulate, section, bound))
             while waiting and waiting[0].done():
@@ -161,8 +161,8 @@ def _begin() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _simulate(section: Section, bound: float) -> Finding:
-    return simulate(section, _worlds, bound)
+def _simulate(section: Section, bound: float) -> SectionFinding:
+    return simulate_section(section, _worlds, bound)
 
 
 def _same_physics(record: Record) -> None:

@@ -112,7 +112,7 @@ class Section:
 
 
 @dataclass
-class Finding:
+class SectionFinding:
     """Result of a section's simulation."""
 
     first_beat: int
@@ -162,7 +162,7 @@ class Worlds:
         return self._world
 
 
-def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
+def simulate_section(section: Section, worlds: Worlds, bound: float = BOUND) -> SectionFinding:
     """Simulate a section and compare it with the record.
 
     Args:
@@ -171,7 +171,7 @@ def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
         bound: largest distance that another arithmetic may reach [m, rad]; where the simulation is
             farther from the record, it stops.
     """
-    found = Finding(section.first_beat, section.last_beat)
+    found = SectionFinding(section.first_beat, section.last_beat)
     try:
         world = worlds.at_start(section)
     except ValueError:
@@ -188,7 +188,7 @@ def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
     return found
 
 
-def _step(step: Step, before: bytes, world: World, found: Finding, bound: float) -> None:
+def _step(step: Step, before: bytes, world: World, found: SectionFinding, bound: float) -> None:
     for seat, place in step.places:
         world.place(seat, place)
     ticked = False
@@ -211,7 +211,7 @@ def _step(step: Step, before: bytes, world: World, found: Finding, bound: float)
 
 
 def _end(
-    saved: bytes, step: Step, before: bytes, world: World, found: Finding, bound: float
+    saved: bytes, step: Step, before: bytes, world: World, found: SectionFinding, bound: float
 ) -> None:
     """Compare the world with the snapshot at the end, and the snapshot with the frame of its beat.
 

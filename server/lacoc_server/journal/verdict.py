@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from lacoc_server.journal.section import BOUND, FRAME_FIELDS, Difference, Finding
+from lacoc_server.journal.section import BOUND, FRAME_FIELDS, Difference, SectionFinding
 from lacoc_server.world import arithmetic
 from lacoc_shared.record.schema import Header
 from lacoc_shared.words import Phrase, say
@@ -13,7 +13,7 @@ _ORDER = ("frame-missing", *FRAME_FIELDS)
 """Order in which a beat's differences are listed; all others come after them."""
 
 
-class Kind(StrEnum):
+class VerdictKind(StrEnum):
     """The three verdicts."""
 
     SAME = "same"
@@ -28,7 +28,7 @@ class Kind(StrEnum):
 class Verdict:
     """Result of a verification."""
 
-    kind: Kind
+    kind: VerdictKind
     beats: int
     """Number of beats judged again."""
     frames: int
@@ -49,7 +49,7 @@ class Verdict:
     @property
     def same(self) -> bool:
         """True if the record is what its inputs give, with this or another arithmetic."""
-        return self.kind is not Kind.DIFFERS
+        return self.kind is not VerdictKind.DIFFERS
 
 
 def conclude(
@@ -57,7 +57,7 @@ def conclude(
     beats: int,
     frames: int,
     judged: Iterable[Difference | None],
-    findings: Sequence[Finding],
+    findings: Sequence[SectionFinding],
     other_model: Difference | None = None,
     bound: float = BOUND,
 ) -> Verdict:
@@ -86,10 +86,10 @@ def conclude(
         names = {name for difference in found if difference.beat == first for name in difference[1]}
         ranked = sorted(names, key=_rank)
         said = say("verdict.differs", beat=first, differs=ranked)
-        return Verdict(Kind.DIFFERS, beats, frames, len(findings), said, first)
+        return Verdict(VerdictKind.DIFFERS, beats, frames, len(findings), said, first)
     others = [finding for finding in findings if finding.bits is not None]
     if not others and other_model is None:
-        return Verdict(Kind.SAME, beats, frames, len(findings), say("verdict.same"))
+        return Verdict(VerdictKind.SAME, beats, frames, len(findings), say("verdict.same"))
     worst = max(others, key=lambda finding: finding.distance, default=None)
     said = say("verdict.other-arithmetic")
     if worst is not None:
@@ -103,7 +103,7 @@ def conclude(
             bound=f"{bound:g}",
         )
     return Verdict(
-        Kind.OTHER_ARITHMETIC,
+        VerdictKind.OTHER_ARITHMETIC,
         beats,
         frames,
         len(findings),
@@ -113,7 +113,7 @@ def conclude(
     )
 
 
-def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
+def may_differ(headers: Sequence[Header], finding: SectionFinding) -> bool:
     """Return whether the recorded bits of a section may differ from those computed here.
 
     They may if some of its beats were recorded with another arithmetic, or an unnamed one.

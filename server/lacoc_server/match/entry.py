@@ -102,7 +102,7 @@ def _weigh_in(
 
 
 @dataclass(frozen=True)
-class Admission:
+class JoinCheck:
     """Fills in the files that a join lacks, and checks them all.
 
     A join without any file gets the files of its seat if its team has that seat, else the contest's

@@ -40,7 +40,7 @@ class Illegal(ValueError):
 
 
 @dataclass(frozen=True)
-class _Rule:
+class _DecisionRule:
     """When a decision is legal, and what it does."""
 
     phases: frozenset[Phase]
@@ -373,37 +373,37 @@ def _enter(phase: Phase) -> Callable[[MatchState, d.Decision], None]:
     return lambda match, decision: match.enter(phase)
 
 
-_RULES: dict[type[d.Decision], _Rule] = {
-    d.Ready: _Rule(
+_RULES: dict[type[d.Decision], _DecisionRule] = {
+    d.Ready: _DecisionRule(
         frozenset({Phase.LOBBY}),
         _ready,
         lambda match, decision: contestant.ready(match, _seat(match, decision.seat), True),
         also=_nobody,
     ),
-    d.Start: _Rule(frozenset({Phase.READY}), _start, _begin_countdown, also=_missing),
-    d.Halt: _Rule(
+    d.Start: _DecisionRule(frozenset({Phase.READY}), _start, _begin_countdown, also=_missing),
+    d.Halt: _DecisionRule(
         frozenset({Phase.COUNTDOWN, Phase.PLAYING}),
         lambda match, decision: say("decision.halt"),
         _enter(Phase.HALTED),
     ),
-    d.Resume: _Rule(frozenset({Phase.HALTED}), _resume, _begin_countdown),
-    d.Restart: _Rule(_PLAY, _restart),
-    d.Freeze: _Rule(_PLAY, _freeze),
-    d.Unfreeze: _Rule(_PLAY, _unfreeze),
-    d.Adjust: _Rule(_SCORED, _adjust),
-    d.Set: _Rule(_SCORED, _set, also=_no_board),
-    d.TakeBack: _Rule(
+    d.Resume: _DecisionRule(frozenset({Phase.HALTED}), _resume, _begin_countdown),
+    d.Restart: _DecisionRule(_PLAY, _restart),
+    d.Freeze: _DecisionRule(_PLAY, _freeze),
+    d.Unfreeze: _DecisionRule(_PLAY, _unfreeze),
+    d.Adjust: _DecisionRule(_SCORED, _adjust),
+    d.Set: _DecisionRule(_SCORED, _set, also=_no_board),
+    d.TakeBack: _DecisionRule(
         frozenset({Phase.HALTED, Phase.FINISHED}),
         lambda match, decision: _struck(match, decision.event),  # `decide` has its own way
     ),
-    d.Clock: _Rule(
+    d.Clock: _DecisionRule(
         _SCORED,  # time that was taken away by mistake can be given back after the end
         _clock,
         lambda match, decision: _follow(match, match.history.over),
         also=_no_clock,
     ),
-    d.Abort: _Rule(_OPEN, _abort, _enter(Phase.VOID)),
-    d.Declare: _Rule(frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play),
-    d.Official: _Rule(frozenset({Phase.FINISHED}), _official, _enter(Phase.OFFICIAL)),
-    d.Next: _Rule(frozenset({Phase.OFFICIAL, Phase.VOID}), _next, also=_by_office),
+    d.Abort: _DecisionRule(_OPEN, _abort, _enter(Phase.VOID)),
+    d.Declare: _DecisionRule(frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play),
+    d.Official: _DecisionRule(frozenset({Phase.FINISHED}), _official, _enter(Phase.OFFICIAL)),
+    d.Next: _DecisionRule(frozenset({Phase.OFFICIAL, Phase.VOID}), _next, also=_by_office),
 }

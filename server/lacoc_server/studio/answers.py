@@ -23,7 +23,7 @@ from lacoc_server.trial.support import margins_m
 from lacoc_server.trial.told import told
 from lacoc_server.trial.walk import Floats, Press, Walk
 from lacoc_shared import __version__
-from lacoc_shared.codec import BadMessage, decode, encode, message_hash
+from lacoc_shared.codec import BadMessage, decode, encode, message_hash, protocol_of
 from lacoc_shared.gait.joining import join_postures, sample_sequences
 from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
@@ -61,7 +61,7 @@ class Answer(NamedTuple):
     payload: bytes
 
 
-class Files(NamedTuple):
+class RobotWithGait(NamedTuple):
     """The robot and the gait that were read from a request's files."""
 
     robot: RobotSpec
@@ -120,7 +120,7 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
         BadMessage: if the bytes are not such a request, or too many.
         UserError: if the request uses another version of the protocol.
     """
-    protocol = decode(payload, _Version, STUDIO_MAX_BYTES).protocol
+    protocol = protocol_of(payload, STUDIO_MAX_BYTES)
     if protocol != PROTOCOL:
         raise UserError(say("studio.wrong-version", studio=PROTOCOL, program=protocol))
     return decode(payload, kind, STUDIO_MAX_BYTES)
@@ -143,7 +143,7 @@ def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
     return Refusal(say("refused.bad-request", error=str(error)))
 
 
-def read_files(files: GaitFiles) -> Files:
+def read_files(files: GaitFiles) -> RobotWithGait:
     """Read a robot and its gait.
 
     Without a robot file, the robot is the workshop's. Without any file, the gait is the workshop's
@@ -182,11 +182,11 @@ def read_files(files: GaitFiles) -> Files:
     if postures is None and locomotion is None:
         raise UserError(say("studio.no-gait"))
     if postures is None or locomotion is not None:
-        return Files(robot, Gait(postures, locomotion), None, notes)
+        return RobotWithGait(robot, Gait(postures, locomotion), None, notes)
     if files.sequences is None:
-        return Files(robot, Gait(postures, sample_sequences(postures)), SAMPLE_KEYS, notes)
+        return RobotWithGait(robot, Gait(postures, sample_sequences(postures)), SAMPLE_KEYS, notes)
     joined = join_postures(postures, sent[0].name, files.sequences)
-    return Files(robot, Gait(postures, joined), files.sequences, notes)
+    return RobotWithGait(robot, Gait(postures, joined), files.sequences, notes)
 
 
 def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None = None) -> Trial:
@@ -215,10 +215,6 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
     if not figures.cycles:
         notes.append(say("trial.no-cycle", seconds=figures.seconds))
     return Trial(last, walk, figures, explain(course.robot, walk, figures, last, sequence), notes)
-
-
-class _Version(msgspec.Struct):
-    protocol: int
 
 
 def _check_name(file: SentFile | None) -> None:

@@ -27,7 +27,7 @@ Tell = Callable[[str, Progress], None]
 """Takes the name of a search, and its progress."""
 
 
-class _Search(NamedTuple):
+class _WaitingSearch(NamedTuple):
     request: SearchRequest
     done: Done
     stop: threading.Event
@@ -50,8 +50,8 @@ class Searches:
         self._jobs = jobs
         self._tell = tell
         self._failed = failed
-        self._waiting: deque[_Search] = deque()
-        self._running: _Search | None = None
+        self._waiting: deque[_WaitingSearch] = deque()
+        self._running: _WaitingSearch | None = None
         self._changed = threading.Condition()
         self._closing = False
         self._workers: Workers | None = None
@@ -71,7 +71,7 @@ class Searches:
                 raise UserError(say("studio.job-taken", job=request.job))
             if len(self._waiting) >= _MOST_WAITING:
                 raise Busy(say("studio.coach-busy"))
-            self._waiting.append(_Search(request, done, threading.Event()))
+            self._waiting.append(_WaitingSearch(request, done, threading.Event()))
             self._changed.notify()
 
     def cancel(self, job: str) -> None:
@@ -108,7 +108,7 @@ class Searches:
         """The ids of the processes that run now."""
         return () if self._workers is None else self._workers.processes
 
-    def _all(self) -> list[_Search]:
+    def _all(self) -> list[_WaitingSearch]:
         return [*([self._running] if self._running else []), *self._waiting]
 
     def _run(self) -> None:
@@ -128,7 +128,7 @@ class Searches:
                 self._running = None  # first free the name, then send the answer
             search.done(answer)
 
-    def _answer(self, search: _Search, workers: Workers) -> Answer:
+    def _answer(self, search: _WaitingSearch, workers: Workers) -> Answer:
         request = search.request
         told_s = -_TELL_S
 

@@ -48,7 +48,7 @@ class WorkerFailed(Exception):
     """A job raised an error, which is a bug; the text is its traceback."""
 
 
-class _Job(NamedTuple):
+class _WorkerJob(NamedTuple):
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
     result: "Future[Any]"
@@ -71,9 +71,9 @@ class Workers:
         self.count = jobs or os.cpu_count() or 1
         self._background = background
         self._limit_s = limit_s
-        self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
+        self._jobs: SimpleQueue[_WorkerJob | None] = SimpleQueue()
         self._closing = False
-        self._children: set[_Child] = set()
+        self._children: set[_WorkerProcess] = set()
         self._threads = [threading.Thread(target=self._run, daemon=True) for _ in range(self.count)]
         for thread in self._threads:
             thread.start()
@@ -106,7 +106,7 @@ class Workers:
         """
         assert not named, "a job has positional arguments only"
         result: Future[T] = Future()
-        self._jobs.put(_Job(function, arguments, result))
+        self._jobs.put(_WorkerJob(function, arguments, result))
         return result
 
     def close(self) -> None:
@@ -141,26 +141,26 @@ class Workers:
         self._children.discard(child)
         child.end()
 
-    def _replaced(self, child: "_Child") -> "_Child":
+    def _replaced(self, child: "_WorkerProcess") -> "_WorkerProcess":
         self._children.discard(child)
         child.end()
         return self._child()
 
-    def _child(self) -> "_Child":
-        child = _Child(self._background)
+    def _child(self) -> "_WorkerProcess":
+        child = _WorkerProcess(self._background)
         self._children.add(child)
         if self._closing:  # `close` may have missed this new process
             child.process.kill()
         return child
 
 
-class _Child:
+class _WorkerProcess:
     """A process, and the pipe to it."""
 
     def __init__(self, background: bool) -> None:
         self._connection, other = _SPAWN.Pipe()
         bot, looks = _SPAWN.RawArray("c", time_limit.NAME_BYTES), _SPAWN.RawValue("L", 0)
-        self._shown = time_limit.Shown(bot, looks)
+        self._shown = time_limit.ShownBots(bot, looks)
         arguments = (other, background, self._shown)
         self.process = _SPAWN.Process(target=_work, args=arguments, daemon=True)
         self.process.start()
@@ -213,7 +213,9 @@ class _Child:
         self.process.join(_END_S)
 
 
-def _work(connection: "Connection[Any, Any]", background: bool, shown: time_limit.Shown) -> None:
+def _work(
+    connection: "Connection[Any, Any]", background: bool, shown: time_limit.ShownBots
+) -> None:
     """Run the functions that come through the pipe until its other end is closed.
 
     Args:

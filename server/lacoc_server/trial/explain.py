@@ -40,7 +40,7 @@ more than this part of the cycle."""
 _BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.9, 3.0, 20.0, 15.0
 
 
-class Finding(NamedTuple):
+class TrialFinding(NamedTuple):
     """A situation that a rule found."""
 
     rank: float
@@ -52,7 +52,7 @@ class Finding(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Seen:
+class SeenTrial:
     """The trial that the rules look at."""
 
     robot: RobotSpec
@@ -99,7 +99,7 @@ def explain(
     Returns:
         At most `MOST_SENTENCES` sentences, the most useful first.
     """
-    seen = Seen(robot, walk, figures, press, tuple(sequence))
+    seen = SeenTrial(robot, walk, figures, press, tuple(sequence))
     found = [finding for rule in _RULES for finding in rule(seen)]
     found.sort(key=lambda finding: -finding.rank)
     return [
@@ -111,7 +111,7 @@ def explain(
 # Causes in the table.
 
 
-def _limits(seen: Seen) -> Iterator[Finding]:
+def _limits(seen: SeenTrial) -> Iterator[TrialFinding]:
     """Find the first angle that is within half a degree of an end of its joint's range."""
     cells = [
         (posture, leg, level)
@@ -123,14 +123,14 @@ def _limits(seen: Seen) -> Iterator[Finding]:
     if cells:
         first = cells[0]
         said = say("explain.limit", cell=seen.cell(*first), angle_deg=seen.degrees(*first))
-        yield Finding(90, said, first[1], seen.place(*first))
+        yield TrialFinding(90, said, first[1], seen.place(*first))
 
 
 def _at_limit(angle_deg: float, range_deg: tuple[float, float]) -> bool:
     return any(abs(angle_deg - end) < _AT_LIMIT_DEG for end in range_deg)
 
 
-def _seam(seen: Seen) -> Iterator[Finding]:
+def _seam(seen: SeenTrial) -> Iterator[TrialFinding]:
     """Find the joint that jumps most from the last posture to the first, if one jumps there."""
     postures = len(seen.sequence)
     if postures < 3:
@@ -147,13 +147,13 @@ def _seam(seen: Seen) -> Iterator[Finding]:
         _, seam_deg, leg, level = max(jumps)
         last = postures - 1, leg, level
         said = say("explain.seam", cell=seen.cell(*last), jump_deg=seam_deg)
-        yield Finding(80, said, leg, seen.place(*last))
+        yield TrialFinding(80, said, leg, seen.place(*last))
 
 
 # Causes in the way a leg moves, as the table commands it.
 
 
-def _legs(seen: Seen) -> Iterator[Finding]:
+def _legs(seen: SeenTrial) -> Iterator[TrialFinding]:
     """Find legs that differ from the others: they drag, push the wrong way or are out of step."""
     if len(seen.sequence) < 2 or not seen.figures.cycles:
         return
@@ -165,7 +165,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
     for leg in dragged:
         at = steps.swings_to(leg), leg, 1
         slip_mm_s = seen.figures.slip_legs_mm_s[leg]
-        yield Finding(
+        yield TrialFinding(
             70 + 1 - highest_m[leg] / usual_m,
             say("explain.dragged", leg=labels[leg], cell=seen.cell(*at), slip_mm_s=slip_mm_s),
             leg,
@@ -175,7 +175,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
         against = -swing_m2[leg] * math.copysign(1, usual_m2)
         if against > _AGAINST * abs(usual_m2) > _AGAINST * _SWING_M2 and leg not in dragged:
             ahead, at = steps.ahead_m[leg], (steps.swings_to(leg), leg, 0)
-            yield Finding(
+            yield TrialFinding(
                 72 + min(1.0, against / abs(usual_m2)),
                 say(
                     "explain.backward",
@@ -189,7 +189,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
     yield from _out_of_step(seen, steps, [leg for leg in legs if leg not in dragged])
 
 
-def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
+def _out_of_step(seen: SeenTrial, steps: Steps, legs: Sequence[int]) -> Iterator[TrialFinding]:
     """Find the one leg of `legs` that is lifted at another time than all others.
 
     Nothing is found if several legs are lifted alone.
@@ -206,7 +206,7 @@ def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Find
     if gaps[leg] > _APART and max(others) < _APART:
         cycle_s = seen.figures.cycle_s or 0.0
         at = steps.swings_to(leg), leg, 1
-        yield Finding(
+        yield TrialFinding(
             60 + gaps[leg],
             say(
                 "explain.out-of-step",
@@ -228,27 +228,27 @@ def _turn(one: float, other: float) -> float:
 # What physics shows.
 
 
-def _ended(seen: Seen) -> Iterator[Finding]:
+def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
     """Say that physics stopped, or that the robot tipped over."""
     if seen.walk.fault is not None:
-        yield Finding(100, say("explain.fault", why=seen.walk.fault))
+        yield TrialFinding(100, say("explain.fault", why=seen.walk.fault))
     elif seen.figures.upright < _TIPPED:
         lean_deg = math.degrees(math.acos(max(-1.0, seen.figures.upright)))
-        yield Finding(55, say("explain.tipped", lean_deg=lean_deg))
+        yield TrialFinding(55, say("explain.tipped", lean_deg=lean_deg))
 
 
-def _balance(seen: Seen) -> Iterator[Finding]:
+def _balance(seen: SeenTrial) -> Iterator[TrialFinding]:
     """Say how often parts other than feet rest on the floor, and how often balance is lost."""
     figures = seen.figures
     if figures.belly_share > _BELLY:
-        yield Finding(78, say("explain.belly", percent=100 * figures.belly_share))
+        yield TrialFinding(78, say("explain.belly", percent=100 * figures.belly_share))
     if figures.stable_share < _FALLS:
         percent = 100 * (1 - figures.stable_share)
         margin_mm = figures.margin_low_mm if figures.margin_low_mm is not None else 0.0
-        yield Finding(35, say("explain.unstable", percent=percent, margin_mm=margin_mm))
+        yield TrialFinding(35, say("explain.unstable", percent=percent, margin_mm=margin_mm))
 
 
-def _way(seen: Seen) -> Iterator[Finding]:
+def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
     """Say which of these are true: the robot turns, its feet slide, it goes forward."""
     figures = seen.figures
     if not figures.cycles:
@@ -257,11 +257,11 @@ def _way(seen: Seen) -> Iterator[Finding]:
     if abs(figures.drift_deg_s) > _TURNS_DEG_S:
         side = "left" if figures.drift_deg_s > 0 else "right"
         drift_deg_s = abs(figures.drift_deg_s)
-        yield Finding(40, say("explain.turns", side=side, drift_deg_s=drift_deg_s))
+        yield TrialFinding(40, say("explain.turns", side=side, drift_deg_s=drift_deg_s))
     if figures.slip_mm_s > _SLIDES_MM_S:
         legs = figures.slip_legs_mm_s
         leg = max(range(len(legs)), key=legs.__getitem__)
-        yield Finding(
+        yield TrialFinding(
             30,
             say(
                 "explain.slides",
@@ -273,10 +273,10 @@ def _way(seen: Seen) -> Iterator[Finding]:
             leg,
         )
     if figures.speed_mm_s > _SLOW_MM_S:
-        yield Finding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))
+        yield TrialFinding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))
 
 
-_RULES: tuple[Callable[[Seen], Iterator[Finding]], ...] = (
+_RULES: tuple[Callable[[SeenTrial], Iterator[TrialFinding]], ...] = (
     _ended,
     _limits,
     _seam,

@@ -36,7 +36,7 @@ class _Probe(NamedTuple):
     radius_m: float
 
 
-class _Part(NamedTuple):
+class _RobotPart(NamedTuple):
     """A geom of a robot, with a capsule around it along its z axis."""
 
     geom: int
@@ -48,14 +48,14 @@ class _Part(NamedTuple):
 class _Limb(NamedTuple):
     """A leg, or the robot's own body."""
 
-    parts: tuple[_Part, ...]
+    parts: tuple[_RobotPart, ...]
     body: int
     """Its first body."""
     reach_m: float
     """Upper bound of the distance of its points from that body's origin, at all joint angles."""
 
 
-class _Pair(NamedTuple):
+class _TouchPair(NamedTuple):
     """A part of a robot and a probe that it may touch."""
 
     geom: int
@@ -136,7 +136,7 @@ class _Outline:
         )
         self._seen_from: Sequence[float] = [math.nan] * 7
         self._room_m = 0.0
-        self.near: list[tuple[_Probe, list[_Pair]]] = []
+        self.near: list[tuple[_Probe, list[_TouchPair]]] = []
         """All pairs that may touch until the robot `has_gone`, by probe, in their order."""
 
     def has_gone(self, room_m: float) -> bool:
@@ -155,7 +155,7 @@ class _Outline:
             room_m = probe.radius_m + self._room_m
             if math.dist(self._seen_from[:2], at_m) <= self._reach_m + room_m + _SKIN_M:
                 pairs = [
-                    _Pair(
+                    _TouchPair(
                         part.geom,
                         part.half_m,
                         (part.half_m + part.radius_m + room_m) ** 2,
@@ -220,11 +220,11 @@ def _probes(model: Any, data: Any, markers: Sequence[MarkerInfo]) -> Iterator[_P
             yield _Probe(marker, geom, x_m, y_m, float(model.geom_size[geom, 0]))
 
 
-def _part(model: Any, geom: int) -> _Part:
+def _part(model: Any, geom: int) -> _RobotPart:
     radius_m, half_m, _ = model.geom_size[geom].tolist()
     if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_CAPSULE:
         radius_m, half_m = float(model.geom_rbound[geom]), 0.0
-    return _Part(geom, radius_m, half_m)
+    return _RobotPart(geom, radius_m, half_m)
 
 
 def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:

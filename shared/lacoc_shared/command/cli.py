@@ -24,7 +24,7 @@ from typer.core import TyperCommand, TyperGroup
 from lacoc_shared import __version__, words
 from lacoc_shared.command import help as help_text
 from lacoc_shared.command import installing, language, listing, plugins, screen, streams
-from lacoc_shared.command.listing import Listed, Listing
+from lacoc_shared.command.listing import ListedCommand, Listing
 from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 from lacoc_shared.words import render, say
 
@@ -130,7 +130,7 @@ def _is_ours(entry: EntryPoint) -> bool:
     return entry.dist is not None and entry.dist.name == "lacoc"
 
 
-def _listed(name: str, listed: Listed) -> TyperCommand:
+def _listed(name: str, listed: ListedCommand) -> TyperCommand:
     """Make a command that stands for one that is not imported, in a list of commands."""
     panel = help_text.in_words(listed.panel) or None
     return TyperCommand(name, help=listed.in_words(), rich_help_panel=panel)

@@ -56,7 +56,7 @@ class _Vcs(msgspec.Struct):
     commit_id: str = ""
 
 
-class _Origin(msgspec.Struct):
+class _DirectUrl(msgspec.Struct):
     """The file direct_url.json, which an installer leaves for whatever came from no index."""
 
     url: str
@@ -68,7 +68,7 @@ def _wanted(lacoc: Distribution, extras: tuple[str, ...]) -> list[str]:
     """List what pip is to install."""
     text = lacoc.read_text("direct_url.json")
     try:
-        origin = None if text is None else msgspec.json.decode(text, type=_Origin)
+        origin = None if text is None else msgspec.json.decode(text, type=_DirectUrl)
     except msgspec.DecodeError:
         origin = None
     listed = ",".join(extras)

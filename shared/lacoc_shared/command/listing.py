@@ -17,7 +17,7 @@ LACKS = 'The extra "{}" is not installed here. To install it, run: {}'
 """Texts of the help; the table of phrases takes four times as long to read as that of help."""
 
 
-class Listed(NamedTuple):
+class ListedCommand(NamedTuple):
     """A command of this package in the help of its group."""
 
     summary: str
@@ -40,7 +40,7 @@ class Listed(NamedTuple):
         return summary
 
 
-Listing = Mapping[str, Listed]
+Listing = Mapping[str, ListedCommand]
 """Name -> command, in the order of the help."""
 
 
@@ -53,68 +53,78 @@ def advice(listing: Listing) -> str:
 
 
 _SERVER = "server"
-_PANELS: Mapping[str, Mapping[str, Listed]] = {
+_PANELS: Mapping[str, Mapping[str, ListedCommand]] = {
     "Play": {
-        "demo": Listed(
+        "demo": ListedCommand(
             "Show a whole match: a court, two bots and a referee meet over the network.", _SERVER
         ),
-        "practice": Listed(
+        "practice": ListedCommand(
             "Walk your robot on a field of its own, with all keys, as long as you like.", _SERVER
         ),
-        "play": Listed("Hold a seat and steer your robot with the keyboard."),
-        "watch": Listed("Watch a match: clock, score and events as they come."),
+        "play": ListedCommand("Hold a seat and steer your robot with the keyboard."),
+        "watch": ListedCommand("Watch a match: clock, score and events as they come."),
     },
     "Prepare your robot": {
-        "design": Listed(
+        "design": ListedCommand(
             "Design a gait: change the table, let the robot walk, and see why it walks as it does.",
             _SERVER,
         ),
-        "class": Listed(
+        "class": ListedCommand(
             "Let a class design gaits in the browser: 'lacoc class FOLDER' opens it.", _SERVER
         ),
-        "gait": Listed("Take the sample gait, check gait files, and convert one kind to another."),
-        "trial": Listed(
+        "gait": ListedCommand(
+            "Take the sample gait, check gait files, and convert one kind to another."
+        ),
+        "trial": ListedCommand(
             "Let a robot walk alone, and print how well it walks: figures, foot bars and "
             "explanations.",
             _SERVER,
         ),
-        "coach": Listed(
+        "coach": ListedCommand(
             "Say which numbers of a gait matter, and search for a better gait with few changes.",
             _SERVER,
         ),
-        "robot": Listed(
+        "robot": ListedCommand(
             "Check a robot file, import the workshop's header, export MJCF, or list the robots."
         ),
     },
     "Run a contest": {
-        "contest": Listed(
+        "contest": ListedCommand(
             "Run a contest: its file, courts and tokens; entries, matches, standings and their "
             "proof."
         ),
-        "serve": Listed(
+        "serve": ListedCommand(
             "Run a court: it moves the robots, keeps clock and score, and records the match.",
             _SERVER,
         ),
-        "web": Listed(
+        "web": ListedCommand(
             "Serve the pages of courts: spectators, broadcast, contestants, referee, replays."
         ),
-        "referee": Listed("Referee a match: decide, read the log, see how well the court runs."),
-        "doctor": Listed(
+        "referee": ListedCommand(
+            "Referee a match: decide, read the log, see how well the court runs."
+        ),
+        "doctor": ListedCommand(
             "Check whether this machine is ready: packages, ports, graphics, clock, disk."
         ),
     },
     "Study and develop": {
-        "docs": Listed("Read the pages about LACOC: rules, files, a contest day, bots, security."),
-        "replay": Listed("Look at the record of a match, check it, or export tables from it."),
-        "film": Listed(
+        "docs": ListedCommand(
+            "Read the pages about LACOC: rules, files, a contest day, bots, security."
+        ),
+        "replay": ListedCommand(
+            "Look at the record of a match, check it, or export tables from it."
+        ),
+        "film": ListedCommand(
             "Make a film of a recorded match, or of the best moments of a contest, as an MP4.",
             "film",
         ),
-        "simulate": Listed(
+        "simulate": ListedCommand(
             "Play matches of bots or ghosts without a picture, and print the results.", _SERVER
         ),
-        "bot": Listed("Let a bot hold a seat: it joins, says ready and plays, match after match."),
-        "studio": Listed(
+        "bot": ListedCommand(
+            "Let a bot hold a seat: it joins, says ready and plays, match after match."
+        ),
+        "studio": ListedCommand(
             "Run a studio: it lets robots walk and measures them, for pages on which gaits are "
             "designed.",
             _SERVER,
@@ -130,18 +140,18 @@ COMMANDS: Listing = {
 }
 """The commands of `lacoc`."""
 REPLAY: Listing = {
-    "fork": Listed(
+    "fork": ListedCommand(
         "Go on with a recorded match from one of its beats, as a court would have.", _SERVER
     ),
-    "highlights": Listed(
+    "highlights": ListedCommand(
         "List the moments in which the odds of a match changed most, the largest change first.",
         _SERVER,
     ),
-    "odds": Listed(
+    "odds": ListedCommand(
         "Print how the chance to win changes during a match, computed from forks that bots play.",
         _SERVER,
     ),
-    "verify": Listed(
+    "verify": ListedCommand(
         "Judge a record again, simulate it again section by section, and print one of three "
         "verdicts.",
         _SERVER,

@@ -22,7 +22,7 @@ LinkOption = Annotated[
         "--link", envvar="LACOC_LINK", metavar="LINK", help="Your link, from the organiser."
     ),
 ]
-ContestFile = Annotated[
+ContestOption = Annotated[
     Path | None,
     typer.Option(
         "--contest",

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from lacoc_shared.contest.wrong_value import convert
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import (
     ANY_HOST,
@@ -24,7 +24,7 @@ LOOPBACK = f"127.0.0.1:{DEFAULT_PORT}"
 """Default address on which a court listens and to which a client connects."""
 
 
-class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A court: all that is needed to start it or to reach it."""
 
     arena: str = "othello"
@@ -107,7 +107,7 @@ def wrong_in(table: str, error: UserError) -> UserError:
     return error.each(lambda wrong: say("contest.in", where=table, wrong=wrong))
 
 
-def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) -> Court:
+def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) -> ContestCourt:
     """Read the table of a court.
 
     Args:
@@ -123,9 +123,9 @@ def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) 
     where = f"court.{name}"
     entries = convert(table, dict[str, Any], where)
     usual = {"listen": [f"127.0.0.1:{DEFAULT_PORT + number}"]}
-    court = convert(usual | entries, Court, where)
+    court = convert(usual | entries, ContestCourt, where)
     try:
-        Keys(name)
+        KeySpace(name)
         listen = tuple(endpoint(one, protocol) for one in court.listen)
         connect = court.connect and endpoint(court.connect, protocol)
         elsewhere = court.elsewhere and endpoint(court.elsewhere, protocol)
@@ -157,7 +157,7 @@ def read_standby(table: Any) -> Standby:
     return found
 
 
-def check_ports(courts: dict[str, Court], standby: Standby | None) -> None:
+def check_ports(courts: dict[str, ContestCourt], standby: Standby | None) -> None:
     """Check that no two programs of a machine share a port.
 
     Two courts with different `connect` hosts are on two machines.

@@ -13,7 +13,7 @@ import msgspec
 
 from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.courts import (
-    Court,
+    ContestCourt,
     Standby,
     beside,
     check_ports,
@@ -36,7 +36,7 @@ MAIN = "main"
 """Name of the court if none is given."""
 
 
-class Contest(msgspec.Struct, frozen=True, kw_only=True):
+class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
     """A contest file, checked."""
 
     name: str = _NO_NAME
@@ -54,7 +54,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """How everybody reaches the pages, and the certificate of pages and courts."""
     standby: Standby | None = None
     """The second machine; None: there is none."""
-    courts: dict[str, Court]
+    courts: dict[str, ContestCourt]
     stages: dict[str, dict[str, Any]] = {}
     """The stages in their order, as they stand in the file (docs/contest.md)."""
     least_rest_s: float = 0.0
@@ -84,7 +84,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
         here = (name for name, court in self.courts.items() if not court.elsewhere)
         return next(here, next(iter(self.courts)))
 
-    def court(self, name: str | None = None) -> tuple[str, Court]:
+    def court(self, name: str | None = None) -> tuple[str, ContestCourt]:
         """Return a court and its name; without a name, the only court.
 
         Raises:
@@ -136,7 +136,7 @@ def secrets_path(path: Path) -> Path:
     return path.with_name(f"{path.stem}.secrets.json")
 
 
-def load(path: Path) -> Contest:
+def load(path: Path) -> ContestFile:
     """Read a contest file; relative paths in it start from its own folder.
 
     Raises:
@@ -151,7 +151,7 @@ def load(path: Path) -> Contest:
         raise _cannot_read(path, error.strerror or str(error)) from None
 
 
-def loads(data: bytes, path: Path) -> Contest:
+def loads(data: bytes, path: Path) -> ContestFile:
     """Read the bytes of a contest file; the file itself need not exist yet.
 
     Args:
@@ -208,7 +208,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     entries_close: datetime | None = None
 
 
-class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class _ContestTables(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     contest: dict[str, Any] = {}
     limits: dict[str, Any] = {}
     health: dict[str, Any] = {}
@@ -217,9 +217,9 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     stage: dict[str, dict[str, Any]] = {}
 
 
-def _contest(table: dict[str, Any], path: Path) -> Contest:
+def _contest(table: dict[str, Any], path: Path) -> ContestFile:
     folder = path.resolve().parent
-    file = convert(table, _File, "")
+    file = convert(table, _ContestTables, "")
     found = Gathered()
     general, entries = _General(), dict(file.contest)
     with found:
@@ -247,7 +247,7 @@ def _contest(table: dict[str, Any], path: Path) -> Contest:
         standby = None if file.standby is None else read_standby(file.standby)
     found.check()
     check_ports(courts, standby)
-    return Contest(
+    return ContestFile(
         name=general.name,
         recordings=folder / general.recordings,
         robot=robot,

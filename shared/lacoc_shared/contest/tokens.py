@@ -14,7 +14,7 @@ def new_token() -> str:
     return base64.b32encode(secrets.token_bytes(16)).decode().rstrip("=").lower()
 
 
-def hash_token(token: str) -> str:
+def new_token_hash(token: str) -> str:
     """Hash a token for storage, with its own salt (`seal.hash_token`)."""
     return seal.hash_token(token, secrets.token_bytes(_SALT_BYTES))
 

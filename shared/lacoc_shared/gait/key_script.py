@@ -20,7 +20,7 @@ ARROWS = {"up": 2, "left": 1, "right": 3, "down": 0}
 _LETTERS = frozenset("xzrq")
 
 
-class _Step(NamedTuple):
+class _ScriptStep(NamedTuple):
     wait_s: float
     key: str
 
@@ -29,7 +29,7 @@ class KeyScript:
     """Holds the keys of a script, and returns each when it is due."""
 
     def __init__(self) -> None:
-        self._steps: deque[_Step] = deque()
+        self._steps: deque[_ScriptStep] = deque()
         self._since_s = 0.0
         """Seconds of play at which the last key was due; times count from there."""
         self._moved_s = -1.0
@@ -52,7 +52,7 @@ class KeyScript:
         if wait_s is not None and not 0 <= wait_s < math.inf:
             return say("script.no-time", line=self._lines, time=words[0])
         for index, key in enumerate(key for word in typed for key in _keys(word)):
-            self._steps.append(_Step(0.0 if index else wait_s or 0.0, key))
+            self._steps.append(_ScriptStep(0.0 if index else wait_s or 0.0, key))
         return None
 
     def due(self, playing_s: float, playing: bool) -> list[str]:

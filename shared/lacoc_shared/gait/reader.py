@@ -71,7 +71,7 @@ def read_cells(
     Raises:
         FileRefused: with every mistake, or the first `MAX_MISTAKES`.
     """
-    reader = _Reader(file, legs, range_deg, headers)
+    reader = _TableReader(file, legs, range_deg, headers)
     table = reader.read(rows)
     if notes is not None:
         notes += reader.notes
@@ -90,7 +90,7 @@ def _largest_deg(table: PostureTable | LocomotionTable) -> float:
     return math.degrees(max((abs(one) for posture in postures for one in posture), default=0.0))
 
 
-class _Reader:
+class _TableReader:
     """Reads one file and collects its mistakes."""
 
     def __init__(self, file: str, legs: Legs, range_deg: Range, headers: Phrase) -> None:

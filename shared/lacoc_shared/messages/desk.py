@@ -31,7 +31,7 @@ _Name = Annotated[str, msgspec.Meta(max_length=64)]
 _Text = Annotated[str, msgspec.Meta(max_length=500)]
 
 
-class Files(
+class TeamFiles(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
     """The files that a team hands in; None for each file that it does not."""
@@ -59,7 +59,7 @@ class DeskRequest(
 # Everybody
 
 
-class Look(DeskRequest, frozen=True, kw_only=True, tag="look"):
+class LookAtEvent(DeskRequest, frozen=True, kw_only=True, tag="look"):
     """Ask what is known of the event without a secret."""
 
 
@@ -70,7 +70,7 @@ class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
     """Ask to take part; the organiser decides."""
 
     team: _Name
-    files: Files
+    files: TeamFiles
     contact: Annotated[str, msgspec.Meta(max_length=200)] = ""
     """How to reach the team; only the organiser reads it."""
     club: _Name = ""
@@ -80,10 +80,10 @@ class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
 # With a team's token
 
 
-class Change(DeskRequest, frozen=True, kw_only=True, tag="change"):
+class ChangeFiles(DeskRequest, frozen=True, kw_only=True, tag="change"):
     """Hand in other files. When entries are closed, the organiser decides."""
 
-    files: Files
+    files: TeamFiles
 
 
 class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
@@ -168,7 +168,7 @@ class Substitute(DeskRequest, frozen=True, kw_only=True, tag="substitute"):
     """False: only say what would change."""
 
 
-class Pause(DeskRequest, frozen=True, kw_only=True, tag="pause"):
+class PauseContest(DeskRequest, frozen=True, kw_only=True, tag="pause"):
     """Call no game until the contest goes on."""
 
     until_ms: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 0
@@ -176,7 +176,7 @@ class Pause(DeskRequest, frozen=True, kw_only=True, tag="pause"):
     reason: _Text = ""
 
 
-class Resume(DeskRequest, frozen=True, kw_only=True, tag="resume"):
+class ResumeContest(DeskRequest, frozen=True, kw_only=True, tag="resume"):
     """Let the contest go on."""
 
 
@@ -258,15 +258,15 @@ OfStaff = (
     | TakeOut
     | Rule
     | Move
-    | Pause
-    | Resume
+    | PauseContest
+    | ResumeContest
     | Shift
     | Announce
     | Staff
     | Tokens
 )
 """What the organiser and the staff may ask; `Staff` only the organiser."""
-AnyRequest = Look | Apply | Change | Own | CourtDay | Publish | OfStaff
+AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | OfStaff
 """Every request to the desk."""
 
 
@@ -334,7 +334,7 @@ class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
     """Whether it was heard lately."""
 
 
-class Moved(msgspec.Struct, frozen=True):
+class MatchMove(msgspec.Struct, frozen=True):
     """How a match was moved: see `Move`."""
 
     court: str
@@ -358,7 +358,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     running: bool = False
     begun: bool = False
     """Whether its game at the court has begun; a move no longer changes this game."""
-    moved: Moved | None = None
+    moved: MatchMove | None = None
     """How it was moved; None: it was not."""
     held: Phrase | None = None
     """Why a court refused its game; None: none did."""

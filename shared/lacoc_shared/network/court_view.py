@@ -19,7 +19,7 @@ MAX_BYTES = 1 << 20
 """Longest message of a court [bytes]."""
 
 
-class _Sheet(msgspec.Struct):
+class _SheetHead(msgspec.Struct):
     protocol: int
     scene: bytes = b""
     match_id: str = ""
@@ -118,7 +118,7 @@ class CourtView(Generic[T]):
 
     def take_sheet(self, payload: bytes) -> bool:
         """Take in a sheet; return whether it is new and of this version of the protocol."""
-        found = decode(payload, _Sheet, MAX_BYTES)
+        found = decode(payload, _SheetHead, MAX_BYTES)
         self._doubt = False
         self._sheet_scene, self.match_id = found.scene, found.match_id
         self._sheet_hash = message_hash(payload)

@@ -169,7 +169,7 @@ class Request:
             query.reply_err(payload)
 
 
-class Desk:
+class RequestQueue:
     """The waiting requests under one key expression, polled by their owner."""
 
     def __init__(self, queryable: "zenoh.Queryable[zenoh.Handler[zenoh.Query]]") -> None:
@@ -235,10 +235,10 @@ class Session:
         )
         return mailbox
 
-    def desk(self, key: str, depth: int) -> Desk:
+    def desk(self, key: str, depth: int) -> RequestQueue:
         """Declare that this session answers requests; the newest `depth` are kept for polling."""
         channel: RingChannel[zenoh.Query] = RingChannel(depth)
-        return Desk(self._session.declare_queryable(key, channel))
+        return RequestQueue(self._session.declare_queryable(key, channel))
 
     def answer(self, key: str, take: Callable[[Request], None]) -> None:
         """Declare that this session answers requests, and get each of them as it comes.

@@ -38,7 +38,7 @@ Texts = NDArray[np.str_]
 
 
 @dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
-class Robot:
+class RobotArrays:
     """The robot of a seat in each frame; NaN in frames in which no robots are on the field."""
 
     seat: str
@@ -56,18 +56,18 @@ class Robot:
 
     def __repr__(self) -> str:
         frames, joints = self.joints_rad.shape
-        return f"Robot(seat={self.seat!r}, team={self.team!r}, {frames=}, {joints=})"
+        return f"RobotArrays(seat={self.seat!r}, team={self.team!r}, {frames=}, {joints=})"
 
 
 @dataclass(frozen=True, repr=False)
-class Keys:
+class KeyArrays:
     """The keys of all seats that the court gave to the match, also those that the match refused."""
 
     beat: Numbers
     """Beat that took the key."""
     time_s: Floats
     seat: Numbers
-    """Index of the seat in `Match.robots`."""
+    """Index of the seat in `MatchArrays.robots`."""
     level: Numbers
     """0: level A, 1: level B."""
     key: Numbers
@@ -78,11 +78,11 @@ class Keys:
     """Time between the end of the common delay and the effect."""
 
     def __repr__(self) -> str:
-        return f"Keys({len(self.beat)} keys)"
+        return f"KeyArrays({len(self.beat)} keys)"
 
 
 @dataclass(frozen=True, repr=False)
-class Events:
+class EventArrays:
     """What happened."""
 
     number: Numbers
@@ -97,11 +97,11 @@ class Events:
     """The sentence, in the language of the process."""
 
     def __repr__(self) -> str:
-        return f"Events({len(self.beat)} events)"
+        return f"EventArrays({len(self.beat)} events)"
 
 
 @dataclass(frozen=True, repr=False)
-class Match:
+class MatchArrays:
     """A match as arrays. Arrays without a note have one entry for each frame."""
 
     match_id: str
@@ -125,10 +125,10 @@ class Match:
     """(markers,)."""
     marker_position_m: Floats
     """x, y in the world; (markers, 2)."""
-    robots: tuple[Robot, ...]
+    robots: tuple[RobotArrays, ...]
     """One for each seat."""
-    keys: Keys
-    events: Events
+    keys: KeyArrays
+    events: EventArrays
     winner: str
     """Seat id of the official winner, else of the winner by the rules; "draw", "void"; "": none."""
     cut: str
@@ -137,10 +137,10 @@ class Match:
     def __repr__(self) -> str:
         match_id, arena, winner = self.match_id, self.arena, self.winner
         frames, teams = len(self.beat), [robot.team for robot in self.robots]
-        return f"Match({match_id=}, {arena=}, {frames=}, {teams=}, {winner=})"
+        return f"MatchArrays({match_id=}, {arena=}, {frames=}, {teams=}, {winner=})"
 
 
-def read(path: str | Path | Iterable[str | Path]) -> Match:
+def read(path: str | Path | Iterable[str | Path]) -> MatchArrays:
     """Read a match.
 
     Args:
@@ -161,19 +161,19 @@ def read(path: str | Path | Iterable[str | Path]) -> Match:
         raise UserError(say("replay.damaged-copy", match=match, error=str(error)[:80])) from None
 
 
-def columns(table: Keys | Events) -> dict[str, NDArray[Any]]:
+def columns(table: KeyArrays | EventArrays) -> dict[str, NDArray[Any]]:
     """Return the columns of a table by name: `pandas.DataFrame(columns(match.events))`."""
     return {field.name: getattr(table, field.name) for field in dataclasses.fields(table)}
 
 
-def _match(record: Record) -> Match:
+def _match(record: Record) -> MatchArrays:
     frames = [codec.decode(encoded, Frame) for _, encoded in record.frames]
     beats = np.array([beat for beat, _ in record.frames], dtype=np.int64)
     sheet = record.sheets[-1][1]
     seats = len(sheet.seats)
     count = len(sheet.markers)
     result = record.result
-    return Match(
+    return MatchArrays(
         match_id=record.header.match_id,
         arena=record.header.setup.arena,
         beat=beats,
@@ -199,7 +199,7 @@ def _match(record: Record) -> Match:
     )
 
 
-def _robots(record: Record, frames: list[Frame], last: Sheet) -> tuple[Robot, ...]:
+def _robots(record: Record, frames: list[Frame], last: Sheet) -> tuple[RobotArrays, ...]:
     joints_of = {beat: joints_per_seat(sheet) for beat, sheet in record.sheets}
     most = [max(column) for column in zip(*joints_of.values(), strict=True)]
     poses = [np.full((len(frames), ROOT_FLOATS + joints), math.nan) for joints in most]
@@ -212,7 +212,7 @@ def _robots(record: Record, frames: list[Frame], last: Sheet) -> tuple[Robot, ..
         for seat, pose in enumerate(split_poses(frames[row].poses, joints)):
             poses[seat][row, : len(pose)] = pose
     return tuple(
-        Robot(
+        RobotArrays(
             seat=seat.id,
             team=seat.team,
             position_m=pose[:, :3],
@@ -224,7 +224,7 @@ def _robots(record: Record, frames: list[Frame], last: Sheet) -> tuple[Robot, ..
     )
 
 
-def _keys(record: Record) -> Keys:
+def _keys(record: Record) -> KeyArrays:
     found = [
         (beat, item.seat, item.level, item.key, item.held, item.late)
         for beat, inputs in record.inputs.items()
@@ -232,13 +232,13 @@ def _keys(record: Record) -> Keys:
         if isinstance(item, KeySeat)
     ]
     beat, seat, level, key, held, late = np.array(found, dtype=np.int64).reshape(-1, 6).T
-    return Keys(beat, _times(beat), seat, level, key, 1000 * _times(held), 1000 * _times(late))
+    return KeyArrays(beat, _times(beat), seat, level, key, 1000 * _times(held), 1000 * _times(late))
 
 
-def _events(record: Record) -> Events:
+def _events(record: Record) -> EventArrays:
     events = record.events
     beat = np.array([event.beat for event in events], dtype=np.int64)
-    return Events(
+    return EventArrays(
         number=np.array([event.number for event in events], dtype=np.int64),
         beat=beat,
         time_s=_times(beat),

@@ -71,7 +71,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         raise UserError(say("pack.no-room", file=str(out), why=why)) from None
 
 
-def write(messages: Sequence[Message], out: Path) -> None:
+def write_packed(messages: Sequence[Message], out: Path) -> None:
     """Write a packed file; it gets its name when it is complete and on the disk.
 
     Args:
@@ -95,7 +95,7 @@ def write(messages: Sequence[Message], out: Path) -> None:
         raise UserError(say("command.cannot-write", path=str(out), why=why)) from None
 
 
-def read(paths: Sequence[Path]) -> list[Message]:
+def read_messages(paths: Sequence[Path]) -> list[Message]:
     """Read all messages of the files of a record, up to the first damage."""
     return _messages(paths)[0]
 

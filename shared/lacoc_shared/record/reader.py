@@ -12,7 +12,7 @@ from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import Header, Result, Touch
-from lacoc_shared.record.stream import TakeBytes, walk
+from lacoc_shared.record.stream import TakeBytes, walk_messages
 from lacoc_shared.words import Phrase, say
 
 V = TypeVar("V")
@@ -168,7 +168,7 @@ class Record:
                 also(topic, beat, data)
 
         before = len(self.headers)
-        stop = walk(path, take)
+        stop = walk_messages(path, take)
         if stop and len(self.headers) == before and before:
             return  # the court was killed while it opened this segment: nothing in it counts
         self.lost = stop is not None and stop.damaged

@@ -89,13 +89,13 @@ class Stop(NamedTuple):
         return self.at_end and not self.damaged
 
 
-class _Format(msgspec.Struct):
+class _AnyHeader(msgspec.Struct):
     """The one entry that headers of all formats have."""
 
     format: int
 
 
-def walk(path: Path, take: Take) -> Stop | None:
+def walk_messages(path: Path, take: Take) -> Stop | None:
     """Pass every whole message of a file to `take`, up to its end or the first fault.
 
     See `walk_bytes`. Bytes that can't be decoded as their topic's message are a fault too.
@@ -278,7 +278,7 @@ def _unpacked_bytes(chunk: Chunk) -> int:
 
 def _decode(path: Path, topic: str, data: bytes) -> Any:
     if topic == "/lacoc/header":
-        found = codec.decode(data, _Format, _MAX_BYTES).format
+        found = codec.decode(data, _AnyHeader, _MAX_BYTES).format
         if found != FORMAT:
             raise UserError(
                 say("recording.other-format", file=str(path), found=str(found), reads=FORMAT)

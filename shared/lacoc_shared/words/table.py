@@ -34,7 +34,7 @@ ON_PAGES = FILES[:-3]
 """The files that pages need; the last three have only sentences for terminals and programs."""
 
 
-class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The entry of a code in the table."""
 
     en: str
@@ -44,9 +44,9 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @cache
-def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
+def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
     """Read the table: every code with its entry."""
-    entries: dict[str, Entry] = {}
+    entries: dict[str, Wording] = {}
     folder = resources.files("lacoc_shared.words") / "texts"
     for file in files:
         for code, entry in read(folder / f"{file}.toml").items():
@@ -56,10 +56,10 @@ def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
     return entries
 
 
-def read(file: Traversable) -> Mapping[str, Entry]:
+def read(file: Traversable) -> Mapping[str, Wording]:
     """Read the entries of a TOML file, by code."""
     return {
-        f"{subject}.{name}": msgspec.convert(entry, Entry)
+        f"{subject}.{name}": msgspec.convert(entry, Wording)
         for subject, codes in tomllib.loads(file.read_text(encoding="utf-8")).items()
         for name, entry in codes.items()
     }

@@ -15,8 +15,8 @@ from websockets.typing import Origin
 
 from lacoc_client.commands.checks.machine import Finding, Status
 from lacoc_client.web.gateway.guard import name_of
-from lacoc_client.web.gateway.health import Health
-from lacoc_shared.contest.courts import Court
+from lacoc_client.web.gateway.health import GatewayHealth
+from lacoc_shared.contest.courts import ContestCourt
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.network.public import PublicAddress, is_loopback
 from lacoc_shared.words import say
@@ -26,7 +26,7 @@ _SOON_DAYS = 14.0
 _DAY_S = 86_400.0
 
 
-class _Answer(NamedTuple):
+class _PageAnswer(NamedTuple):
     status: int
     body: bytes
 
@@ -58,7 +58,7 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
         yield Finding(about, Status.NOTE, found, say("doctor.pages-silent-todo"))
         return
     try:
-        health = msgspec.json.decode(answer.body, type=Health)
+        health = msgspec.json.decode(answer.body, type=GatewayHealth)
     except msgspec.MsgspecError:
         found = say("doctor.pages-other", status=answer.status)
         if answer.status >= 500:
@@ -71,7 +71,7 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
     yield _websocket(public)
 
 
-def plain_courts(public: PublicAddress, courts: Mapping[str, Court]) -> Iterator[Finding]:
+def plain_courts(public: PublicAddress, courts: Mapping[str, ContestCourt]) -> Iterator[Finding]:
     """Note the courts that others reach in plain text, in a contest whose pages are encrypted.
 
     Args:
@@ -88,7 +88,7 @@ def plain_courts(public: PublicAddress, courts: Mapping[str, Court]) -> Iterator
             yield Finding(say("doctor.court", court=name), Status.NOTE, found, todo)
 
 
-def _reached(public: PublicAddress, title: str, health: Health) -> Iterator[Finding]:
+def _reached(public: PublicAddress, title: str, health: GatewayHealth) -> Iterator[Finding]:
     about = say("doctor.pages", pages=public.pages)
     if title and health.contest != title:
         found = say("doctor.pages-another", contest=health.contest)
@@ -142,7 +142,7 @@ def _websocket(public: PublicAddress) -> Finding:
         return Finding(about, Status.PROBLEM, found, say("doctor.websocket-todo"))
 
 
-def _get(public: PublicAddress, path: str) -> _Answer:
+def _get(public: PublicAddress, path: str) -> _PageAnswer:
     """Ask for a path below the pages.
 
     Raises:
@@ -158,7 +158,7 @@ def _get(public: PublicAddress, path: str) -> _Answer:
     try:
         connection.request("GET", f"{public.path}{path}")
         answer = connection.getresponse()
-        return _Answer(answer.status, answer.read(1 << 16))
+        return _PageAnswer(answer.status, answer.read(1 << 16))
     finally:
         connection.close()
 

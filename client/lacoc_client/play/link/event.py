@@ -23,7 +23,7 @@ _WAIT_S = 10.0
 _MOST_BYTES = 1 << 20
 
 
-class Event(msgspec.Struct, frozen=True, kw_only=True):
+class LinkedEvent(msgspec.Struct, frozen=True, kw_only=True):
     """An event, for a command that has a link to it."""
 
     protocol: int
@@ -36,11 +36,11 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     encrypted."""
 
 
-class Found(NamedTuple):
+class FoundEvent(NamedTuple):
     """What a link leads to."""
 
     link: Link
-    event: Event
+    event: LinkedEvent
 
     @property
     def courts(self) -> dict[str, tuple[str, ...]]:
@@ -55,7 +55,7 @@ class Found(NamedTuple):
         return found
 
 
-def find(text: str) -> Found:
+def find(text: str) -> FoundEvent:
     """Read a link, and ask its pages what it leads to.
 
     Args:
@@ -67,14 +67,14 @@ def find(text: str) -> Found:
     """
     link = Link.read(text)
     if not link.authority:
-        return Found(link, _read(link, _fetched(link, None)))
+        return FoundEvent(link, _read(link, _fetched(link, None)))
     # The pages prove who they are with a certificate of an authority that they name themselves. The
     # link says which authority that is.
     claimed = _read(link, _fetched(link, _trusting_all())).authority
     if _fingerprint(link, claimed) != link.authority:
         raise UserError(say("link.other-authority", url=link.pages))
     event = _read(link, _fetched(link, ssl.create_default_context(cadata=claimed)))
-    return Found(link, msgspec.structs.replace(event, authority=claimed))
+    return FoundEvent(link, msgspec.structs.replace(event, authority=claimed))
 
 
 def _fingerprint(link: Link, certificate: str) -> str:
@@ -111,9 +111,9 @@ def _why(error: Exception) -> Phrase | str:
     return str(getattr(reason, "strerror", None) or reason)
 
 
-def _read(link: Link, data: bytes) -> Event:
+def _read(link: Link, data: bytes) -> LinkedEvent:
     try:
-        event = msgspec.json.decode(data, type=Event)
+        event = msgspec.json.decode(data, type=LinkedEvent)
     except msgspec.MsgspecError:
         why = say("link.not-read")
         raise UserError(say("link.no-event", url=link.pages, why=why)) from None

@@ -67,7 +67,7 @@ class _Mark(NamedTuple):
     bold: bool
 
 
-class Grid:
+class PixelGrid:
     """The pixels of a picture of some size; shared by the pictures of a match.
 
     Args:
@@ -125,7 +125,7 @@ class BoardPicture:
         sheet: the sheet of that frame.
     """
 
-    def __init__(self, grid: Grid, frame: Frame, sheet: Sheet) -> None:
+    def __init__(self, grid: PixelGrid, frame: Frame, sheet: Sheet) -> None:
         self._grid = grid
         self._image = grid.base()
         self._shades = np.full((grid.height, grid.width), _SHADES["floor"])

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from lacoc_client.play.spectator import Spectator
 from lacoc_client.play.terminal import words
-from lacoc_client.play.terminal.board_picture import BoardPicture, Field, Grid, seat_letters
+from lacoc_client.play.terminal.board_picture import BoardPicture, Field, PixelGrid, seat_letters
 from lacoc_client.play.terminal.line_view import PHASE_STYLES, LineView, event_columns
 from lacoc_shared.command import screen
 from lacoc_shared.messages import Event, Frame, Sheet
@@ -32,7 +32,7 @@ class BoardView:
         self._events: deque[Event] = deque(maxlen=_ROWS[1])
         self._scene = b""
         self._field: Field | None = None
-        self._grid: Grid | None = None
+        self._grid: PixelGrid | None = None
 
     def draw(self, view: Spectator, events: Sequence[Event], silent_s: float) -> RenderableType:
         """Draw the present state.
@@ -57,7 +57,7 @@ class BoardView:
         both.add_row(BoardPicture(grid, view.frame, view.sheet), Group(*side))
         return both
 
-    def _fitting_grid(self, view: Spectator) -> Grid | None:
+    def _fitting_grid(self, view: Spectator) -> PixelGrid | None:
         """Return the largest grid that fits the terminal."""
         if view.sheet.scene != self._scene or self._field is None:
             try:
@@ -70,7 +70,7 @@ class BoardView:
         rows = min(height - 1, int(columns * field.half_y_m / field.half_x_m / 2), _ROWS[1])
         rows = max(rows, _ROWS[0])
         if self._grid is None or self._grid.height != 2 * rows:
-            self._grid = Grid(field, rows)
+            self._grid = PixelGrid(field, rows)
         return self._grid
 
 

@@ -40,7 +40,7 @@ _WINDOWS_ARROWS = {"H": "up", "P": "down", "K": "left", "M": "right"}
 _WINDOWS_LOOK_S = 0.005
 
 
-class Keys(Protocol):
+class KeySource(Protocol):
     """A source of keys."""
 
     @property
@@ -96,7 +96,7 @@ def key_name(character: str) -> str | None:
 
 
 @contextmanager
-def open_keys() -> Iterator[Keys]:
+def open_keys() -> Iterator[KeySource]:
     """Read keys from standard input: a terminal's as they are pressed, a pipe's as a script."""
     if not sys.stdin.isatty():
         yield PipeKeys(sys.stdin.fileno())

@@ -29,7 +29,7 @@ class PipeKeys:
         return self._read_all and self._script.empty
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
-        """Return the keys that are due; see `keys.Keys`."""
+        """Return the keys that are due; see `keys.KeySource`."""
         try:
             while True:
                 line = self._lines.get(timeout=timeout_s)
@@ -42,7 +42,7 @@ class PipeKeys:
             return self._script.due(playing_s, playing)
 
     def take_said(self) -> list[Phrase]:
-        """Return the mistakes in the script since the last call; see `keys.Keys`."""
+        """Return the mistakes in the script since the last call; see `keys.KeySource`."""
         said, self._said = self._said, []
         return said
 

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from lacoc_client.play.controller import Controller, Hold
 from lacoc_client.play.terminal import words
-from lacoc_client.play.terminal.keys import Keys
+from lacoc_client.play.terminal.keys import KeySource
 from lacoc_client.play.terminal.line_view import event_columns, status_line
 from lacoc_shared.command import screen
 from lacoc_shared.command.keep import save
@@ -50,7 +50,7 @@ class TerminalPlay:
     def __init__(
         self,
         controller: Controller,
-        keys: Keys,
+        keys: KeySource,
         folder: Path,
         is_over: Callable[[], bool] | None = None,
     ) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from lacoc_client.web.director.moments import Moment
+from lacoc_client.web.director.moments import LiveMoment
 from lacoc_client.web.director.plan import LEAST_S
 
 ASIDE_SHARE = 0.12
@@ -23,12 +23,12 @@ class Aside:
     """
 
     def __init__(self) -> None:
-        self._moment: Moment | None = None
+        self._moment: LiveMoment | None = None
         self._since_s = 0.0
 
     def look(
-        self, shown_s: float, on_air: str, there: Sequence[str], best: Sequence[Moment]
-    ) -> Moment | None:
+        self, shown_s: float, on_air: str, there: Sequence[str], best: Sequence[LiveMoment]
+    ) -> LiveMoment | None:
         """Choose the moment in the second picture.
 
         Args:
@@ -54,7 +54,7 @@ class Aside:
         self._moment = now
         return now
 
-    def _goes_on(self, shown_s: float, now: Moment, next_: Moment) -> bool:
+    def _goes_on(self, shown_s: float, now: LiveMoment, next_: LiveMoment) -> bool:
         """Return whether the second picture leaves a moment for another one."""
         if now.court == next_.court:
             return next_.at_s > now.at_s

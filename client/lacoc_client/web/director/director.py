@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 from lacoc_client.web.director.aside import ASIDE_SHARE, ASIDE_WHYS, Aside
 from lacoc_client.web.director.courts import CourtNow
-from lacoc_client.web.director.moments import Moment, Track
+from lacoc_client.web.director.moments import LiveMoment, Track
 from lacoc_client.web.director.moments import Why as Moving
 from lacoc_client.web.director.plan import CUTS_MOST, Prices, cuts_left, is_worth_it, may_cut, worth
 
@@ -32,7 +32,7 @@ is played here. gone: the court shown before has vanished.
 """
 
 
-class Shot(NamedTuple):
+class OnAir(NamedTuple):
     """What is on air."""
 
     court: str
@@ -56,20 +56,20 @@ class Director:
 
     def __init__(self, ahead_s: float = AHEAD_S) -> None:
         self._ahead_s = ahead_s
-        self._shot: Shot | None = None
+        self._shot: OnAir | None = None
         self._looks: deque[tuple[float, Mapping[str, CourtNow]]] = deque()
         """The looks with their times, from the one that is shown now to the newest."""
         self._tracks: dict[str, Track] = {}
-        self._moments: deque[Moment] = deque()
+        self._moments: deque[LiveMoment] = deque()
         """The moments of the last minutes and those that come, in the order of time."""
         self._cuts: deque[float] = deque(maxlen=CUTS_MOST)
         self._aside = Aside()
-        self.aside: Moment | None = None
+        self.aside: LiveMoment | None = None
         """What the second picture shows; None: there is none now."""
         self._empty: tuple[str, str, float] = ("", "", 0.0)
         """The court on air, its match, and since when it is on air without play."""
 
-    def look(self, now_s: float, courts: Sequence[CourtNow]) -> Shot | None:
+    def look(self, now_s: float, courts: Sequence[CourtNow]) -> OnAir | None:
         """Take in how all courts stand, and choose.
 
         Args:
@@ -88,7 +88,7 @@ class Director:
         shown = self._looks[0][1]
         if self._shot is None:
             if shown:
-                self._shot = Shot(self._richest(shown_s, shown), "first", shown_s)
+                self._shot = OnAir(self._richest(shown_s, shown), "first", shown_s)
             return self._shot
         self._note_empty(shown_s, shown.get(self._shot.court))
         due = [
@@ -112,17 +112,17 @@ class Director:
         while self._moments and self._moments[0].at_s < now_s - _KNOWN_S:
             self._moments.popleft()
 
-    def _coming(self, shown_s: float) -> list[Moment]:
+    def _coming(self, shown_s: float) -> list[LiveMoment]:
         """Return the moments that are not over, at any court."""
         return [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
 
     def _next(
-        self, shown_s: float, shown: Mapping[str, CourtNow], shot: Shot, due: Sequence[Moment]
-    ) -> Shot | None:
+        self, shown_s: float, shown: Mapping[str, CourtNow], shot: OnAir, due: Sequence[LiveMoment]
+    ) -> OnAir | None:
         """Return what to cut to, of the courts and the moments that begin now; None: stay."""
         now = shown.get(shot.court)
         if now is None:
-            return Shot(self._richest(shown_s, shown), "gone", shown_s) if shown else None
+            return OnAir(self._richest(shown_s, shown), "gone", shown_s) if shown else None
         if now.is_closing:
             return None
         empty_s = shown_s - self._empty[2]
@@ -130,12 +130,12 @@ class Director:
             return None
         moment = self._moment(shown_s, shot.court, due)
         if moment is not None:
-            return Shot(moment.court, moment.why, shown_s)
+            return OnAir(moment.court, moment.why, shown_s)
         richest = self._richest(shown_s, shown)
         if now.is_played or not shown[richest].is_played:
             return None
         if cuts_left(self._cuts, shown_s) > 1 or empty_s > _EMPTY_MOST_S:
-            return Shot(richest, "played", shown_s)
+            return OnAir(richest, "played", shown_s)
         return None
 
     def _note_empty(self, shown_s: float, now: CourtNow | None) -> None:
@@ -143,7 +143,7 @@ class Director:
         if now is not None and (now.is_played or self._empty[:2] != (now.name, now.match)):
             self._empty = (now.name, now.match, shown_s)
 
-    def _moment(self, shown_s: float, on_air: str, due: Sequence[Moment]) -> Moment | None:
+    def _moment(self, shown_s: float, on_air: str, due: Sequence[LiveMoment]) -> LiveMoment | None:
         """Return the moment at another court that is worth a cut now; None: there is none."""
         others = [one for one in due if one.court != on_air]
         if not others:
@@ -153,7 +153,7 @@ class Director:
         later = [one for one in self._coming(shown_s) if one != best]
         return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
 
-    def _best(self, due: Sequence[Moment]) -> list[Moment]:
+    def _best(self, due: Sequence[LiveMoment]) -> list[LiveMoment]:
         """Return those moments that are worth a second picture."""
         if not due:
             return []

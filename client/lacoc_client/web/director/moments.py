@@ -20,7 +20,7 @@ match begin, or a match becomes close in them. stake: a match with more than the
 """
 
 
-class Moment(NamedTuple):
+class LiveMoment(NamedTuple):
     """A moment that is worth seeing."""
 
     at_s: float
@@ -42,7 +42,7 @@ class Track:
         self._leader = _sign(now.ahead)
         """Sign of the last difference that was not 0."""
 
-    def see(self, now_s: float, now: CourtNow) -> Iterator[Moment]:
+    def see(self, now_s: float, now: CourtNow) -> Iterator[LiveMoment]:
         """Take in how the court stands; yield the moments since the last look.
 
         Args:
@@ -55,16 +55,16 @@ class Track:
         if not now.is_played:
             return
         if now.stake > 1 and (now.match != before.match or not before.is_played):
-            yield Moment(now_s, now.name, _STAKE_POINTS * (now.stake - 1), "stake")
+            yield LiveMoment(now_s, now.name, _STAKE_POINTS * (now.stake - 1), "stake")
         if now.is_closing and not (before.is_closing and now.match == before.match):
-            yield Moment(now_s, now.name, CLOSING_POINTS * now.stake, "closing")
+            yield LiveMoment(now_s, now.name, CLOSING_POINTS * now.stake, "closing")
         points = abs(now.ahead - before.ahead)
         leader = _sign(now.ahead)
         is_lead = bool(leader and self._leader and leader != self._leader)
         self._leader = leader or self._leader
         if now.match == before.match and before.is_played and points:
             worth = (points + LEAD_POINTS * is_lead) * now.stake
-            yield Moment(now_s, now.name, worth, "lead" if is_lead else "swing")
+            yield LiveMoment(now_s, now.name, worth, "lead" if is_lead else "swing")
 
 
 def _sign(number: float) -> int:

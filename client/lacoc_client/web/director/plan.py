@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 
-from lacoc_client.web.director.moments import Moment
+from lacoc_client.web.director.moments import LiveMoment
 
 CUTS_MOST = 4
 """Most cuts in any minute."""
@@ -56,12 +56,12 @@ class Prices:
         known: those moments, at all courts.
     """
 
-    def __init__(self, known: Sequence[Moment]) -> None:
+    def __init__(self, known: Sequence[LiveMoment]) -> None:
         self._sorted = sorted((one.points for one in known), reverse=True)
         self._least = self.least(_LOOKED_AT)
         self._costs = [_NEARLY * worth(self.least(share)) for share in _RANKS]
 
-    def value(self, moment: Moment) -> float:
+    def value(self, moment: LiveMoment) -> float:
         """Return what a moment is worth on air; all but the best moments are worth 0."""
         return worth(moment.points) if moment.points >= self._least else 0.0
 
@@ -78,8 +78,8 @@ class Prices:
 
 def is_worth_it(
     on_air: str,
-    moment: Moment,
-    coming: Sequence[Moment],
+    moment: LiveMoment,
+    coming: Sequence[LiveMoment],
     cuts: Sequence[float],
     prices: Prices,
     locked: Callable[[str, float], bool],

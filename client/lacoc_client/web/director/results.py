@@ -12,7 +12,7 @@ _SHOWN = 6
 """Most results that are shown."""
 
 
-class Result(msgspec.Struct, frozen=True):
+class ShownResult(msgspec.Struct, frozen=True):
     """How a match ended."""
 
     court: str
@@ -37,13 +37,15 @@ class Results:
 
     def __init__(self, behind_s: float) -> None:
         self._behind_s = behind_s
-        self._known: dict[str, Result] = {}
+        self._known: dict[str, ShownResult] = {}
         """By court, the newest last."""
-        self._later: deque[tuple[float, tuple[Result, ...]]] = deque()
+        self._later: deque[tuple[float, tuple[ShownResult, ...]]] = deque()
         """What is shown from a time on."""
-        self._shown: tuple[Result, ...] = ()
+        self._shown: tuple[ShownResult, ...] = ()
 
-    def see(self, now_s: float, over: Sequence[Result], going: Sequence[tuple[str, str]]) -> None:
+    def see(
+        self, now_s: float, over: Sequence[ShownResult], going: Sequence[tuple[str, str]]
+    ) -> None:
         """Take in how the courts stand.
 
         Args:
@@ -64,7 +66,7 @@ class Results:
         if (after := tuple(self._known.values())) != before:
             self._later.append((now_s + self._behind_s, after))
 
-    def shown(self, now_s: float) -> tuple[Result, ...]:
+    def shown(self, now_s: float) -> tuple[ShownResult, ...]:
         """Return what is shown at a time, the newest first."""
         while self._later and self._later[0][0] <= now_s:
             self._shown = self._later.popleft()[1]

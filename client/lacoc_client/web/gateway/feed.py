@@ -11,11 +11,11 @@ from lacoc_client.web.gateway.audience import Audience, Listener
 from lacoc_client.web.gateway.picture import CourtPicture
 from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import BadMessage
 from lacoc_shared.command import log
 from lacoc_shared.contest.access import Access
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Mailbox, Session, open_client
@@ -49,7 +49,7 @@ class CourtFeed:
         self.court = court = access.court
         self.session: Session | None = None
         """The connection; None until the first one."""
-        self._keys = Keys(court)
+        self._keys = KeySpace(court)
         self._threads = threads
         self.audience = Audience()
         """The pages that watch."""
@@ -181,7 +181,7 @@ class CourtFeed:
         silent_s = max(0.0, time.monotonic() - self._frame_s)
         why = None if self._connected else self._wrong_version or self._why
         return wire.map_message(
-            Kind.LINK,
+            MessageKind.LINK,
             {
                 "court": self.court,
                 "connected": self._connected,

@@ -80,7 +80,7 @@ class Guard:
     def _instead(self, scope: Scope) -> ASGIApp | None:
         """Return what answers in place of the application, if anything does."""
         if (refusal := self._why_not(scope)) is not None:
-            return answer(scope, refusal, 403)
+            return answer_browser(scope, refusal, 403)
         below = self._public.path
         if below and scope["path"] == below and scope["type"] == "http":
             return RedirectResponse(f"{below}/")  # else the page would look for its parts beside it
@@ -90,9 +90,9 @@ class Guard:
         machine = machine_of(scope)
         # A proxy here that nobody named asks for all: a limit for one would be one for everybody.
         if at_socket and self._held[machine] >= SOCKETS_MOST and not is_loopback(machine):
-            return answer(scope, say("gateway.machine-full", most=SOCKETS_MOST), 429)
+            return answer_browser(scope, say("gateway.machine-full", most=SOCKETS_MOST), 429)
         if at_socket and scope["type"] == "http":
-            return answer(scope, say("gateway.no-websocket"), 426)
+            return answer_browser(scope, say("gateway.no-websocket"), 426)
         return None
 
     def _why_not(self, scope: Scope) -> Phrase | None:
@@ -119,7 +119,7 @@ def machine_of(scope: Scope) -> str:
     return client[0] if client else ""
 
 
-def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:
+def answer_browser(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:
     """Answer a browser with a sentence in its language, instead of a page."""
     return PlainTextResponse(f"{render(said, language_of(scope))}\n", status_code=status)
 

@@ -3,7 +3,7 @@
 import msgspec
 
 
-class Health(msgspec.Struct, frozen=True, kw_only=True):
+class GatewayHealth(msgspec.Struct, frozen=True, kw_only=True):
     """What a gateway says of itself to whoever watches over it."""
 
     version: str

@@ -10,20 +10,20 @@ from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.audience import Audience
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import decode
 
-_NEEDED = (Kind.LINK, Kind.SHEET, Kind.SCENE)
+_NEEDED = (MessageKind.LINK, MessageKind.SHEET, MessageKind.SCENE)
 
 
-class _Link(msgspec.Struct):
+class _LinkMessage(msgspec.Struct):
     """The fields of a link message that say which earlier messages still count."""
 
     connected: bool
     log: int
 
 
-class _Way(Enum):
+class _SentBy(Enum):
     """The method of `Listener` by which a message came."""
 
     SENT = auto()
@@ -44,8 +44,8 @@ class LateFeed:
         self.audience = Audience()
         """The pages that watch it late."""
         self._behind_s = behind_s
-        self._waiting: deque[tuple[float, _Way, bytes]] = deque()
-        self._newest: dict[Kind, bytes] = {}
+        self._waiting: deque[tuple[float, _SentBy, bytes]] = deque()
+        self._newest: dict[MessageKind, bytes] = {}
         """The messages besides the events that a page needs when it comes, by kind."""
         self._events: dict[bytes, None] = {}
         self._log = 0
@@ -53,21 +53,21 @@ class LateFeed:
 
     def send(self, framed: bytes) -> None:
         """Hold a message back."""
-        self._waiting.append((time.monotonic(), _Way.SENT, framed))
+        self._waiting.append((time.monotonic(), _SentBy.SENT, framed))
 
     def send_if_fast(self, framed: bytes) -> None:
         """Hold back a message that a slow page may miss."""
-        self._waiting.append((time.monotonic(), _Way.IF_FAST, framed))
+        self._waiting.append((time.monotonic(), _SentBy.IF_FAST, framed))
 
     def offer(self, framed: bytes, now_s: float) -> None:
         """Hold a frame back."""
-        self._waiting.append((now_s, _Way.OFFERED, framed))
+        self._waiting.append((now_s, _SentBy.OFFERED, framed))
 
     def add(self, viewer: Viewer) -> None:
         """Let a page watch; send it everything that was known `behind_s` ago."""
         kept = self._newest
         messages = [kept[kind] for kind in _NEEDED if kind in kept] + [*self._events]
-        messages += [kept[kind] for kind in (Kind.HEALTH, Kind.FRAME) if kind in kept]
+        messages += [kept[kind] for kind in (MessageKind.HEALTH, MessageKind.FRAME) if kind in kept]
         for framed in messages:
             viewer.send(framed)
         self.audience.add(viewer)
@@ -82,23 +82,23 @@ class LateFeed:
             _, way, framed = self._waiting.popleft()
             self._keep(framed)
             match way:
-                case _Way.SENT:
+                case _SentBy.SENT:
                     self.audience.send(framed)
-                case _Way.IF_FAST:
+                case _SentBy.IF_FAST:
                     self.audience.send_if_fast(framed)
-                case _Way.OFFERED:
+                case _SentBy.OFFERED:
                     self.audience.offer(framed, now_s)
 
     def _keep(self, framed: bytes) -> None:
         kind, payload = wire.opened(framed)
-        if kind is Kind.EVENT:
+        if kind is MessageKind.EVENT:
             self._events[framed] = None
             return
         self._newest[kind] = framed
-        if kind is Kind.LINK:
-            link = decode(payload, _Link)
+        if kind is MessageKind.LINK:
+            link = decode(payload, _LinkMessage)
             if link.log != self._log:
                 self._log = link.log
                 self._events.clear()
             if not link.connected:  # an old frame must not look like a new one
-                self._newest.pop(Kind.FRAME, None)
+                self._newest.pop(MessageKind.FRAME, None)

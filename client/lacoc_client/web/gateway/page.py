@@ -19,7 +19,7 @@ from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.programme import Programme
 from lacoc_client.web.gateway.referees import Referees
 from lacoc_client.web.gateway.viewer import USUAL_HZ, Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared import __version__
 from lacoc_shared.contest.access import Access
 from lacoc_shared.messages import PROTOCOL
@@ -176,7 +176,7 @@ class Page:
             "desk": home.desk,
             "prefill": filled,
         }
-        return wire.map_message(Kind.WELCOME, body)
+        return wire.map_message(MessageKind.WELCOME, body)
 
     @property
     def _may_act(self) -> bool:

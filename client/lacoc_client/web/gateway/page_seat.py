@@ -4,13 +4,13 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
-from lacoc_client.play.controller import Controller, Seen
+from lacoc_client.play.controller import Controller, SeenFrame
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.answers import Answers, in_loop
 from lacoc_client.web.gateway.home import Prefill
 from lacoc_client.web.gateway.seat_thread import Answer, SeatThread
 from lacoc_client.web.gateway.viewer import MOST_HZ, Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_robots.seat_files import SeatFiles, to_send
 from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
@@ -93,10 +93,10 @@ class PageSeat:
             case wire.LeaveAsk():
                 do(lambda controller: {"said": controller.leave()}, answer)
             case wire.KeyAsk(level=level, key=key, match=number, beat=beat):
-                seen = Seen(number, beat)
+                seen = SeenFrame(number, beat)
                 do(lambda controller: {"seq": controller.press(level, key, seen)}, answer)
             case wire.SawAsk(match=number, beat=beat):
-                do(lambda controller: _saw(controller, Seen(number, beat)), answer)
+                do(lambda controller: _saw(controller, SeenFrame(number, beat)), answer)
 
     def leave(self) -> None:
         """Stop repeating the command when the page goes; the contestant keeps the seat."""
@@ -134,7 +134,7 @@ class PageSeat:
     def _tell(self, seat: dict[str, Any], joins: int) -> None:
         if joins != self._joins:
             return  # an older seat of this page
-        self._viewer.send(wire.map_message(Kind.SEAT, seat))
+        self._viewer.send(wire.map_message(MessageKind.SEAT, seat))
         hold = (seat["seat"], seat["hold"])
         if hold != self._hold:
             self._hold = hold
@@ -142,6 +142,6 @@ class PageSeat:
             self._log(f"Seat {hold[0]}: {hold[1]}{because}.", "seat", seat=hold[0], hold=hold[1])
 
 
-def _saw(controller: Controller, frame: Seen) -> dict[str, Any]:
+def _saw(controller: Controller, frame: SeenFrame) -> dict[str, Any]:
     controller.saw(frame)
     return {}

@@ -3,7 +3,7 @@
 import msgspec
 
 from lacoc_client.web.gateway import wire
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import BadMessage, decode, message_hash
 from lacoc_shared.messages import Event
 from lacoc_shared.network.court_view import MAX_BYTES, CourtView, Told
@@ -44,7 +44,7 @@ class FramePart(msgspec.Struct):
     scores: tuple[int, ...]
 
 
-class _Frame(msgspec.Struct, array_like=True):
+class _FrameHead(msgspec.Struct, array_like=True):
     """The fields of a `Frame` up to its scene; only pages read the others."""
 
     match: int
@@ -66,13 +66,15 @@ class CourtPicture:
     """
 
     def __init__(self) -> None:
-        self.view: CourtView[bytes] = CourtView(lambda _, data: wire.message(Kind.EVENT, data))
+        self.view: CourtView[bytes] = CourtView(
+            lambda _, data: wire.message(MessageKind.EVENT, data)
+        )
         """What the court has sent, and what part of it is missing here."""
         self.phase = 0
         """Phase in the newest frame."""
         self.frame: bytes | None = None
         """The newest frame."""
-        self._newest: _Frame | None = None
+        self._newest: _FrameHead | None = None
         self._sheet: tuple[bytes, SheetPart] | None = None
         """The newest sheet that `played` has read."""
         self._health: bytes | None = None
@@ -85,7 +87,7 @@ class CourtPicture:
     def all_but_frame(self) -> tuple[bytes, ...]:
         """Return what a page needs before it can show a frame."""
         view = self.view
-        sheet = [] if view.sheet is None else [wire.message(Kind.SHEET, view.sheet)]
+        sheet = [] if view.sheet is None else [wire.message(MessageKind.SHEET, view.sheet)]
         scene = [] if view.scene is None else [_scene(view.scene)]
         health = [] if self._health is None else [self._health]
         return (*sheet, *scene, *view.log, *health)
@@ -118,17 +120,17 @@ class CourtPicture:
 
     def take_frame(self, payload: bytes) -> bytes:
         """Take a frame in; return the bytes for pages."""
-        frame = decode(payload, _Frame, MAX_BYTES)
+        frame = decode(payload, _FrameHead, MAX_BYTES)
         self.view.see_frame(frame.scene)
         self.phase = frame.phase
         self._newest = frame
-        self.frame = framed = wire.message(Kind.FRAME, payload)
+        self.frame = framed = wire.message(MessageKind.FRAME, payload)
         return framed
 
     def take_event(self, payload: bytes) -> bytes | None:
         """Take an event in; return the bytes for pages, or None if it is not new."""
         is_new = self.view.add_event(decode(payload, Event, MAX_BYTES), payload)
-        return wire.message(Kind.EVENT, payload) if is_new else None
+        return wire.message(MessageKind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
         """Take a scene in.
@@ -144,7 +146,7 @@ class CourtPicture:
         Returns:
             The bytes for pages; None if the sheet is not new, or has another protocol version.
         """
-        return wire.message(Kind.SHEET, payload) if self.view.take_sheet(payload) else None
+        return wire.message(MessageKind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
         """Take health in.
@@ -155,9 +157,9 @@ class CourtPicture:
         self.view.see_health(decode(payload, Told, MAX_BYTES))
         if self.view.other_version is not None:
             return None
-        self._health = framed = wire.message(Kind.HEALTH, payload)
+        self._health = framed = wire.message(MessageKind.HEALTH, payload)
         return framed
 
 
 def _scene(payload: bytes) -> bytes:
-    return wire.message(Kind.SCENE, message_hash(payload) + payload)
+    return wire.message(MessageKind.SCENE, message_hash(payload) + payload)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 from lacoc_client.web.director.courts import OVER, CourtNow
 from lacoc_client.web.director.director import AHEAD_S, Director
-from lacoc_client.web.director.moments import Moment
-from lacoc_client.web.director.results import Result, Results
+from lacoc_client.web.director.moments import LiveMoment
+from lacoc_client.web.director.results import Results, ShownResult
 from lacoc_client.web.director.stakes import stake
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.audience import Audience
@@ -16,7 +16,7 @@ from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.late_feed import LateFeed
 from lacoc_client.web.gateway.picture import FramePart, SheetPart
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.seat import BEAT_S
 
 _LOOKS = 5
@@ -135,7 +135,7 @@ class Programme:
     def _look(self, now_s: float) -> None:
         """Let the director look at all courts, and show what it chooses."""
         courts: list[CourtNow] = []
-        over: list[Result] = []
+        over: list[ShownResult] = []
         for feed in self._feeds():
             if feed.court not in self._late:
                 self._late[feed.court] = LateFeed(feed, self._behind_s)
@@ -151,7 +151,7 @@ class Programme:
         first = self._first.court or self._feeds()[0].court if shot is None else shot.court
         self._tell(now_s, first, shot.why if shot else "first", self._director.aside)
 
-    def _tell(self, now_s: float, court: str, why: str, aside: Moment | None) -> None:
+    def _tell(self, now_s: float, court: str, why: str, aside: LiveMoment | None) -> None:
         """Show the courts that are on air, and tell the pages why, if that has changed."""
         behind = {
             "behind_s": self._behind_s,
@@ -159,7 +159,7 @@ class Programme:
         }
         results = self._results.shown(now_s)
         first = {"court": court, "why": why, "is_shown": True, **behind, "results": results}
-        self._first.show(self._late[court], wire.map_message(Kind.PROGRAMME, first))
+        self._first.show(self._late[court], wire.map_message(MessageKind.PROGRAMME, first))
         # Without a second picture its channel stays at its last court.
         beside = aside.court if aside else self._second.court or court
         second = {
@@ -169,7 +169,7 @@ class Programme:
             **behind,
             "results": (),
         }
-        self._second.show(self._late[beside], wire.map_message(Kind.PROGRAMME, second))
+        self._second.show(self._late[beside], wire.map_message(MessageKind.PROGRAMME, second))
 
 
 def _now(name: str, stands: FramePart, played: SheetPart) -> CourtNow:
@@ -185,8 +185,8 @@ def _now(name: str, stands: FramePart, played: SheetPart) -> CourtNow:
     )
 
 
-def _result(court: str, stands: FramePart, played: SheetPart) -> Result:
-    return Result(
+def _result(court: str, stands: FramePart, played: SheetPart) -> ShownResult:
+    return ShownResult(
         court=court,
         match=str(stands.match),
         title=played.title,

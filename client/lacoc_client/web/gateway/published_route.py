@@ -9,7 +9,7 @@ from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 
 from lacoc_client.web.gateway.cached import ASK_AGAIN, large_response
-from lacoc_client.web.gateway.guard import answer
+from lacoc_client.web.gateway.guard import answer_browser
 from lacoc_shared.contest.file import published_path
 from lacoc_shared.words import say
 
@@ -33,7 +33,7 @@ def published_routes(sheet: Path | None) -> list[BaseRoute]:
                 return large_response(request, path, kind, ASK_AGAIN)
         except OSError:  # it was written again at this moment
             pass
-        return answer(request.scope, say("gateway.no-page"), 404)
+        return answer_browser(request.scope, say("gateway.no-page"), 404)
 
     return [Route("/published/{name:path}", published)]
 

@@ -27,7 +27,7 @@ _ODDS_BYTES = 1 << 20
 """A larger file of odds is not served; one of 50 moments has 10 kB."""
 
 
-class Listed(msgspec.Struct, frozen=True):
+class ListedRecord(msgspec.Struct, frozen=True):
     """One entry of the list of recordings."""
 
     name: str
@@ -65,7 +65,7 @@ class Recordings:
         self._summaries: dict[tuple[Path, int, int], Summary | None] = {}
         self._lock = Lock()
 
-    def listed(self) -> list[Listed]:
+    def listed(self) -> list[ListedRecord]:
         """List all recordings, the newest first."""
         with self._lock:
             self._copy()
@@ -75,7 +75,7 @@ class Recordings:
                     stat = path.stat()
                     found.append((stat.st_mtime, path, stat))
             return [
-                Listed(
+                ListedRecord(
                     path.name,
                     stat.st_size,
                     datetime.fromtimestamp(at_s, UTC).isoformat(timespec="seconds"),

@@ -2,7 +2,7 @@
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -53,7 +53,7 @@ class Referees:
         """Return the message that tells a page who acts."""
         acting = None if self._acting is None else self._entered[self._acting][1]
         body = {"acting": acting, "mine": viewer is self._acting}
-        return wire.map_message(Kind.REFEREE, body)
+        return wire.map_message(MessageKind.REFEREE, body)
 
     def _act(self, viewer: Viewer | None) -> None:
         self._acting = viewer

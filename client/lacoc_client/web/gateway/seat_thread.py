@@ -32,7 +32,7 @@ _OF_FILES = (FILES_REFUSED, "mistake.line")
 """Notes of a court on files that it refused."""
 
 
-class _Job(NamedTuple):
+class _SeatJob(NamedTuple):
     do: Callable[[Controller], Any]
     answer: Answer
 
@@ -64,7 +64,7 @@ class SeatThread:
         self._files = files
         self._unheard_s = unheard_s
         self._tell = tell
-        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        self._jobs: queue.SimpleQueue[_SeatJob | None] = queue.SimpleQueue()
         self._ended = False
         self._told: dict[str, Any] = {}
         self._thread = threading.Thread(
@@ -74,7 +74,7 @@ class SeatThread:
 
     def do(self, job: Callable[[Controller], Any], answer: Answer) -> None:
         """Give the controller a job; jobs are done in order, as soon as possible."""
-        self._jobs.put(_Job(job, answer))
+        self._jobs.put(_SeatJob(job, answer))
         if not self._thread.is_alive():
             self._refuse_rest()
 
@@ -133,7 +133,7 @@ class SeatThread:
             controller.poll(time.monotonic())
             self._report(controller)
 
-    def _try(self, controller: Controller, job: _Job) -> None:
+    def _try(self, controller: Controller, job: _SeatJob) -> None:
         try:
             value = job.do(controller)
         except (UserError, FileRefused) as error:

@@ -2,26 +2,10 @@
 
 from pathlib import Path
 
-import msgspec
+from lacoc_client.web.gateway.contest_sheet import NewestSheet, PublishedSheet
 
 
-class _Game(msgspec.Struct):
-    record: str = ""
-
-
-class _Match(msgspec.Struct):
-    games: tuple[_Game, ...] = ()
-
-
-class _Stage(msgspec.Struct):
-    matches: tuple[_Match, ...] = ()
-
-
-class _Sheet(msgspec.Struct):
-    stages: tuple[_Stage, ...] = ()
-
-
-class Shown:
+class ShownRecords:
     """The names of these records, as the newest sheet says; may be used from any thread.
 
     Args:
@@ -29,18 +13,16 @@ class Shown:
     """
 
     def __init__(self, sheet: Path) -> None:
-        self._path = sheet
-        self._known: tuple[int, frozenset[str]] = (0, frozenset())
+        self._sheet = NewestSheet(sheet)
+        self._known: tuple[PublishedSheet | None, frozenset[str]] = (None, frozenset())
 
     def __call__(self) -> frozenset[str]:
-        """Return the names; none before there is a sheet."""
-        try:
-            version = self._path.stat().st_mtime_ns
-            if self._known[0] != version:
-                sheet = msgspec.json.decode(self._path.read_bytes(), type=_Sheet)
-                matches = (match for stage in sheet.stages for match in stage.matches)
-                records = (game.record for match in matches for game in match.games)
-                self._known = version, frozenset(Path(one).name for one in records if one)
-        except (OSError, msgspec.MsgspecError):
+        """Return the names; none while there is no sheet."""
+        sheet = self._sheet.take()
+        if sheet is None:
             return frozenset()
-        return self._known[1]
+        known, names = self._known
+        if known is not sheet:
+            names = frozenset(Path(game.record).name for game in sheet.games if game.record)
+            self._known = sheet, names
+        return names

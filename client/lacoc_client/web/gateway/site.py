@@ -15,7 +15,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from lacoc_client.play.link.event import PATH as EVENT_PATH
-from lacoc_client.play.link.event import Event
+from lacoc_client.play.link.event import LinkedEvent
 from lacoc_client.web.gateway.cached import (
     ASK_AGAIN,
     FOR_EVER,
@@ -26,15 +26,15 @@ from lacoc_client.web.gateway.cached import (
 from lacoc_client.web.gateway.courts import Courts
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.forks import ForkAsk, Forks, bots
-from lacoc_client.web.gateway.guard import answer, language_of, machine_of
-from lacoc_client.web.gateway.health import Health
+from lacoc_client.web.gateway.guard import answer_browser, language_of, machine_of
+from lacoc_client.web.gateway.health import GatewayHealth
 from lacoc_client.web.gateway.home import Home
 from lacoc_client.web.gateway.metrics import GatewayMetrics
 from lacoc_client.web.gateway.page import Page
 from lacoc_client.web.gateway.published_route import published_routes
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.scores import scores_route
-from lacoc_client.web.gateway.shown import Shown
+from lacoc_client.web.gateway.shown import ShownRecords
 from lacoc_client.web.gateway.wire import REQUEST_BYTES, too_long
 from lacoc_shared import __version__
 from lacoc_shared.messages import PROTOCOL
@@ -74,7 +74,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         more: further pages.
     """
     courts = Courts(home)
-    shown = Shown(home.sheet) if home.keeps_back and home.sheet is not None else None
+    shown = ShownRecords(home.sheet) if home.keeps_back and home.sheet is not None else None
     shelf = Recordings(home.recordings, courts.over, shown)
     forks = Forks(shelf.own)
     if home.exporter is not None:
@@ -156,7 +156,7 @@ def fork_routes(
 
     async def fork(request: Request) -> Response:
         if not lets_act(request.headers.get(KEY_HEADER, "")):
-            return answer(request.scope, say("gateway.fork-key"), 403)
+            return answer_browser(request.scope, say("gateway.fork-key"), 403)
         record = await asyncio.to_thread(shelf.find, request.path_params["name"])
         if record is None:
             return _not_found(request)
@@ -168,9 +168,9 @@ def fork_routes(
             else:
                 found = {"bots": await asyncio.to_thread(bots, record)}
         except msgspec.MsgspecError as error:
-            return answer(request.scope, say("gateway.bad-message", error=str(error)), 400)
+            return answer_browser(request.scope, say("gateway.bad-message", error=str(error)), 400)
         except UserError as error:
-            return answer(request.scope, error.phrase, 409)
+            return answer_browser(request.scope, error.phrase, 409)
         return Response(msgspec.json.encode(found), media_type="application/json")
 
     return [Route("/recordings/{name}/forks", fork, methods=["GET", "POST"])]
@@ -192,7 +192,9 @@ async def _body(request: Request) -> bytes:
 
 def event_route(home: Home) -> BaseRoute:
     """Return the route on which commands ask for the courts that a link leads to."""
-    event = Event(protocol=PROTOCOL, name=home.contest, courts=home.told, authority=home.authority)
+    event = LinkedEvent(
+        protocol=PROTOCOL, name=home.contest, courts=home.told, authority=home.authority
+    )
 
     async def answer_event(request: Request) -> Response:
         return json_response(request, event)
@@ -213,7 +215,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
         if files is not None and path is not None:
             found = await asyncio.to_thread(files.find, path.name)
         if found is None:
-            return answer(request.scope, say("gateway.no-contest"), 404)
+            return answer_browser(request.scope, say("gateway.no-contest"), 404)
         return file_response(request, found, ASK_AGAIN)
 
     return Route("/contest.json", sheet)
@@ -234,7 +236,7 @@ def page_routes(
     async def index(request: Request) -> Response:
         file = await asyncio.to_thread(files.find, "index.html")
         if file is None:
-            return answer(request.scope, NOT_BUILT, 503)
+            return answer_browser(request.scope, NOT_BUILT, 503)
         return file_response(request, file, ASK_AGAIN)
 
     async def without_slash(request: Request) -> Response:
@@ -258,7 +260,7 @@ def page_routes(
         """Say that the gateway answers, and how the request came here through proxies."""
         forwarded = request.headers.get("x-forwarded-for", "")
         asks = [one.strip() for one in forwarded.split(",") if one]
-        health = Health(
+        health = GatewayHealth(
             version=__version__,
             contest=title,
             host=request.headers.get("host", ""),
@@ -277,4 +279,4 @@ def page_routes(
 
 
 def _not_found(request: Request) -> Response:
-    return answer(request.scope, say("gateway.no-page"), 404)
+    return answer_browser(request.scope, say("gateway.no-page"), 404)

@@ -35,7 +35,7 @@ class TokenRefused(UserError):
     """A court refuses a referee's token: showing the same one again is useless."""
 
 
-class Kind(IntEnum):
+class MessageKind(IntEnum):
     """Kinds of messages to a page."""
 
     WELCOME = 1
@@ -99,7 +99,7 @@ class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, which says how far the court is from the gateway."""
+    """Ask for a reply, as a sign of life. It says how far the court is, if the page has one."""
 
     t: float | int | str | None = None
 
@@ -217,11 +217,20 @@ def read(data: bytes) -> Asked:
         Unreadable: if it is no known request, or too long for its kind.
     """
     try:
-        if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
+        if len(data) > REQUEST_BYTES and do_of(data) != "join":
             raise too_long(len(data), REQUEST_BYTES)
         return _asked.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise Unreadable(say("gateway.bad-message", error=str(error))) from None
+
+
+def do_of(data: bytes) -> str:
+    """Return what a request wants done (`do`), if nothing else of it can be read.
+
+    Raises:
+        msgspec.DecodeError: if it does not say so.
+    """
+    return _any_do.decode(data).do
 
 
 def too_long(size: int, most: int) -> Unreadable:
@@ -239,7 +248,7 @@ def read_id(data: bytes) -> int | None:
         return None
 
 
-def message(kind: Kind, payload: bytes) -> bytes:
+def message(kind: MessageKind, payload: bytes) -> bytes:
     """Make a finished WebSocket frame of a message; the same bytes can go to all pages."""
     size = len(payload) + 1
     if size < 126:
@@ -251,13 +260,13 @@ def message(kind: Kind, payload: bytes) -> bytes:
     return head + payload
 
 
-def opened(framed: bytes) -> tuple[Kind, bytes]:
+def opened(framed: bytes) -> tuple[MessageKind, bytes]:
     """Return the kind and the payload of a message that `message` made."""
     head = {126: 4, 127: 10}.get(framed[1], 2)
-    return Kind(framed[head]), framed[head + 1 :]
+    return MessageKind(framed[head]), framed[head + 1 :]
 
 
-def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
+def map_message(kind: MessageKind, value: dict[str, Any]) -> bytes:
     """Make a message of the gateway's own, as a WebSocket frame."""
     return message(kind, encode(value))
 
@@ -279,12 +288,12 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
         "error": None if refused is None else _said(refused),
         "mistakes": refused.mistakes if isinstance(refused, FileRefused) else [],
     }
-    return map_message(Kind.FILES, body)
+    return map_message(MessageKind.FILES, body)
 
 
 def reply(to: int, value: Any) -> bytes:
     """Make the answer to a request."""
-    return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
+    return map_message(MessageKind.REPLY, {"id": to, "ok": True, "value": value})
 
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
@@ -299,7 +308,7 @@ def refusal(to: int, error: UserError | FileRefused) -> bytes:
         "again": isinstance(error, NotNow),
         "unanswered": isinstance(error, NoAnswer),
     }
-    return map_message(Kind.REPLY, body)
+    return map_message(MessageKind.REPLY, body)
 
 
 def _said(error: UserError | FileRefused) -> Phrase:

@@ -14,7 +14,7 @@ from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import Ask, Ping, Unreadable
 from lacoc_client.web.office.desk import DeskLine
 from lacoc_client.web.office.hand_ins import HandIns
-from lacoc_client.web.office.links import LinkMaker, Links, TeamLink, qr_code
+from lacoc_client.web.office.links import ContestLinks, LinkMaker, TeamLink, qr_code
 from lacoc_shared import codec
 from lacoc_shared.messages.desk import REPLY_MAX_BYTES, Own, OwnEntry, TokenList, Tokens
 from lacoc_shared.mistakes import UserError
@@ -132,12 +132,12 @@ class DeskPage:
         entry = codec.decode(answer, OwnEntry, REPLY_MAX_BYTES)
         return self._make.team(entry.team, entry.token)
 
-    async def _links(self, secret: str, wanted: str) -> Links:
+    async def _links(self, secret: str, wanted: str) -> ContestLinks:
         answer = await self._asked(codec.encode(Tokens(secret=secret)))
         tokens = codec.decode(answer, TokenList, REPLY_MAX_BYTES)
         return await asyncio.to_thread(self._made, tokens, wanted)
 
-    def _made(self, tokens: TokenList, wanted: str) -> Links:
+    def _made(self, tokens: TokenList, wanted: str) -> ContestLinks:
         enter = f"{self._make.address}/enter"
         teams = tuple(
             self._make.team(team, token)
@@ -155,7 +155,7 @@ class DeskPage:
         staff = tuple(
             self._make.staff(name, token) for name, token in tokens.staff.items() if not wanted
         )
-        return Links(
+        return ContestLinks(
             enter=enter,
             enter_qr=qr_code(enter),
             teams=teams,

@@ -51,7 +51,7 @@ class SeatLink(msgspec.Struct, frozen=True, kw_only=True):
     """The link as a QR code: a picture in SVG."""
 
 
-class Links(msgspec.Struct, frozen=True, kw_only=True):
+class ContestLinks(msgspec.Struct, frozen=True, kw_only=True):
     """Links of teams, referees and open seats, and the address at which teams enter."""
 
     enter: str

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from lacoc_client.workshop.phases.evidence import Evidence, Hand, Tried
 from lacoc_client.workshop.phases.facts import STRAIGHT_DEG_S, TrialFacts
-from lacoc_client.workshop.phases.progress import Progress, State
+from lacoc_client.workshop.phases.progress import State, StudentProgress
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import Phrase, say
@@ -60,7 +60,7 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     need: Need
 
 
-class Seen(msgspec.Struct, frozen=True, kw_only=True):
+class SeenStudent(msgspec.Struct, frozen=True, kw_only=True):
     """What a card needs to know of a student besides the evidence."""
 
     name: str
@@ -71,7 +71,9 @@ class Seen(msgspec.Struct, frozen=True, kw_only=True):
     """The last trial since the class was opened."""
 
 
-def card(seen: Seen, evidence: Sequence[Evidence], progress: Progress, now_s: float) -> Card:
+def card(
+    seen: SeenStudent, evidence: Sequence[Evidence], progress: StudentProgress, now_s: float
+) -> Card:
     """Make a student's card.
 
     Args:

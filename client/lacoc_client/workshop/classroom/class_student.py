@@ -3,12 +3,12 @@
 import time
 from collections.abc import Callable, Iterable, Sequence
 
-from lacoc_client.workshop.classroom.cards import Card, Seen, card, hand_times
+from lacoc_client.workshop.classroom.cards import Card, SeenStudent, card, hand_times
 from lacoc_client.workshop.design.learning.diary import Diary
-from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.design.learning.student import Student
 from lacoc_client.workshop.phases.class_file import Document, Kept
-from lacoc_client.workshop.phases.evidence import Joined
+from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_shared.studio import TrialReply
 
 TOKEN = "token"
@@ -24,7 +24,7 @@ class ClassStudent(Student):
         rules: returns what the teacher allows.
     """
 
-    def __init__(self, name: str, diary: Diary, rules: Callable[[], Rules]) -> None:
+    def __init__(self, name: str, diary: Diary, rules: Callable[[], StudentRules]) -> None:
         super().__init__(name, diary, rules)
         self.token_hash = ""
         """Hash of the token of the browser that may come in; "": the next one gets a token."""
@@ -47,7 +47,7 @@ class ClassStudent(Student):
     @property
     def is_idle(self) -> bool:
         """Whether the student has no page open, and has never done more than come in."""
-        did = any(not isinstance(one, Joined) for one in self.diary.evidence)
+        did = any(not isinstance(one, JoinedClass) for one in self.diary.evidence)
         return not (self.viewers or did or self.diary.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
@@ -66,7 +66,7 @@ class ClassStudent(Student):
 
     def card(self) -> Card:
         """Return the student's card."""
-        seen = Seen(
+        seen = SeenStudent(
             name=self.name,
             online=bool(self.viewers),
             seen_s=self.seen_s,

@@ -12,7 +12,7 @@ import msgspec
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.guesses import Guesses
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.state import (
     NOBODY,
@@ -26,22 +26,22 @@ from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.designer import folder_message, sample_postures, studio_message
 from lacoc_client.workshop.design.files import FileContent
 from lacoc_client.workshop.design.folder import Folder
-from lacoc_client.workshop.design.host import Entered
+from lacoc_client.workshop.design.host import LetIn
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.keeper import Keeper
-from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.design.learning.student import Student
 from lacoc_client.workshop.design.playing import Playing
 from lacoc_client.workshop.design.studios.studios import Studios
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document, Kept
-from lacoc_client.workshop.phases.evidence import Hand, Joined
+from lacoc_client.workshop.phases.evidence import Hand, JoinedClass
 from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_shared import seal
 from lacoc_shared.contest.codes import new_code, read_code
 from lacoc_shared.contest.names import look_alike, read_name, same_name
-from lacoc_shared.contest.tokens import hash_token, new_token
+from lacoc_shared.contest.tokens import new_token, new_token_hash
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import TrialReply
@@ -131,17 +131,17 @@ class Classroom:
 
     # What students do
 
-    async def enter(self, hello: requests.Hello, where: str) -> Entered:
+    async def enter(self, hello: requests.Hello, where: str) -> LetIn:
         """Let a student in who shows a token, or the class code and a nickname (`Host.enter`)."""
         if hello.token:
             student, token = self._known(hello), hello.token
         else:
             student, token = await self._newcomer(hello, where), new_token()
-            student.token_hash = hash_token(token)
+            student.token_hash = new_token_hash(token)
             await student.diary.write(student.kept_token())
         if self.students.get(same_name(student.name)) is not student:
             raise UserError(say("class.enter"))  # forgotten while it came in
-        return Entered(student, token)
+        return LetIn(student, token)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
         """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
@@ -186,7 +186,7 @@ class Classroom:
             raise UserError(say("class.no-student", name=name))
         return student
 
-    async def set_rules(self, rules: Rules) -> None:
+    async def set_rules(self, rules: StudentRules) -> None:
         """Set what students may do, and tell everybody."""
         await self._set(rules=rules)
         for student in self.students.values():
@@ -228,7 +228,7 @@ class Classroom:
         if self.students.get(same_name(student.name)) is student:  # else another page was quicker
             del self.students[same_name(student.name)]
         self._send_away(student, forgotten=True)
-        self._tell(wire.map_message(Kind.GONE, {"name": student.name}))
+        self._tell(wire.map_message(MessageKind.GONE, {"name": student.name}))
 
     async def evidence(self) -> list[Kept]:
         """Read the evidence of everybody.
@@ -279,7 +279,7 @@ class Classroom:
             elif student.token_hash:
                 raise UserError(say("class.name-taken", name=name))
             student.token_hash = "-"  # nobody else takes the name while this is written
-        await student.diary.add(Joined())
+        await student.diary.add(JoinedClass())
         return student
 
     async def _make_room(self) -> None:
@@ -304,7 +304,7 @@ class Classroom:
 
     def _send_away(self, student: ClassStudent, forgotten: bool) -> None:
         """Refuse further requests from all pages of a student, and tell the pages why."""
-        student.send(wire.map_message(Kind.ELSEWHERE, {"forgotten": forgotten}))
+        student.send(wire.map_message(MessageKind.ELSEWHERE, {"forgotten": forgotten}))
         for viewer in student.viewers:
             viewer.can_act = False
         student.viewers.clear()
@@ -349,7 +349,7 @@ class Classroom:
         if self.students.get(same_name(student.name)) is student:
             card = student.changed_card()
             if card is not None:
-                self._tell(wire.map_message(Kind.CARD, msgspec.structs.asdict(card)))
+                self._tell(wire.map_message(MessageKind.CARD, msgspec.structs.asdict(card)))
 
     def _tell_tournament(self) -> None:
         self._tell(self._tournament_message())
@@ -379,10 +379,12 @@ class Classroom:
             "handed": handed and {"number": handed.number, "title": handed.title},
             "cards": None if cards is None else list(cards),
         }
-        return wire.map_message(Kind.CLASS, body)
+        return wire.map_message(MessageKind.CLASS, body)
 
     def _tournament_message(self) -> bytes:
-        return wire.map_message(Kind.TOURNAMENT, msgspec.structs.asdict(self.tournament.state))
+        return wire.map_message(
+            MessageKind.TOURNAMENT, msgspec.structs.asdict(self.tournament.state)
+        )
 
 
 def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
@@ -394,4 +396,4 @@ def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
 
 
 def _handed_message(handed: Handed) -> bytes:
-    return wire.map_message(Kind.HANDED, msgspec.structs.asdict(handed))
+    return wire.map_message(MessageKind.HANDED, msgspec.structs.asdict(handed))

@@ -5,7 +5,7 @@ import time
 import msgspec
 
 from lacoc_client.web.gateway.home import new_key
-from lacoc_client.workshop.design.learning.rules import FREE, Rules
+from lacoc_client.workshop.design.learning.rules import FREE, StudentRules
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_shared.contest.codes import new_code
@@ -31,7 +31,7 @@ class ClassState(msgspec.Struct, frozen=True, kw_only=True):
     """The class code."""
     key: str
     """The page key of the teacher: it is the same after each start, so pages stay open."""
-    rules: Rules = FREE
+    rules: StudentRules = FREE
     handed: Handed | None = None
     """The last table that was handed out."""
 

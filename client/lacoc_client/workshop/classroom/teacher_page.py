@@ -10,13 +10,14 @@ from starlette.websockets import WebSocket
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Ping
 from lacoc_client.workshop.classroom import teacher_requests as requests
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.classroom import Classroom
 from lacoc_client.workshop.classroom.kept import EVIDENCE, TABLES, student_files
 from lacoc_client.workshop.design.design_page import parsed
 from lacoc_client.workshop.design.learning.draft import Draft
-from lacoc_client.workshop.design.requests import ParseAsk, Ping, RobotAsk, TrialAsk
+from lacoc_client.workshop.design.requests import Hello, ParseAsk, RobotAsk, TrialAsk
 from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
 from lacoc_robots.seat_files import SeatFiles
@@ -57,7 +58,7 @@ class TeacherPage:
         Returns:
             False if the page was closed, else True.
         """
-        if isinstance(asked, requests.Hello):
+        if isinstance(asked, Hello):
             key = asked.key.encode("utf-8", "surrogatepass")
             self._viewer.can_act = hmac.compare_digest(key, self._class.state.key.encode())
         if not self._viewer.can_act:
@@ -65,7 +66,7 @@ class TeacherPage:
             await self._websocket.close(GARBAGE, "no page key")
             return False
         match asked:
-            case requests.Hello():
+            case Hello():
                 self._answers.reply(asked.id, {})
                 self._class.add_teacher(self._viewer)
             case Ping():
@@ -98,7 +99,7 @@ class TeacherPage:
                 value = await self._show(group.find(asked.student))
             case requests.ExportAsk():
                 value = await self._export(asked.what)
-            case requests.PlayAsk():
+            case requests.TournamentAsk():
                 await group.tournament.play(
                     self._players(), asked.arena, asked.rounds, asked.seconds
                 )

@@ -4,22 +4,16 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from lacoc_client.web.gateway.wire import Ask
-from lacoc_client.workshop.design.learning.rules import Rules
-from lacoc_client.workshop.design.requests import Name, ParseAsk, Ping, Sequences, read_with
+from lacoc_client.web.gateway.wire import Ask, Ping
+from lacoc_client.workshop.design.learning.rules import StudentRules
+from lacoc_client.workshop.design.requests import Hello, Name, ParseAsk, Sequences, read_with
 from lacoc_client.workshop.design.table import FileTable
-
-
-class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
-    """The first message: it has the page key."""
-
-    key: Name = ""
 
 
 class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
     """Set what students may do."""
 
-    rules: Rules
+    rules: StudentRules
 
 
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
@@ -65,7 +59,7 @@ class ExportAsk(Ask, frozen=True, kw_only=True, tag="export"):
     what: Literal["evidence", "tables"]
 
 
-class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
+class TournamentAsk(Ask, frozen=True, kw_only=True, tag="play"):
     """Start a tournament of the newest tables."""
 
     arena: Name
@@ -89,7 +83,7 @@ Asked = (
     | NewCodeAsk
     | ShowAsk
     | ExportAsk
-    | PlayAsk
+    | TournamentAsk
     | StopPlayAsk
 )
 """Every request of the teacher's page."""

@@ -11,10 +11,10 @@ import msgspec
 from lacoc_client.play.simulation import (
     BeginLine,
     LeftOutLine,
-    Line,
     MatchLine,
+    OutputLine,
+    PlayerStanding,
     Simulation,
-    Standing,
     StandingsLine,
 )
 from lacoc_client.workshop.phases.export import free_name
@@ -30,7 +30,7 @@ _BOT = "planner"
 _CLOSE_S = 15.0
 
 
-class Played(msgspec.Struct, frozen=True, kw_only=True):
+class ClassMatch(msgspec.Struct, frozen=True, kw_only=True):
     """A match that has ended."""
 
     left: str
@@ -63,9 +63,9 @@ class TournamentState(msgspec.Struct, frozen=True, kw_only=True):
     """Number of matches that have ended."""
     of: int = 0
     """Number of all matches."""
-    matches: tuple[Played, ...] = ()
+    matches: tuple[ClassMatch, ...] = ()
     """The matches that have ended, in this order."""
-    standings: tuple[Standing, ...] = ()
+    standings: tuple[PlayerStanding, ...] = ()
     """The best first; empty until a match has ended."""
     left_out: tuple[LeftOut, ...] = ()
     trouble: Phrase | None = None
@@ -152,7 +152,9 @@ class Tournament:
                 trouble = None  # its complaint that it was ended
             self._change(state="done" if is_done else "stopped", trouble=trouble)
 
-    async def _simulate(self, teams: "Mapping[str, _Team]", words: list[str]) -> Phrase | None:
+    async def _simulate(
+        self, teams: "Mapping[str, _TournamentPlayer]", words: list[str]
+    ) -> Phrase | None:
         """Run `lacoc simulate` with these teams and further words of the command line.
 
         Returns:
@@ -176,7 +178,7 @@ class Tournament:
             return _too_few([one.name for one in self.state.left_out])
         return None if why is None else say("tournament.ended", why=why)
 
-    def _take(self, line: Line, teams: "Mapping[str, _Team]") -> None:
+    def _take(self, line: OutputLine, teams: "Mapping[str, _TournamentPlayer]") -> None:
         """Take in a line that `lacoc simulate` printed."""
         match line:
             case LeftOutLine():
@@ -186,7 +188,7 @@ class Tournament:
                 self._change(of=line.matches)
             case MatchLine():
                 left, right = (teams[word].name for word in line.players)
-                played = Played(
+                played = ClassMatch(
                     left=left,
                     right=right,
                     scores=line.result.scores,
@@ -209,7 +211,7 @@ class Tournament:
         self._tell()
 
 
-class _Team(msgspec.Struct, frozen=True):
+class _TournamentPlayer(msgspec.Struct, frozen=True):
     """A player of the tournament: the nickname, and what the player calls each file.
 
     `files` maps the name under which a file was written to the name that the player gave it.
@@ -226,7 +228,7 @@ class _Team(msgspec.Struct, frozen=True):
         return LeftOut(name=self.name, mistakes=mistakes, why=line.why)
 
 
-def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]:
+def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _TournamentPlayer]:
     """Write the files of each player into a folder.
 
     Returns:
@@ -235,7 +237,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]
     Raises:
         OSError: if a file can't be written.
     """
-    teams: dict[str, _Team] = {}
+    teams: dict[str, _TournamentPlayer] = {}
     taken: list[str] = []
     for name, files in players.items():
         taken.append(free_name(name, taken))
@@ -246,7 +248,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]
             if file is not None:
                 (own / on_disk).write_bytes(file.data)
                 known[f"{own.name}/{on_disk}"] = file.name
-        teams[text_of(f"{_BOT}@{own}")] = _Team(name, known)
+        teams[text_of(f"{_BOT}@{own}")] = _TournamentPlayer(name, known)
     return teams
 
 

@@ -10,6 +10,7 @@ from starlette.websockets import WebSocket
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.wire import Ping
 from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import FileContent, file_bytes, read_file
 from lacoc_client.workshop.design.folder import Folder
@@ -18,7 +19,7 @@ from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.learning.learner import Learner
 from lacoc_client.workshop.design.saving.robot_edit import edit_robot
 from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
-from lacoc_client.workshop.phases.evidence import Hand, Moved, Named
+from lacoc_client.workshop.phases.evidence import Hand, Named, WentToPhase
 from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_robots.seat_files import SeatFiles
@@ -67,7 +68,7 @@ class DesignPage:
         """
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
-        elif isinstance(asked, requests.Ping):  # also while somebody types the class code
+        elif isinstance(asked, Ping):  # also while somebody types the class code
             self._answers.reply(asked.id, {"t": asked.t})
         elif self._learner is not None and self._viewer.can_act:
             self._answer(asked, self._learner)
@@ -215,7 +216,7 @@ class DesignPage:
             case requests.PhaseAsk():
                 if asked.number in student.rules.closed:
                     raise UserError(say("class.phase-closed", number=asked.number))
-                await diary.add(Moved(phase=asked.number))
+                await diary.add(WentToPhase(phase=asked.number))
             case requests.NameAsk():
                 await diary.add(Named(word=asked.word))
             case requests.VoteAsk():

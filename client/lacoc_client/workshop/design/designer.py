@@ -8,11 +8,11 @@ from contextlib import asynccontextmanager
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.home import new_key
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import FileContent, read_file
 from lacoc_client.workshop.design.folder import Folder
-from lacoc_client.workshop.design.host import Entered
+from lacoc_client.workshop.design.host import LetIn
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.keeper import Keeper
 from lacoc_client.workshop.design.learning.rules import FREE
@@ -63,12 +63,12 @@ class Designer:
         self._student = Student("", Diary(self._keeper), lambda: FREE)
         self._robot_name = robot or WORKSHOPS_ROBOT
 
-    async def enter(self, hello: requests.Hello, where: str) -> Entered:
+    async def enter(self, hello: requests.Hello, where: str) -> LetIn:
         """Let a page in that shows the page key; see `Host.enter`."""
         key = hello.key.encode("utf-8", "surrogatepass")
         if not hmac.compare_digest(key, self.key.encode()):
             raise UserError(say("design.wrong-key"))
-        return Entered(self._student)
+        return LetIn(self._student)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
         """Tell a page the folder's files, the studio's state and the phases; see `Host.greet`."""
@@ -133,9 +133,13 @@ def sample_postures(robot: str) -> FileContent:
 def folder_message(path: str, folder: Folder | None, changed: tuple[str, ...] = ()) -> bytes:
     """Return the message that says which files there are; without a folder there are none."""
     files = folder.files if folder is not None else ()
-    return wire.map_message(Kind.FOLDER, {"folder": path, "files": files, "changed": changed})
+    return wire.map_message(
+        MessageKind.FOLDER, {"folder": path, "files": files, "changed": changed}
+    )
 
 
 def studio_message(studios: Studios) -> bytes:
     """Return the message that says whether there is a studio."""
-    return wire.map_message(Kind.STUDIO, {"present": studios.present > 0, "why": studios.why})
+    return wire.map_message(
+        MessageKind.STUDIO, {"present": studios.present > 0, "why": studios.why}
+    )

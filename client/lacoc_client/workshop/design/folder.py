@@ -54,7 +54,7 @@ class Read(msgspec.Struct, frozen=True, kw_only=True):
     """Why there is no table; only in a `Conflict`."""
 
 
-class Saved(msgspec.Struct, frozen=True):
+class SavedFile(msgspec.Struct, frozen=True):
     """The file was written."""
 
     version: str
@@ -67,7 +67,7 @@ class Conflict(msgspec.Struct, frozen=True):
     """What the file has now."""
 
 
-class _Known(NamedTuple):
+class _KnownFile(NamedTuple):
     modified_ns: int
     size: int
     file: FolderFile | None
@@ -88,7 +88,7 @@ class Folder:
             raise UserError(say("design.no-folder", path=str(path)))
         self.path = path.resolve()
         self._lock = threading.Lock()
-        self._known: dict[str, _Known] = {}
+        self._known: dict[str, _KnownFile] = {}
         self._changed: set[str] = set()
         self.files: tuple[FolderFile, ...] = ()
         """The files as they were last seen, sorted by name."""
@@ -115,7 +115,7 @@ class Folder:
 
     def save(
         self, name: str, content: FileTable | str, version: str, force: bool
-    ) -> Saved | Conflict:
+    ) -> SavedFile | Conflict:
         """Save a table or the text of a robot file; if this fails, the old file stays as it is.
 
         Args:
@@ -141,15 +141,15 @@ class Folder:
             if data != before:
                 replace_file(path, data)
             self._look()
-            return Saved(version_of(data))
+            return SavedFile(version_of(data))
 
     def _look(self) -> None:
-        now: dict[str, _Known] = {}
+        now: dict[str, _KnownFile] = {}
         for name, modified_ns, size in _listed(self.path):
             known = self._known.get(name)
             if known is None or known[:2] != (modified_ns, size):
                 data = self._seen(self.path / name)
-                known = _Known(modified_ns, size, None if data is None else _file(name, data))
+                known = _KnownFile(modified_ns, size, None if data is None else _file(name, data))
             now[name] = known
         self._known = now
         files = [known.file for known in now.values() if known.file is not None]

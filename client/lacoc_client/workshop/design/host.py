@@ -24,7 +24,7 @@ class Host(Protocol):
     playing: Playing | None
     """The way to a court; None: pages have none."""
 
-    async def enter(self, hello: requests.Hello, where: str) -> "Entered":
+    async def enter(self, hello: requests.Hello, where: str) -> "LetIn":
         """Let a page in.
 
         Args:
@@ -53,7 +53,7 @@ class Host(Protocol):
         """Read the robot's sample postures; empty if the robot has no sample. May block."""
 
 
-class Entered(NamedTuple):
+class LetIn(NamedTuple):
     """A page that was let in."""
 
     student: Student

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
-from lacoc_client.web.gateway.wire import Ask, Unreadable, too_long
+from lacoc_client.web.gateway.wire import Ask, Ping, Unreadable, do_of, too_long
 from lacoc_client.workshop.design.saving.robot_edit import RobotEntry
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import By
@@ -37,12 +37,6 @@ class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
     """Nickname in the class."""
     token: Name = ""
     """What the class gave this browser before."""
-
-
-class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, as a sign of life."""
-
-    t: float | int | str | None = None
 
 
 class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
@@ -264,12 +258,7 @@ Asked = (
 """Every request of a page."""
 
 
-class _AnyDo(msgspec.Struct):
-    do: str
-
-
 _asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
-_any_do = msgspec.msgpack.Decoder(_AnyDo)
 
 
 def read(data: bytes) -> Asked:
@@ -285,7 +274,7 @@ def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
     """Decode a request with this decoder; raise the same error as `read`."""
     try:
         if len(data) > REQUEST_BYTES:
-            most = PARSE_BYTES if _any_do.decode(data).do == "parse" else REQUEST_BYTES
+            most = PARSE_BYTES if do_of(data) == "parse" else REQUEST_BYTES
             if len(data) > most:
                 raise too_long(len(data), most)
         return decoder.decode(data)

@@ -7,7 +7,7 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_client.workshop.phases.evidence import Evidence, Voted, from_json, to_json
+from lacoc_client.workshop.phases.evidence import Evidence, Voted, from_json, kind_of, to_json
 from lacoc_shared.command import database
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import UserError, text_of
@@ -232,4 +232,4 @@ def _escaped(name: str) -> str:
 
 def _row(evidence: Evidence) -> tuple[str, str]:
     """Return kind and body of evidence, as they stand in the file's columns."""
-    return type(evidence).__name__.lower(), to_json(evidence).decode()
+    return kind_of(evidence), to_json(evidence).decode()

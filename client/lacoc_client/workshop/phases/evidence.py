@@ -23,15 +23,15 @@ _Word = Annotated[str, msgspec.Meta(max_length=40)]
 _Name = Annotated[str, msgspec.Meta(max_length=100)]
 
 
-class _Kind(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag=str.lower):
-    """A kind of evidence; the name of its class in lower case is the field "kind" of its JSON."""
+class _EvidenceKind(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind"):
+    """A kind of evidence; its tag is the field "kind" of its JSON."""
 
 
-class Joined(_Kind, frozen=True, kw_only=True):
+class JoinedClass(_EvidenceKind, frozen=True, kw_only=True, tag="joined"):
     """The student came into the class."""
 
 
-class Moved(_Kind, frozen=True, kw_only=True):
+class WentToPhase(_EvidenceKind, frozen=True, kw_only=True, tag="moved"):
     """The student went to a phase, forward or back."""
 
     phase: int
@@ -52,7 +52,7 @@ class LegEdit(msgspec.Struct, frozen=True, array_like=True):
     """(3,) angles of the leg after the edit."""
 
 
-class Edited(_Kind, frozen=True, kw_only=True):
+class Edited(_EvidenceKind, frozen=True, kw_only=True, tag="edited"):
     """The student changed cells of the table."""
 
     version: _Word
@@ -61,7 +61,7 @@ class Edited(_Kind, frozen=True, kw_only=True):
     legs: tuple[LegEdit, ...]
 
 
-class Guessed(_Kind, frozen=True, kw_only=True):
+class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
     """The student guessed what would happen, and then saw what happened."""
 
     about: Literal["foot", "pace", "way"]
@@ -78,14 +78,14 @@ class Guessed(_Kind, frozen=True, kw_only=True):
         return self.said in self.was
 
 
-class Tried(_Kind, frozen=True, kw_only=True):
+class Tried(_EvidenceKind, frozen=True, kw_only=True, tag="tried"):
     """The student let the robot walk."""
 
     version: _Word
     facts: TrialFacts
 
 
-class Checked(_Kind, frozen=True, kw_only=True):
+class CheckedGait(_EvidenceKind, frozen=True, kw_only=True, tag="checked"):
     """A gait was checked, as `lacoc gait check` does; checks that find mistakes are not kept."""
 
     version: _Word
@@ -95,7 +95,7 @@ class Checked(_Kind, frozen=True, kw_only=True):
     """Number of mistakes that were found: 0 in what the page keeps."""
 
 
-class Compared(_Kind, frozen=True, kw_only=True):
+class Compared(_EvidenceKind, frozen=True, kw_only=True, tag="compared"):
     """Trials of two versions of the table were compared."""
 
     version: _Word
@@ -105,20 +105,20 @@ class Compared(_Kind, frozen=True, kw_only=True):
     """The differences between the walks that people can see (`facts.differences`)."""
 
 
-class Named(_Kind, frozen=True, kw_only=True):
+class Named(_EvidenceKind, frozen=True, kw_only=True, tag="named"):
     """The student chose a word for how the robot should walk, such as "elegant"."""
 
     word: _Word
 
 
-class Voted(_Kind, frozen=True, kw_only=True):
+class Voted(_EvidenceKind, frozen=True, kw_only=True, tag="voted"):
     """The student voted whether A or B fits a word better; the choice is not kept here."""
 
     poll: _Name
     """The word."""
 
 
-class Coached(_Kind, frozen=True, kw_only=True):
+class Coached(_EvidenceKind, frozen=True, kw_only=True, tag="coached"):
     """The student took over the coach's changes."""
 
     version: _Word
@@ -126,14 +126,24 @@ class Coached(_Kind, frozen=True, kw_only=True):
     """How much the coach was allowed to change: one number, three, or all."""
 
 
-class Hand(_Kind, frozen=True, kw_only=True):
+class Hand(_EvidenceKind, frozen=True, kw_only=True, tag="hand"):
     """The student raised a hand to ask for help, or took it down."""
 
     up: bool
 
 
 Evidence = (
-    Joined | Moved | Edited | Guessed | Tried | Checked | Compared | Named | Voted | Coached | Hand
+    JoinedClass
+    | WentToPhase
+    | Edited
+    | Guessed
+    | Tried
+    | CheckedGait
+    | Compared
+    | Named
+    | Voted
+    | Coached
+    | Hand
 )
 
 _DECODER = msgspec.json.Decoder(Evidence)
@@ -142,6 +152,11 @@ _DECODER = msgspec.json.Decoder(Evidence)
 def to_json(evidence: Evidence) -> bytes:
     """Encode evidence as JSON."""
     return msgspec.json.encode(evidence)
+
+
+def kind_of(evidence: Evidence) -> str:
+    """Return the kind of evidence, as in the field "kind" of its JSON."""
+    return str(evidence.__struct_config__.tag)
 
 
 def from_json(data: bytes | str) -> Evidence:

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from lacoc_client.workshop.phases.class_file import Document, Kept
-from lacoc_client.workshop.phases.evidence import Evidence, Guessed
+from lacoc_client.workshop.phases.evidence import Evidence, Guessed, kind_of
 from lacoc_shared.command.csv_text import csv_text
 
 _FIRST = ("number", "time", "student", "kind")
@@ -51,7 +51,7 @@ def tables_zip(tables: Iterable[Document]) -> bytes:
 
 def _line(one: Kept) -> dict[str, Any]:
     at = datetime.fromtimestamp(one.at_s, UTC).isoformat(timespec="milliseconds")
-    first = (one.number, at, one.student, type(one.evidence).__name__.lower())
+    first = (one.number, at, one.student, kind_of(one.evidence))
     values = {**dict(zip(_FIRST, first, strict=True)), **_values(one.evidence)}
     return {name: _as_cell(value) for name, value in values.items()}
 

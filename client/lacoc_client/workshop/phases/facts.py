@@ -65,7 +65,7 @@ class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
     """Whether physics stopped before the end of the trial."""
 
 
-class _Figures(msgspec.Struct, frozen=True, kw_only=True):
+class _FactFigures(msgspec.Struct, frozen=True, kw_only=True):
     """The figures of a trial that the facts are made of."""
 
     seconds: float
@@ -91,7 +91,7 @@ def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
     Raises:
         ValueError: if the reply's figures or arrays do not fit together.
     """
-    figures = msgspec.convert(reply.figures, _Figures)
+    figures = msgspec.convert(reply.figures, _FactFigures)
     feet = _array(reply.down, "u1", reply.ticks)[reply.first : reply.end]
     margins_m = _array(reply.margin_m, "<f4", reply.ticks)[reply.first : reply.end]
     postures = _array(reply.posture, "u1", reply.ticks)[reply.first : reply.end]

@@ -15,7 +15,7 @@ from lacoc_client.workshop.phases.conditions import (
     own_cells,
     within,
 )
-from lacoc_client.workshop.phases.evidence import Checked, Evidence, Named, Voted
+from lacoc_client.workshop.phases.evidence import CheckedGait, Evidence, Named, Voted
 from lacoc_client.workshop.phases.facts import STRAIGHT_DEG_S, TRIPOD_MARGIN_M
 from lacoc_client.workshop.phases.predicates import (
     After,
@@ -36,7 +36,7 @@ _TURNS_DEG_S, _WALKS_MM_S, _STILL_MM = 5.0, 15.0, 10.0
 
 
 @dataclass(frozen=True)
-class Phase:
+class WorkshopPhase:
     """One step of the workshop."""
 
     number: int
@@ -57,7 +57,7 @@ class Phase:
         return All(*self.shown).look(evidence)
 
 
-ONE_LEG = Phase(
+ONE_LEG = WorkshopPhase(
     number=1,
     id="one-leg",
     title=say("phases.one-leg"),
@@ -79,7 +79,7 @@ ONE_LEG = Phase(
 
 _STAND_S = 2.0
 
-THREE_LEGS = Phase(
+THREE_LEGS = WorkshopPhase(
     number=2,
     id="three-legs",
     title=say("phases.three-legs"),
@@ -118,7 +118,7 @@ THREE_LEGS = Phase(
 _HALF_CYCLE_MM = 15.0
 _SAME_FEET = 0.9
 
-HALF_CYCLE = Phase(
+HALF_CYCLE = WorkshopPhase(
     number=3,
     id="half-cycle",
     title=say("phases.half-cycle"),
@@ -154,7 +154,7 @@ HALF_CYCLE = Phase(
 
 _CYCLES, _CYCLES_MM, _POSTURES = 5, 100.0, 4
 
-A_CYCLE = Phase(
+A_CYCLE = WorkshopPhase(
     number=4,
     id="cycle",
     title=say("phases.cycle"),
@@ -205,7 +205,7 @@ A_CYCLE = Phase(
 
 _DIFFERENCES = 2
 
-CONCEPT = Phase(
+CONCEPT = WorkshopPhase(
     number=5,
     id="concept",
     title=say("phases.concept"),
@@ -233,7 +233,7 @@ _STAND, _FORWARD = say("phases.key-stand"), say("phases.key-forward")
 _RIGHT, _LEFT = say("phases.key-right"), say("phases.key-left")
 _KEYS = 4
 
-CREATIVE = Phase(
+CREATIVE = WorkshopPhase(
     number=6,
     id="creative",
     title=say("phases.creative"),
@@ -245,7 +245,9 @@ CREATIVE = Phase(
         OneVersion(
             All(
                 once(
-                    lambda one: isinstance(one, Checked) and not one.mistakes and one.keys >= _KEYS,
+                    lambda one: (
+                        isinstance(one, CheckedGait) and not one.mistakes and one.keys >= _KEYS
+                    ),
                     say("phases.check"),
                 ),
                 acts(

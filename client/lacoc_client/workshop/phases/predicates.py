@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from lacoc_client.workshop.phases.evidence import (
-    Checked,
+    CheckedGait,
     Coached,
     Compared,
     Edited,
@@ -198,7 +198,7 @@ class OneVersion:
         """Return the outcome of the version with the largest share; of equal ones, of the last."""
         versions: dict[str, list[Evidence]] = {}
         for one in evidence:
-            if isinstance(one, Edited | Tried | Checked | Compared | Coached):
+            if isinstance(one, Edited | Tried | CheckedGait | Compared | Coached):
                 versions.setdefault(one.version, []).append(one)
         found = [self.shown.look(seen) for seen in reversed(versions.values())]
         return max(found, key=_share, default=self.shown.look(()))

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from lacoc_client.workshop.phases.evidence import Coached, Evidence, Hand, Joined, Moved
+from lacoc_client.workshop.phases.evidence import Coached, Evidence, Hand, JoinedClass, WentToPhase
 from lacoc_client.workshop.phases.phases import PHASES
 from lacoc_client.workshop.phases.predicates import Outcome
 
-_UNCOUNTED = (Joined, Moved, Hand)
+_UNCOUNTED = (JoinedClass, WentToPhase, Hand)
 """Evidence that no task asks for: a page may send much of it, so it must cost little."""
 
 State = Literal["open", "met", "skipped"]
@@ -17,7 +17,7 @@ any time, and the phase is "met" as soon as the evidence shows it."""
 
 
 @dataclass(frozen=True)
-class Progress:
+class StudentProgress:
     """How far a student is in the six phases."""
 
     phase: int
@@ -34,7 +34,9 @@ class Progress:
     """Number of pieces of evidence from which this was computed."""
 
 
-def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Progress:
+def progress(
+    evidence: Sequence[Evidence], before: StudentProgress | None = None
+) -> StudentProgress:
     """Compute how far a student is.
 
     Args:
@@ -42,7 +44,7 @@ def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Pr
         before: the result for an earlier part of the same evidence. Tasks that were met then are
             not looked at again, because a task that was met stays met.
     """
-    visited = [one.phase for one in evidence if isinstance(one, Moved)]
+    visited = [one.phase for one in evidence if isinstance(one, WentToPhase)]
     visited = [number for number in visited if 1 <= number <= len(PHASES)]
     hands = [one.up for one in evidence if isinstance(one, Hand)]
     known = before.outcomes if before is not None else (None,) * len(PHASES)
@@ -53,7 +55,7 @@ def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Pr
         for phase, old in zip(PHASES, known, strict=True)
     )
     farthest = max(visited, default=1)
-    return Progress(
+    return StudentProgress(
         phase=visited[-1] if visited else 1,
         states=tuple(
             _state(outcome, number < farthest) for number, outcome in enumerate(outcomes, start=1)

@@ -21,7 +21,7 @@ DOCUMENT_S = 1.0
 _T = TypeVar("_T")
 
 
-class _Job(Generic[_T]):
+class _StoreJob(Generic[_T]):
     """A piece of work for the store's thread."""
 
     def __init__(self, work: Callable[[ClassFile], _T], writes: bool) -> None:
@@ -60,7 +60,7 @@ class ClassStore:
         self._documents = {(one.student, one.name): one for one in self._file.documents()}
         self._waiting: set[tuple[str, str]] = set()
         """Student and name of each document that is not on disk yet."""
-        self._jobs: SimpleQueue[_Job[Any] | None] = SimpleQueue()
+        self._jobs: SimpleQueue[_StoreJob[Any] | None] = SimpleQueue()
         self._closed = False
         self._lock = threading.Lock()
         """Guards `_documents`, `_waiting` and `_closed`."""
@@ -161,7 +161,7 @@ class ClassStore:
         self.close()
 
     def _do(self, work: Callable[[ClassFile], _T], writes: bool = False) -> "Future[_T]":
-        job = _Job(work, writes)
+        job = _StoreJob(work, writes)
         with self._lock:
             if self._closed:
                 job.done.set_exception(UserError(say("class.closed")))
@@ -188,7 +188,7 @@ class ClassStore:
                 next_s = time.monotonic() + DOCUMENT_S
         self._file.close()
 
-    def _work(self, job: _Job[Any]) -> None:
+    def _work(self, job: _StoreJob[Any]) -> None:
         if not job.done.set_running_or_notify_cancel():
             return  # whoever asked has gone
         try:
@@ -209,7 +209,7 @@ class ClassStore:
                 self._no_room = None
             job.done.set_result(result)
 
-    def _once(self, job: _Job[_T]) -> _T:
+    def _once(self, job: _StoreJob[_T]) -> _T:
         try:
             return job.work(self._file)
         except sqlite3.Error as error:
@@ -219,7 +219,7 @@ class ClassStore:
         documents = self._waiting_documents()
         if not documents:
             return
-        job = _Job(lambda file: file.write_documents(documents), writes=True)
+        job = _StoreJob(lambda file: file.write_documents(documents), writes=True)
         self._work(job)
         if job.done.exception() is None:  # else `trouble` says why, and the documents go on waiting
             self._written(documents)

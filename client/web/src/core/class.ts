@@ -1,6 +1,6 @@
 /** A class as its teacher sees it: who needs help first, names on a projector, times. */
 
-import type { Card, Rules } from "./wire";
+import type { Card, StudentRules } from "./wire";
 
 /** The reasons for help, the most urgent first. */
 const NEEDS: readonly Card["need"][] = ["hand", "stuck", "quiet", ""];
@@ -11,7 +11,7 @@ export const PHASES = [1, 2, 3, 4, 5, 6] as const;
 export const COACHES = ["none", "matters", "cell", "three", "table"] as const;
 
 /** What holds before the gateway has said anything. */
-export const OPEN_RULES: Rules = { closed: [], coach: "table", explain_first: false };
+export const OPEN_RULES: StudentRules = { closed: [], coach: "table", explain_first: false };
 
 /** How long something has lasted, in the unit that one says it in. */
 export interface Elapsed {
@@ -85,7 +85,7 @@ export function elapsed(nowS: number, thenS: number): Elapsed {
 }
 
 /** Open a phase, or close it. */
-export function toggled(rules: Rules, phase: number): Rules {
+export function toggled(rules: StudentRules, phase: number): StudentRules {
   const { closed } = rules;
   const others = closed.filter((one) => one !== phase);
   const now = others.length === closed.length ? [...closed, phase] : others;

@@ -6,13 +6,13 @@ import type { Mistake, SentFile } from "./wire.gen";
 
 export const TEAM_NAME_MAX = 24;
 
-export interface Files {
+export interface TeamFiles {
   robot?: SentFile | null;
   postures?: SentFile | null;
   locomotion?: SentFile | null;
 }
 
-export interface Look {
+export interface LookAtEvent {
   do: "look";
   secret?: string;
 }
@@ -21,15 +21,15 @@ export interface Apply {
   do: "apply";
   secret?: string;
   team: string;
-  files: Files;
+  files: TeamFiles;
   contact?: string;
   club?: string;
 }
 
-export interface Change {
+export interface ChangeFiles {
   do: "change";
   secret?: string;
-  files: Files;
+  files: TeamFiles;
 }
 
 export interface Own {
@@ -136,14 +136,14 @@ export interface Move {
   not_before_ms?: number;
 }
 
-export interface Pause {
+export interface PauseContest {
   do: "pause";
   secret?: string;
   until_ms?: number;
   reason?: string;
 }
 
-export interface Resume {
+export interface ResumeContest {
   do: "resume";
   secret?: string;
 }
@@ -208,7 +208,7 @@ export interface CourtRow {
   here: boolean;
 }
 
-export interface Moved {
+export interface MatchMove {
   court: string;
   before: string;
   not_before_ms: number;
@@ -223,7 +223,7 @@ export interface Slot {
   at_ms: number;
   running: boolean;
   begun: boolean;
-  moved: Moved | null;
+  moved: MatchMove | null;
   held: Phrase | null;
 }
 
@@ -304,7 +304,7 @@ export interface StaffLink {
   qr: string;
 }
 
-export interface Links {
+export interface ContestLinks {
   enter: string;
   enter_qr: string;
   teams: TeamLink[];
@@ -322,4 +322,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = Look | Apply | Change | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | Rule | Move | Pause | Resume | Shift | Announce | Staff | Tokens;
+export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | Rule | Move | PauseContest | ResumeContest | Shift | Announce | Staff | Tokens;

@@ -448,7 +448,7 @@ export interface Weight {
   down: number;
 }
 
-export interface Change {
+export interface CellChange {
   cell: CellPlace;
   from_deg: number;
   to_deg: number;
@@ -457,7 +457,7 @@ export interface Change {
 export interface CoachReply {
   key: number;
   matters: Weight[];
-  changes: Change[];
+  changes: CellChange[];
   before: Record<string, unknown>;
   after: Record<string, unknown>;
   score_before: number;
@@ -466,15 +466,15 @@ export interface CoachReply {
   cancelled: boolean;
 }
 
-export interface Difference {
+export interface GaitDifference {
   way: string;
   steps: number;
 }
 
 export interface OtherGait {
   table: number[];
-  changes: Change[];
-  differences: Difference[];
+  changes: CellChange[];
+  differences: GaitDifference[];
   figures: Record<string, unknown>;
 }
 
@@ -520,7 +520,7 @@ export interface FolderFile {
   version: string;
 }
 
-export interface Rules {
+export interface StudentRules {
   closed: number[];
   coach: "none" | "matters" | "cell" | "three" | "table";
   explain_first: boolean;
@@ -544,7 +544,7 @@ export interface Phases {
   hand_up: boolean;
   trouble: Phrase | null;
   phases: PhaseState[];
-  rules: Rules;
+  rules: StudentRules;
 }
 
 export interface Draft {
@@ -577,7 +577,7 @@ export interface Card {
   need: "hand" | "stuck" | "quiet" | "";
 }
 
-export interface Played {
+export interface ClassMatch {
   left: string;
   right: string;
   scores: [number, number];
@@ -586,7 +586,7 @@ export interface Played {
   record: string | null;
 }
 
-export interface Standing {
+export interface PlayerStanding {
   name: string;
   won: number;
   drawn: number;
@@ -605,8 +605,8 @@ export interface TournamentState {
   arena: string;
   done: number;
   of: number;
-  matches: Played[];
-  standings: Standing[];
+  matches: ClassMatch[];
+  standings: PlayerStanding[];
   left_out: LeftOut[];
   trouble: Phrase | null;
 }

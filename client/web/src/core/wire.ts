@@ -16,11 +16,11 @@ import {
   type Phases,
   type Progress,
   type RobotReply,
-  type Rules,
   type Scene,
   SEATFRAME_FIELDS,
   type SeatFrame,
   type Sheet,
+  type StudentRules,
   type TournamentState,
   type TrialReply,
 } from "./wire.gen";
@@ -153,7 +153,7 @@ export interface ClassState {
   code: string;
   /** What students type into their browsers. */
   addresses: string[];
-  rules: Rules;
+  rules: StudentRules;
   trouble: Phrase | null;
   studios: number;
   /** Why there is no studio. */

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lacoc_server.commands.contest.playing import Contest
+from lacoc_server.commands.contest.playing import ContestArgument
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import options, screen
 from lacoc_shared.words import render, say
 
 if TYPE_CHECKING:
-    from lacoc_server.contest.verify.check import Checked
+    from lacoc_server.contest.verify.check import ContestCheck
 
 NOT_FOLLOWING = 1
 """Exit code: the standings do not follow from what is published."""
@@ -22,7 +22,7 @@ NOT_PROVEN = 3
 _Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The published folder.")]
 
 
-def publish(folder: _Folder, contest: Contest = FILE) -> None:
+def publish(folder: _Folder, contest: ContestArgument = FILE) -> None:
     """Write the contest as a folder that any web server can show and anybody can check.
 
     It has pages, tables (CSV and JSON), the facts, the files of all teams and the records of all
@@ -101,7 +101,7 @@ def verify(
         raise typer.Exit(NOT_PROVEN)
 
 
-def _told(found: "Checked", seed: int) -> dict[str, Any]:
+def _told(found: "ContestCheck", seed: int) -> dict[str, Any]:
     return {
         "follows": not found.findings,
         "findings": [{"code": one.code, "text": render(one)} for one in found.findings],
@@ -118,7 +118,7 @@ def _told(found: "Checked", seed: int) -> dict[str, Any]:
     }
 
 
-def _show(found: "Checked") -> None:
+def _show(found: "ContestCheck") -> None:
     from lacoc_server.contest.verify.sampling import CONFIDENCE
 
     for finding in found.findings:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import typer
 from msgspec.structs import replace
 
-from lacoc_server.commands.contest.playing import By, Contest, Reason, Team
+from lacoc_server.commands.contest.playing import By, ContestArgument, Reason, Team
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
@@ -34,7 +34,7 @@ def decide(
     ] = "",
     reason: Reason = "",
     yes: Yes = False,
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     by: By = "",
 ) -> None:
     """Decide about a match: show what the decision changes, ask, then append it to the facts.
@@ -48,7 +48,7 @@ def decide(
     from lacoc_server.contest.league.contest import compute
     from lacoc_server.contest.league.formats.installed import FORMATS
 
-    wanted = deciding.Wanted(
+    wanted = deciding.WantedDecision(
         kind=decision,
         pairing=pairing,
         game=game,
@@ -67,7 +67,7 @@ def decide(
 
 def withdraw(
     team: Team,
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     reason: Reason = "",
     disqualify: Annotated[
         bool, typer.Option("--disqualify", help="Expel the team: it is ranked last.")
@@ -94,7 +94,7 @@ def withdraw(
 
 
 def draw(
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     yes: Yes = False,
     lot: Annotated[
         str,

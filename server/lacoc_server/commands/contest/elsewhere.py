@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from lacoc_server.commands.contest.playing import Contest
+from lacoc_server.commands.contest.playing import ContestArgument
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.command.scratch import Scratch
@@ -22,7 +22,7 @@ def courts(
             help="Courts to run here; by default all courts with 'elsewhere' in the contest file.",
         ),
     ] = None,
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     speed: Annotated[
         float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=50)
     ] = 1.0,

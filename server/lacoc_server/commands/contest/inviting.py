@@ -5,11 +5,11 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from lacoc_server.commands.contest.playing import Contest
+from lacoc_server.commands.contest.playing import ContestArgument
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import options, screen
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.file import Contest as Plan
+from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.contest.link import Link
 from lacoc_shared.words import render, say
 
@@ -21,7 +21,7 @@ def invite(
         str | None,
         typer.Argument(metavar="TEAM", help="Name of the team; by default all teams of people."),
     ] = None,
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     host: options.CourtHost = None,
     json: options.Json = False,
 ) -> None:
@@ -46,7 +46,7 @@ def invite(
         screen.note(say("contest.invite-pages", pages=_pages(plan, host)))
 
 
-def link(plan: Plan, page: str, token: str, host: str | None = None) -> str:
+def link(plan: ContestFile, page: str, token: str, host: str | None = None) -> str:
     """Return a link to a page of a contest.
 
     Args:
@@ -60,5 +60,5 @@ def link(plan: Plan, page: str, token: str, host: str | None = None) -> str:
     return Link(pages=_pages(plan, host), page=page, token=token, authority=authority).text
 
 
-def _pages(plan: Plan, host: str | None) -> str:
+def _pages(plan: ContestFile, host: str | None) -> str:
     return plan.public.pages or (f"{plan.public.scheme}://{host or plan.own_host}:{_PAGES_PORT}")

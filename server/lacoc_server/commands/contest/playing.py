@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # The base install can set up a contest but can't play one: what plays is imported when it is used.
 
-Contest = Annotated[
+ContestArgument = Annotated[
     Path,
     typer.Option("--contest", envvar="LACOC_CONTEST", metavar="FILE", help="The contest file."),
 ]
@@ -51,7 +51,7 @@ def enter(
         str,
         typer.Option(metavar="BOT", help="The bot that plays: an installed one, or your_bot.py."),
     ] = "",
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     reason: Reason = "",
     club: Annotated[
         str,

@@ -12,8 +12,8 @@ from lacoc_server.contest.kept.plans import open_stage, plans
 from lacoc_shared.command import screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.courts import Court, wrong_in
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.contest.courts import ContestCourt, wrong_in
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.mistakes import Gathered, UserError
 from lacoc_shared.network.address import DEFAULT_PORT
 from lacoc_shared.network.public import PublicAddress
@@ -148,7 +148,7 @@ def init(
     All tokens are beside it, in a file of their own that only you can read (contest.secrets.json).
     If there is a contest file of that name already, it is kept under another name.
     """
-    Keys(court)
+    KeySpace(court)
     arenas.load(arena)
     names = [court] if courts == 1 else [f"{court}-{n + 1}" for n in range(courts)]
     public = None if pages is None else PublicAddress.of(pages, proxies=[proxy])
@@ -253,7 +253,7 @@ def certificate(
     screen.show(say("contest.certificate", hosts=hosts, day=str(end)))
 
 
-def _check_court(name: str, court: Court) -> None:
+def _check_court(name: str, court: ContestCourt) -> None:
     try:
         arenas.load(court.arena, court.settings)
     except UserError as error:

@@ -12,7 +12,7 @@ from lacoc_shared.network.address import endpoint
 from lacoc_shared.words import Phrase, render, say
 
 if TYPE_CHECKING:
-    from lacoc_server.contest.standby.following import Copy
+    from lacoc_server.contest.standby.following import CopyState
 
 _PAUSE_S = 0.2
 """Time between two looks at the office."""
@@ -43,7 +43,7 @@ def standby(
     links. If the other machine comes back, its office ends.
     """
     from lacoc_server.contest.kept.folder import ContestFolder
-    from lacoc_server.contest.standby.following import Ended, Follower
+    from lacoc_server.contest.standby.following import CopyingEnded, Follower
     from lacoc_server.contest.standby.other import NotThere, Other
     from lacoc_server.contest.standby.sealing import Sealing
     from lacoc_server.contest.standby.taking_over import begin_copying
@@ -61,13 +61,13 @@ def standby(
             Follower(where, other, screen.warn) as follower,
             screen.stderr.status("") as line,
         ):
-            teller = _Teller(address, json)
+            teller = _CopyTeller(address, json)
             while True:
                 try:
                     teller.copied(follower.step())
                 except NotThere:
                     teller.nobody()
-                except Ended:
+                except CopyingEnded:
                     break
                 except UserError as error:  # whatever it is, it may be right a moment later
                     teller.failed(error.phrase)
@@ -77,7 +77,7 @@ def standby(
     raise typer.Exit(child.NOT_AGAIN)
 
 
-class _Teller:
+class _CopyTeller:
     """Says how old the copy is, and what is wrong.
 
     Args:
@@ -88,13 +88,13 @@ class _Teller:
     def __init__(self, address: str, json: bool) -> None:
         self._address = address
         self._json = json
-        self._copy: Copy | None = None
+        self._copy: CopyState | None = None
         self._heard_s = time.monotonic()
         self._is_told = False
         self._trouble: Phrase | None = None
         self._printed_s = 0.0
 
-    def copied(self, copy: "Copy") -> None:
+    def copied(self, copy: "CopyState") -> None:
         """Take note of a step that succeeded."""
         if self._is_told or self._copy is None:
             screen.note(say("standby.there", at=self._address))

@@ -8,7 +8,7 @@ import typer
 
 from lacoc_server.commands.contest.deciding import Yes, wanted_so
 from lacoc_server.commands.contest.inviting import link
-from lacoc_server.commands.contest.playing import By, Contest, Reason, Team
+from lacoc_server.commands.contest.playing import By, ContestArgument, Reason, Team
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.contest import file as contests
@@ -18,7 +18,7 @@ from lacoc_shared.words import say
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from lacoc_server.contest.league.contest import Contest as Computed
+    from lacoc_server.contest.league.contest import Contest
     from lacoc_server.contest.league.facts import AnyFact
 
 Clock = Annotated[
@@ -35,7 +35,7 @@ def move(
         str, typer.Option(metavar="PAIRING", help="The match directly before which it comes.")
     ] = "",
     at: Clock = "",
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     by: By = "",
 ) -> None:
     """Move a match to another court, before another match, or to a later time.
@@ -44,7 +44,7 @@ def move(
     """
     courts = [*contests.load(contest).courts]
 
-    def moved(now: "Computed") -> "AnyFact":
+    def moved(now: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import moving
 
         return moving(now, courts, pairing, court, before, _ms_of(at) if at else 0)
@@ -57,13 +57,13 @@ def pause(
         str,
         typer.Option("--until", metavar="HH:MM", help="It goes on by itself at this time."),
     ] = "",
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     reason: Reason = "",
     by: By = "",
 ) -> None:
     """Call no more games until the contest goes on; games that were called are played."""
 
-    def paused(now: "Computed") -> "AnyFact":
+    def paused(now: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import pausing
 
         return pausing(now, _ms_of(until) if until else 0, reason, _now_ms())
@@ -71,10 +71,10 @@ def pause(
     _steer(contest, by, paused)
 
 
-def resume(contest: Contest = FILE, by: By = "") -> None:
+def resume(contest: ContestArgument = FILE, by: By = "") -> None:
     """Let a paused contest go on."""
 
-    def resumed(now: "Computed") -> "AnyFact":
+    def resumed(now: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import resuming
 
         return resuming(now, _now_ms())
@@ -86,13 +86,13 @@ def shift(
     minutes: Annotated[
         int, typer.Argument(metavar="MINUTES", help="By how many minutes.", min=1, max=1440)
     ],
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     reason: Reason = "",
     by: By = "",
 ) -> None:
     """Make all that is to come later: no game is called for so long, and all set times move."""
 
-    def shifted(_: "Computed") -> "AnyFact":
+    def shifted(_: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import MINUTE_MS, shifting
 
         return shifting(minutes * MINUTE_MS, reason)
@@ -102,12 +102,12 @@ def shift(
 
 def announce(
     text: Annotated[str, typer.Argument(metavar="TEXT", help="The line; '' takes it away.")],
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     by: By = "",
 ) -> None:
     """Show a line to all, on all pages."""
 
-    def announced(_: "Computed") -> "AnyFact":
+    def announced(_: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import announcing
 
         return announcing(text)
@@ -120,7 +120,7 @@ def substitute(
     other: Annotated[
         str, typer.Argument(metavar="SUBSTITUTE", help="The team that comes in its place.")
     ],
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     reason: Reason = "",
     yes: Yes = False,
     by: By = "",
@@ -130,7 +130,7 @@ def substitute(
     The other team leaves the contest. Where it has played already, it keeps its place.
     """
 
-    def substituted(now: "Computed") -> "AnyFact":
+    def substituted(now: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import substituting
 
         return substituting(now, team, other, reason)
@@ -140,7 +140,7 @@ def substitute(
 
 def undraw(
     stage: Annotated[str, typer.Argument(metavar="STAGE", help="Name in the contest file.")],
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     reason: Reason = "",
     yes: Yes = False,
     by: By = "",
@@ -150,7 +150,7 @@ def undraw(
     It is drawn again, by the office or as you draw it: also with a team that came late.
     """
 
-    def undrawn(now: "Computed") -> "AnyFact":
+    def undrawn(now: "Contest") -> "AnyFact":
         from lacoc_server.contest.acts.steering import undrawing
 
         return undrawing(now, stage, reason)
@@ -160,7 +160,7 @@ def undraw(
 
 def staff(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Who it is.")],
-    contest: Contest = FILE,
+    contest: ContestArgument = FILE,
     remove: Annotated[
         bool, typer.Option("--remove", help="Take the link away: it opens nothing any more.")
     ] = False,
@@ -184,7 +184,7 @@ def staff(
 def _steer(
     file: "Path",
     by: str,
-    act: "Callable[[Computed], AnyFact]",
+    act: "Callable[[Contest], AnyFact]",
     *,
     asks: bool = False,
     yes: bool = False,

@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.simulate.forks.chances import Odds, Wish, compute
-from lacoc_server.simulate.forks.jobs import opened
+from lacoc_server.simulate.forks.chances import Odds, Wish, compute_odds
+from lacoc_server.simulate.forks.jobs import opened_record
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
-from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
@@ -47,7 +47,7 @@ def odds_of(
     every_s: float,
     arena: Path | None,
     jobs: int | None,
-) -> tuple[Source, Odds]:
+) -> tuple[ForkSource, Odds]:
     """Compute the odds of a record, and keep them beside it.
 
     Args:
@@ -59,11 +59,11 @@ def odds_of(
         jobs: number of processes; None: one for each core.
 
     Raises:
-        UserError: as `chances.compute` does; or if there are not two players, a process dies, or
-            the file of odds can't be written.
+        UserError: as `compute_odds` does; or if there are not two players, a process dies, or the
+            file of odds can't be written.
     """
     path = record_paths(file)[0]
-    source = opened(str(path))
+    source = opened_record(str(path))
     if source.record.warning:
         screen.warn(source.record.warning)
     wish = Wish(
@@ -78,7 +78,7 @@ def odds_of(
     with Workers(jobs, background=True, limit_s=_LONGEST_S) as workers, screen.progress() as bar:
         task = bar.add_task(render(say("odds.moments")), total=None)
         try:
-            for found in compute(
+            for found in compute_odds(
                 wish,
                 workers,
                 read_odds(out),
@@ -91,7 +91,7 @@ def odds_of(
     return source, found
 
 
-def _bots(source: Source, players: str | None, folder: Path | None) -> tuple[str, str]:
+def _bots(source: ForkSource, players: str | None, folder: Path | None) -> tuple[str, str]:
     if players is None:
         setup = source.record.header.setup
         best = [*arenas.from_settings(setup.arena, setup.settings, folder).bots][-1]

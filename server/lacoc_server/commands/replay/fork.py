@@ -10,8 +10,14 @@ import typer
 
 from lacoc_arenas import brains
 from lacoc_server.simulate.forks.fork import Forked
-from lacoc_server.simulate.forks.jobs import ForkJob, attempt, changes_of, opened, play
-from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.jobs import (
+    ForkJob,
+    attempt_fork,
+    changes_of,
+    opened_record,
+    play_fork,
+)
+from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.simulate.forks.script import Script
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.command import options, screen
@@ -106,7 +112,7 @@ def fork_command(
     The fork is written as a record of its own. It names the match, the beat and the record that it
     is a fork of, and is nobody's official result.
     """
-    source = opened(str(record_paths(file)[0]))
+    source = opened_record(str(record_paths(file)[0]))
     if source.record.warning:
         screen.warn(source.record.warning)
     bots = tuple(players.split(",")) if players else ()
@@ -153,7 +159,7 @@ def _scripts(given: Sequence[str]) -> dict[str, Script]:
     return scripts
 
 
-def _forks(base: ForkJob, source: Source, times: int) -> Iterator[ForkJob]:
+def _forks(base: ForkJob, source: ForkSource, times: int) -> Iterator[ForkJob]:
     """Yield each fork, with an id that no other record in its folder has."""
     number = 0
     for variant in range(1, times + 1) if times > 1 else (0,):
@@ -164,17 +170,19 @@ def _forks(base: ForkJob, source: Source, times: int) -> Iterator[ForkJob]:
         yield msgspec.structs.replace(base, variant=variant, match_id=match_id)
 
 
-def _id(base: ForkJob, source: Source, number: int) -> str:
+def _id(base: ForkJob, source: ForkSource, number: int) -> str:
     return f"fork-{number}-at-{base.beat}-of-{source.match_id}"
 
 
 def _played(forks: Sequence[ForkJob], jobs: int | None) -> Iterator[tuple[ForkJob, Forked]]:
     if len(forks) == 1:
-        yield forks[0], play(forks[0])
+        yield forks[0], play_fork(forks[0])
         return
     with Workers(jobs, background=True, limit_s=_LONGEST_S) as workers, screen.progress() as bar:
         task = bar.add_task(render(say("fork.forks")), total=len(forks))
-        futures: list[Future[Forked | Phrase]] = [workers.submit(attempt, job) for job in forks]
+        futures: list[Future[Forked | Phrase]] = [
+            workers.submit(attempt_fork, job) for job in forks
+        ]
         for job, future in zip(forks, futures, strict=True):
             try:
                 found = future.result()
@@ -186,7 +194,7 @@ def _played(forks: Sequence[ForkJob], jobs: int | None) -> Iterator[tuple[ForkJo
             yield job, found
 
 
-def _told(source: Source, job: ForkJob, forked: Forked) -> dict[str, Any]:
+def _told(source: ForkSource, job: ForkJob, forked: Forked) -> dict[str, Any]:
     return {
         "kind": "fork",
         "match_id": job.match_id,
@@ -203,7 +211,7 @@ def _told(source: Source, job: ForkJob, forked: Forked) -> dict[str, Any]:
     }
 
 
-def _show(source: Source, job: ForkJob, forked: Forked) -> None:
+def _show(source: ForkSource, job: ForkJob, forked: Forked) -> None:
     screen.show(say("fork.made", match=source.match_id, beat=job.beat))
     screen.show(say("fork.how", how=how(changes_of(job, source))))
     screen.show(_ending(forked.result, forked.phase))
@@ -228,7 +236,7 @@ def _ending(result: Result, phase: Phase) -> Phrase:
     return say("fork.ending", scores=scores, winner=result.computed, why=result.reason)
 
 
-def _show_odds(source: Source, base: ForkJob, played: Sequence[Forked], json: bool) -> None:
+def _show_odds(source: ForkSource, base: ForkJob, played: Sequence[Forked], json: bool) -> None:
     made = changes_of(base, source)
     over = [one for one in played if one.result.computed]
     won = {

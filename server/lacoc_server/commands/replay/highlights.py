@@ -6,7 +6,7 @@ import typer
 
 from lacoc_server.commands.replay.curve import ArenaFolder, Every, File, Players, Times, odds_of
 from lacoc_server.simulate.forks.odds import Swing, highlights
-from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_shared.command import options, screen
 from lacoc_shared.messages import Event
 from lacoc_shared.words import render, say
@@ -57,7 +57,7 @@ def highlights_command(
     screen.show(table)
 
 
-def _told(source: Source, one: Swing) -> dict[str, Any]:
+def _told(source: ForkSource, one: Swing) -> dict[str, Any]:
     """Return a moment as `lacoc film --moments` reads it, and what else is known of it."""
     events = _events(source, one)
     return {
@@ -70,7 +70,7 @@ def _told(source: Source, one: Swing) -> dict[str, Any]:
     }
 
 
-def _events(source: Source, one: Swing) -> list[Event]:
+def _events(source: ForkSource, one: Swing) -> list[Event]:
     """Return the events of the game, the decisions and the restarts in a stretch."""
     return [
         event

@@ -7,7 +7,7 @@ import typer
 
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.section import BOUND
-from lacoc_server.journal.verdict import Kind, Verdict, other_arithmetic
+from lacoc_server.journal.verdict import Verdict, VerdictKind, other_arithmetic
 from lacoc_server.world import arithmetic
 from lacoc_shared.command import options, screen
 from lacoc_shared.record.files import record_paths
@@ -121,7 +121,7 @@ def _lines(record: Record, verdict: Verdict) -> list[str]:
             sections=verdict.sections,
         ),
     ]
-    if verdict.kind is not Kind.SAME:
+    if verdict.kind is not VerdictKind.SAME:
         there = record.headers[-1].arithmetic
         lines.append(other_arithmetic(there, arithmetic.here()))
     if not record.lost:

@@ -19,7 +19,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from lacoc_shared.command.replacing import write
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network import address
@@ -95,7 +95,7 @@ def make_certificate(file: Path, hosts: Sequence[str]) -> tuple[list[str], date]
     return names, end.date()
 
 
-def _with_entries(file: Path) -> tuple[bytes, Contest]:
+def _with_entries(file: Path) -> tuple[bytes, ContestFile]:
     """Return the contest file's bytes with entries for the certificate, and the contest in them."""
     try:
         data = file.read_bytes()

@@ -17,7 +17,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -27,7 +27,7 @@ Kind = Literal["replay", "result", "void", "no-show"]
 for nobody. no-show: a team did not come, and its opponent wins if the match is open."""
 
 
-class Wanted(NamedTuple):
+class WantedDecision(NamedTuple):
     """A decision as an organiser gives it."""
 
     kind: Kind
@@ -78,7 +78,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     return (*lines,) or (say("decide.nothing"),)
 
 
-def decision(contest: Contest, wanted: Wanted) -> AnyFact:
+def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
     """Return the fact of a decision.
 
     Raises:
@@ -109,7 +109,7 @@ def decision(contest: Contest, wanted: Wanted) -> AnyFact:
     return new(Replaced, **given, **about)
 
 
-def match_of(contest: Contest, pairing: str) -> Match:
+def match_of(contest: Contest, pairing: str) -> ContestMatch:
     """Return the match of a pairing.
 
     Raises:
@@ -122,7 +122,7 @@ def match_of(contest: Contest, pairing: str) -> Match:
     return matches[pairing]
 
 
-def _seats(match: Match, game: int) -> tuple[str, str]:
+def _seats(match: ContestMatch, game: int) -> tuple[str, str]:
     """Return who sat left and right in a game, or will sit there."""
     played = {one.number: one.teams for one in match.games}
     if game in played:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import msgspec
 
-from lacoc_server.contest.headless.play import Engine, play
+from lacoc_server.contest.headless.play import GameEngine, play_contest
 from lacoc_server.contest.kept import publish
 from lacoc_server.contest.kept.applications import Applications
-from lacoc_server.contest.kept.entries import Entry, HandedIn, gather, weigh
+from lacoc_server.contest.kept.entries import ContestEntry, HandedIn, gather_entry, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
@@ -67,7 +67,7 @@ def enter(
     """
     team = team_name(team)
     where = ContestFolder(file)
-    handed = gather(folder, bot, where.contest.robot)
+    handed = gather_entry(folder, bot, where.contest.robot)
     found(handed)
     entry = weigh(handed, where.games, where.contest.limits)
     with FactStore(where.facts, by) as store:
@@ -87,7 +87,12 @@ def team_name(text: str) -> str:
 
 
 def enter_weighed(
-    where: ContestFolder, store: FactStore, team: str, entry: Entry, reason: str, club: str = ""
+    where: ContestFolder,
+    store: FactStore,
+    team: str,
+    entry: ContestEntry,
+    reason: str,
+    club: str = "",
 ) -> Phrase:
     """Enter a team with an entry that was weighed in, or change its files; return what was done.
 
@@ -244,7 +249,7 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
 def play_headless(
     file: Path,
     steer: str,
-    engine: AbstractContextManager[Engine],
+    engine: AbstractContextManager[GameEngine],
     progress: Progress,
     tell: Callable[[Phrase], None] = lambda _: None,
 ) -> tuple[ContestSheet, int]:
@@ -272,7 +277,7 @@ def play_headless(
                 raise UserError(say("contest.no-end", stage=plan.stage))
         writer = SheetWriter(where, progress)
         with engine as opened:
-            played = play(where, store, opened, steer, writer, tell)
+            played = play_contest(where, store, opened, steer, writer, tell)
         return writer.write(), played
 
 

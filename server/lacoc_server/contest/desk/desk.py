@@ -10,9 +10,9 @@ from lacoc_server.contest.desk import entering, organising, overview, refereeing
 from lacoc_server.contest.desk.admission import Admission, Slower
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.kept.contacts import Contact
-from lacoc_server.contest.kept.entries import Entry, weigh
+from lacoc_server.contest.kept.entries import ContestEntry, weigh
 from lacoc_server.contest.kept.publish import publish
-from lacoc_server.contest.league.timetable.whereabouts import Known
+from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.desk import (
     DESK_MAX_BYTES,
@@ -21,28 +21,28 @@ from lacoc_shared.messages.desk import (
     AnyRequest,
     Apply,
     Approve,
-    Change,
+    ChangeFiles,
     CloseEntries,
     CourtDay,
     Decline,
     Draw,
-    Files,
-    Look,
+    LookAtEvent,
     Move,
     NewCode,
     OfStaff,
     Overview,
     Overviewed,
     Own,
-    Pause,
+    PauseContest,
     Publish,
-    Resume,
+    ResumeContest,
     Rule,
     Said,
     Shift,
     Staff,
     Substitute,
     TakeOut,
+    TeamFiles,
     Tokens,
     Undraw,
 )
@@ -63,7 +63,7 @@ class Desk:
         known: returns what the office knows besides the facts.
     """
 
-    def __init__(self, book: Book, organiser: str, known: Callable[[], Known]) -> None:
+    def __init__(self, book: Book, organiser: str, known: Callable[[], OfficeKnowledge]) -> None:
         secrets = book.secrets
         self.admission = Admission(
             organiser, secrets.staff_of, lambda: book.code.value, secrets.team_of
@@ -99,13 +99,13 @@ class Desk:
             UserError: if the secret is wrong, or the request can't be done.
         """
         now_s = time.monotonic()
-        if isinstance(asked, Look):
+        if isinstance(asked, LookAtEvent):
             with self._one:
                 return self._book.event
         if isinstance(asked, Apply):
             self.admission.applicant(asked.secret, now_s)
             return self._apply(asked)
-        if isinstance(asked, Change | Own):
+        if isinstance(asked, ChangeFiles | Own):
             team = self.admission.team(asked.secret, now_s)
             if isinstance(asked, Own):
                 with self._one:
@@ -149,7 +149,7 @@ class Desk:
                 return organising.take_out(book, asked)
             case Rule():
                 return organising.rule(book, asked)
-            case Move() | Pause() | Resume() | Shift() | Announce():
+            case Move() | PauseContest() | ResumeContest() | Shift() | Announce():
                 return organising.steer(book, asked, time.time_ns() // 1_000_000)
             case Staff():
                 if by:
@@ -178,7 +178,7 @@ class Desk:
             contact = Contact(asked.contact.strip(), asked.club.strip())
             return entering.apply(self._book, team, entry, contact)
 
-    def _weighed(self, team: str, files: Files) -> Entry:
+    def _weighed(self, team: str, files: TeamFiles) -> ContestEntry:
         """Weigh in files; note for the organiser what is wrong with them."""
         contest = self._book.where.contest
         try:

@@ -6,8 +6,8 @@ from lacoc_robots.seat_files import SeatFiles
 from lacoc_server.contest.acts.organiser import close_in_time, enter_weighed, team_name
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.kept.contacts import Contact
-from lacoc_server.contest.kept.entries import Entry, HandedIn, hand_in
-from lacoc_shared.messages.desk import Files, OwnEntry
+from lacoc_server.contest.kept.entries import ContestEntry, HandedIn, hand_in
+from lacoc_shared.messages.desk import OwnEntry, TeamFiles
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -15,7 +15,7 @@ APPLICATIONS_MOST = 300
 """Most teams that wait for the organiser."""
 
 
-def handed_in(files: Files, robot: str) -> HandedIn:
+def handed_in(files: TeamFiles, robot: str) -> HandedIn:
     """Read the files that a team hands in on its page.
 
     Args:
@@ -49,7 +49,7 @@ def newcomer(book: Book, text: str) -> str:
     return team
 
 
-def apply(book: Book, team: str, entry: Entry, contact: Contact) -> OwnEntry:
+def apply(book: Book, team: str, entry: ContestEntry, contact: Contact) -> OwnEntry:
     """Let a weighed entry of a new team wait for the organiser.
 
     Raises:
@@ -61,7 +61,7 @@ def apply(book: Book, team: str, entry: Entry, contact: Contact) -> OwnEntry:
     return own(book, team)
 
 
-def change(book: Book, team: str, entry: Entry) -> OwnEntry:
+def change(book: Book, team: str, entry: ContestEntry) -> OwnEntry:
     """Take new files of a team; they have been weighed in.
 
     While entries are open, a team that is in uses its new files at once. When entries are closed,

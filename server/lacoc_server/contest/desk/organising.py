@@ -13,8 +13,8 @@ from lacoc_shared.messages.desk import (
     Effect,
     Move,
     OpenSeat,
-    Pause,
-    Resume,
+    PauseContest,
+    ResumeContest,
     Rule,
     Said,
     Shift,
@@ -123,7 +123,7 @@ def rule(book: Book, asked: Rule) -> Effect:
     Raises:
         UserError: if there is no such match, game or team, or something is missing.
     """
-    wanted = deciding.Wanted(
+    wanted = deciding.WantedDecision(
         asked.kind, asked.pairing, asked.game, asked.team, asked.scores, asked.reason
     )
     return _decided(book, lambda contest: [deciding.decision(contest, wanted)], asked.really)
@@ -146,7 +146,9 @@ def substitute(book: Book, asked: Substitute) -> Effect:
     )
 
 
-def steer(book: Book, asked: Move | Pause | Resume | Shift | Announce, now_ms: int) -> Said:
+def steer(
+    book: Book, asked: Move | PauseContest | ResumeContest | Shift | Announce, now_ms: int
+) -> Said:
     """Move a match, pause, go on, shift or tell all; errors as in `acts.steering`."""
 
     def act(contest: Contest) -> AnyFact:
@@ -155,9 +157,9 @@ def steer(book: Book, asked: Move | Pause | Resume | Shift | Announce, now_ms: i
                 courts = book.where.contest.courts
                 where = (asked.court, asked.before, asked.not_before_ms)
                 return steering.moving(contest, courts, asked.pairing, *where)
-            case Pause():
+            case PauseContest():
                 return steering.pausing(contest, asked.until_ms, asked.reason, now_ms)
-            case Resume():
+            case ResumeContest():
                 return steering.resuming(contest, now_ms)
             case Shift():
                 return steering.shifting(asked.by_ms, asked.reason)

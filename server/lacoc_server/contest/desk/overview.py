@@ -15,14 +15,14 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import LOST_MS
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
-from lacoc_server.contest.league.timetable.whereabouts import Known, full_minute, starts
+from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge, full_minute, starts
 from lacoc_server.contest.league.titles import title
 from lacoc_shared import codec
 from lacoc_shared.messages.desk import (
     PUBLISHED,
     CourtRow,
     DayState,
-    Moved,
+    MatchMove,
     OfficeView,
     Slot,
     TeamRow,
@@ -31,7 +31,7 @@ from lacoc_shared.messages.desk import (
 )
 
 
-def view(book: Book, known: Known, by: str) -> OfficeView:
+def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
     """Make the view of the organiser's page.
 
     Args:
@@ -128,7 +128,7 @@ def _state(team: Team) -> Literal["in", "withdrawn", "disqualified"]:
     return "withdrawn" if team.withdrawn else "in"
 
 
-def slots(contest: Contest, known: Known) -> Iterator[Slot]:
+def slots(contest: Contest, known: OfficeKnowledge) -> Iterator[Slot]:
     """Yield the matches that are at a court, then all that are to come."""
     places = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     moves = {move.pairing: move for move in contest.moves}
@@ -161,5 +161,5 @@ def slots(contest: Contest, known: Known) -> Iterator[Slot]:
         )
 
 
-def _moved(move: facts.Moved | None) -> Moved | None:
-    return None if move is None else Moved(move.court, move.before, move.not_before_ms)
+def _moved(move: facts.Moved | None) -> MatchMove | None:
+    return None if move is None else MatchMove(move.court, move.before, move.not_before_ms)

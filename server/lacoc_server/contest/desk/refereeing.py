@@ -4,14 +4,14 @@ from lacoc_server.contest.acts import deciding
 from lacoc_server.contest.desk import overview
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league.facts import Replaced, new
-from lacoc_server.contest.league.timetable.whereabouts import Known
+from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
 from lacoc_shared.messages.desk import CourtDay, CourtPlan
 from lacoc_shared.words import Phrase
 
 _COMING_MOST = 4
 
 
-def plan(book: Book, known: Known, asked: CourtDay) -> CourtPlan:
+def plan(book: Book, known: OfficeKnowledge, asked: CourtDay) -> CourtPlan:
     """Return what comes next at a court, and what a result of its game would change.
 
     Args:

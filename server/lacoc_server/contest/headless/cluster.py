@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from threading import Event, Thread
 from typing import Any, Self
 
-from lacoc_server.contest.headless.pool import Ended, EngineLost, Job, attempt
+from lacoc_server.contest.headless.pool import EngineLost, Job, PlayedAlone, attempt_match
 from lacoc_server.studio.workers import WorkerDied
 from lacoc_shared.command import installing
 from lacoc_shared.mistakes import UserError
@@ -40,7 +40,7 @@ class Cluster:
         self._client = _connected(address)
         self._address = address
         self._tell = tell
-        self._waiting: set[Future[Ended | Phrase]] = set()
+        self._waiting: set[Future[PlayedAlone | Phrase]] = set()
         """Games without an end; whoever takes one out ends it."""
         self._closed = Event()
 
@@ -52,15 +52,15 @@ class Cluster:
         self._closed.set()
         self._client.close()
 
-    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+    def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a game when a worker is free; its result is read with `pool.ended`."""
         from distributed import KilledWorker
         from distributed.client import ClosedClientError
 
-        ours: Future[Ended | Phrase] = Future()
+        ours: Future[PlayedAlone | Phrase] = Future()
         self._waiting.add(ours)
 
-        def done(theirs: "Future[Ended | Phrase]") -> None:
+        def done(theirs: "Future[PlayedAlone | Phrase]") -> None:
             try:
                 self._waiting.remove(ours)
             except KeyError:  # the cluster is lost
@@ -75,7 +75,7 @@ class Cluster:
 
         # The id is a hash of all that decides the game, so Dask need not make one.
         try:
-            theirs = self._client.submit(attempt, job, key=job.match_id, retries=_RETRIES)
+            theirs = self._client.submit(attempt_match, job, key=job.match_id, retries=_RETRIES)
         except ClosedClientError:  # the cluster was lost at this moment
             self._lose()
         else:

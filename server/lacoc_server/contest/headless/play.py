@@ -16,14 +16,14 @@ from typing import NamedTuple, Protocol
 
 import msgspec
 
-from lacoc_server.contest.headless.pool import Ended, EngineLost, Job, ended, first_done
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.headless.pool import EngineLost, Job, PlayedAlone, ended, first_done
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_server.contest.kept.folder import ContestFolder, file_hash
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest, Newest, StageView
 from lacoc_server.contest.league.facts import AnyFact, Outcome, Played, Replaced, new
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.timetable.schedule import due, playable
 from lacoc_server.simulate import Seated
 from lacoc_server.simulate.inputs import BotFailed
@@ -42,17 +42,17 @@ _MOST_VOIDS = 3
 """A game in which physics stops counts as a draw without points if it was void so often before."""
 
 
-class Engine(Protocol):
+class GameEngine(Protocol):
     """What plays games: processes of this machine, or of others."""
 
-    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+    def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a game when there is room; its result is read with `pool.ended`."""
 
 
-class _Game(NamedTuple):
+class _DueGame(NamedTuple):
     """A game to play."""
 
-    match: Match
+    match: ContestMatch
     job: Job
     steer: str
     """The bot that steers the teams that have entered none; "": both have entered one."""
@@ -69,10 +69,10 @@ class _Game(NamedTuple):
         return left, right
 
 
-def play(
+def play_contest(
     folder: ContestFolder,
     store: FactStore,
-    engine: Engine,
+    engine: GameEngine,
     steer: str,
     changed: Callable[[Contest], None],
     tell: Callable[[Phrase], None],
@@ -96,7 +96,7 @@ def play(
             played, for example because a bot has a mistake or never answers; all other games are
             played first. It names each bot that failed.
     """
-    playing: dict[Future[Ended | Phrase], _Game] = {}
+    playing: dict[Future[PlayedAlone | Phrase], _DueGame] = {}
     failed: dict[tuple[str, int], tuple[Job, Phrase]] = {}
     deaths: Counter[str] = Counter()
     entry = cache(folder.entries.load)
@@ -198,10 +198,10 @@ def _due(newest: Newest, facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
 def _games(
     contest: Contest,
     facts: tuple[AnyFact, ...],
-    entry: Callable[[str], Entry],
+    entry: Callable[[str], ContestEntry],
     steer: str,
     busy: Container[tuple[str, int]],
-) -> Iterator[_Game]:
+) -> Iterator[_DueGame]:
     """Yield the games that can be played now, except those that are `busy`."""
     files = _files(contest)
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
@@ -216,14 +216,14 @@ def _games(
             for seat, (team, one) in enumerate(zip(match.next_seats, entries, strict=True))
         )
         job = _job(views[match.pairing.id], seated, late)
-        yield _Game(match, job, "" if all(one.bot for one in entries) else steer)
+        yield _DueGame(match, job, "" if all(one.bot for one in entries) else steer)
 
 
-def _seated(seat: int, team: str, entry: Entry, steer: str) -> Seated:
+def _seated(seat: int, team: str, entry: ContestEntry, steer: str) -> Seated:
     return Seated(entry.join(seat, team), entry.bot or steer, entry.program)
 
 
-def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
+def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: ContestMatch) -> int:
     """Return how many ticks late the bots start in the next game of a match.
 
     If they always started at once, two teams that meet again would repeat their earlier game. The
@@ -243,7 +243,7 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: Match) -> int:
     raise ValueError(f"no match {match.pairing.id}")
 
 
-def _tries(match: Match, facts: Sequence[AnyFact]) -> list[Played]:
+def _tries(match: ContestMatch, facts: Sequence[AnyFact]) -> list[Played]:
     """Return the results of a match's next game that do not count: void, or to be replayed."""
     return [
         fact
@@ -299,7 +299,7 @@ def _ended(path: Path) -> Summary | None:
 
 
 def _result(
-    game: _Game, folder: ContestFolder, facts: tuple[AnyFact, ...]
+    game: _DueGame, folder: ContestFolder, facts: tuple[AnyFact, ...]
 ) -> Played | Replaced | None:
     """Return what the record of a game says; None: there is no record of it."""
     path = packed_path(folder.records, game.job.match_id)

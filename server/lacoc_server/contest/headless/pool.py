@@ -58,8 +58,8 @@ class Job(msgspec.Struct, frozen=True, kw_only=True):
         return tuple(one.join.team for one in self.players)
 
 
-class Ended(NamedTuple):
-    """A match that was played."""
+class PlayedAlone(NamedTuple):
+    """A match that was played without a network."""
 
     result: Result
     record: bytes | None
@@ -104,7 +104,7 @@ class Pool:
 
     def __init__(self, jobs: int | None = None) -> None:
         self._workers = Workers(jobs or os.cpu_count() or 1, background=True, limit_s=_LONGEST_S)
-        self._playing: dict[Future[Ended | Phrase], Job] = {}
+        self._playing: dict[Future[PlayedAlone | Phrase], Job] = {}
 
     def __enter__(self) -> Self:
         return self
@@ -120,14 +120,14 @@ class Pool:
         """The ids of the processes that run now."""
         return self._workers.processes
 
-    def submit(self, job: Job) -> "Future[Ended | Phrase]":
+    def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
         """Play a match when a process is free; its result is read with `ended`."""
-        future = self._workers.submit(attempt, job)
+        future = self._workers.submit(attempt_match, job)
         self._playing[future] = job
         return future
 
 
-def ended(job: Job, future: "Future[Ended | Phrase]") -> Ended:
+def ended(job: Job, future: "Future[PlayedAlone | Phrase]") -> PlayedAlone:
     """Return the result of a job that is done.
 
     Raises:
@@ -156,7 +156,7 @@ def _stuck(job: Job, said: Phrase) -> BotFailed:
 
 def play_all(
     work: Sequence[Job], jobs: int | None
-) -> Generator[tuple[Job, Ended | BotFailed], None, None]:
+) -> Generator[tuple[Job, PlayedAlone | BotFailed], None, None]:
     """Play all matches; yield each when it has ended, with its result or the bot that failed.
 
     No half record is left if a worker process dies, or if the caller stops early and closes the
@@ -193,14 +193,14 @@ def play_all(
 
 
 def first_done(
-    futures: "set[Future[Ended | Phrase]]",
-) -> "tuple[set[Future[Ended | Phrase]], set[Future[Ended | Phrase]]]":
+    futures: "set[Future[PlayedAlone | Phrase]]",
+) -> "tuple[set[Future[PlayedAlone | Phrase]], set[Future[PlayedAlone | Phrase]]]":
     """Wait at most half a second for matches; return those that are over, and the others."""
     # A wait without an end could not be interrupted on Windows.
     return wait(futures, _LOOK_S, FIRST_COMPLETED)
 
 
-def attempt(job: Job) -> Ended | Phrase:
+def attempt_match(job: Job) -> PlayedAlone | Phrase:
     """Play a match in a worker process; an error that a user can correct is returned."""
     try:
         if not job.brings_record:
@@ -214,7 +214,7 @@ def attempt(job: Job) -> Ended | Phrase:
         return error.phrase
 
 
-def _is_lost(future: "Future[Ended | Phrase]") -> bool:
+def _is_lost(future: "Future[PlayedAlone | Phrase]") -> bool:
     return isinstance(future.exception(), WorkerDied)
 
 
@@ -226,7 +226,7 @@ def _remove_half_record(job: Job) -> None:
             path.unlink(missing_ok=True)
 
 
-def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Ended:
+def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> PlayedAlone:
     arena = arenas.load(job.arena, job.overrides)
     setup = setup_of(job.match_id, arena, job.limits)
     players = [_player(arena, one, job.late_ticks) for one in job.players]
@@ -239,7 +239,7 @@ def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> Ended:
 
     folder = Path(job.folder) if job.folder else None
     result = simulate(setup, players, folder, see, arena.folder)
-    return Ended(result, None, refused.counts)
+    return PlayedAlone(result, None, refused.counts)
 
 
 def _player(arena: arenas.Arena, seated: Seated, late_ticks: int) -> Player:
@@ -278,7 +278,7 @@ def _name(seated: Seated) -> str:
     return seated.bot if seated.program is None else f"{seated.bot}.py"
 
 
-def play_alone(job: Job) -> Ended:
+def play_alone(job: Job) -> PlayedAlone:
     """Play a match in this process; errors are as of `ended`."""
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
     with screen.progress() as progress:

@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 
 import msgspec
 
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_shared.command import database
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import UserError, text_of
@@ -31,7 +31,7 @@ class Application(NamedTuple):
     team: str
     at_ms: int
     """When they were handed in, in milliseconds since 1970, UTC."""
-    entry: Entry
+    entry: ContestEntry
 
 
 class Applications:
@@ -63,7 +63,7 @@ class Applications:
         """The applications by team, the oldest first."""
         return dict(sorted(self._known.items(), key=lambda one: one[1].at_ms))
 
-    def put(self, team: str, entry: Entry, at_ms: int | None = None) -> None:
+    def put(self, team: str, entry: ContestEntry, at_ms: int | None = None) -> None:
         """Keep the files of a team in place of its earlier ones.
 
         Args:
@@ -100,7 +100,7 @@ class Applications:
         try:
             rows = self._db.execute("SELECT team, at_ms, entry FROM applications").fetchall()
             return [
-                Application(team, at_ms, msgspec.msgpack.decode(entry, type=Entry))
+                Application(team, at_ms, msgspec.msgpack.decode(entry, type=ContestEntry))
                 for team, at_ms, entry in rows
             ]
         except sqlite3.Error as error:

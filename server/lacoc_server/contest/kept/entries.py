@@ -20,8 +20,7 @@ from lacoc_robots.library import GAIT_NAMES, find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.seat_files import SeatFiles, files_in, gaits_in, remarks, to_send
 from lacoc_robots.stand_test import try_standing
-from lacoc_server.match.entry import Entry as WeighedIn
-from lacoc_server.match.entry import weigh_in
+from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_shared.command import regular
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
@@ -36,7 +35,7 @@ _MOST_BYTES = 1 << 22
 """Largest file of an entry that is read."""
 
 
-class Entry(msgspec.Struct, frozen=True, kw_only=True):
+class ContestEntry(msgspec.Struct, frozen=True, kw_only=True):
     """What a team plays with: its files and its bot."""
 
     robot: bytes
@@ -71,7 +70,7 @@ class HandedIn:
     """The gait files as text, under the names that the team gave them."""
     bot: str = ""
     program: bytes | None = None
-    """As in `Entry`."""
+    """As in `ContestEntry`."""
     wrong: FileRefused | None = None
     """The mistakes of workbooks; None: there are none."""
     taken: tuple[str, ...] = ()
@@ -82,9 +81,9 @@ class HandedIn:
     """Remarks on the folder and on its workbook."""
 
     @property
-    def entry(self) -> Entry:
+    def entry(self) -> ContestEntry:
         """The entry that the contest keeps once it is weighed in."""
-        return Entry(
+        return ContestEntry(
             robot=self.robot.data,
             postures=self.gaits.postures.data if self.gaits.postures else None,
             locomotion=self.gaits.locomotion.data if self.gaits.locomotion else None,
@@ -116,7 +115,7 @@ def hand_in(files: SeatFiles, robot: str) -> HandedIn:
     )
 
 
-def gather(folder: Path | None, bot: str, robot: str) -> HandedIn:
+def gather_entry(folder: Path | None, bot: str, robot: str) -> HandedIn:
     """Read the files that a team hands in.
 
     Args:
@@ -152,7 +151,7 @@ def _of_folder(folder: Path, robot: str) -> HandedIn:
     return replace(handed, taken=taken, notes=notes)
 
 
-def weigh(handed: HandedIn, games: Iterable[Arena], limits: Mapping[str, Any]) -> Entry:
+def weigh(handed: HandedIn, games: Iterable[Arena], limits: Mapping[str, Any]) -> ContestEntry:
     """Check an entry: weigh in its files as a court does, let its robot stand, and check its bot.
 
     Args:
@@ -182,7 +181,7 @@ def weigh(handed: HandedIn, games: Iterable[Arena], limits: Mapping[str, Any]) -
     return handed.entry
 
 
-def _weigh_in(handed: HandedIn, limits: Mapping[str, Any], levels: Collection[Level]) -> WeighedIn:
+def _weigh_in(handed: HandedIn, limits: Mapping[str, Any], levels: Collection[Level]) -> Entry:
     """Weigh in the files for one arena.
 
     Raises:
@@ -256,7 +255,7 @@ class EntryFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def save(self, entry: Entry) -> str:
+    def save(self, entry: ContestEntry) -> str:
         """Keep an entry; return its hash. An entry that is there already is not written again.
 
         Raises:
@@ -280,7 +279,7 @@ class EntryFolder:
                 raise UserError(say("command.cannot-write", path=str(place), why=why)) from None
         return entry.hash
 
-    def load(self, entry_hash: str) -> Entry:
+    def load(self, entry_hash: str) -> ContestEntry:
         """Read an entry.
 
         Raises:
@@ -298,7 +297,9 @@ class EntryFolder:
         except (UserError, KeyError, msgspec.MsgspecError, UnicodeDecodeError) as error:
             told = error.phrase if isinstance(error, UserError) else str(error)
             raise UserError(say("contest.no-entry", folder=str(place), why=told)) from None
-        entry = Entry(robot=robot, postures=rest[0], locomotion=rest[1], bot=bot, program=rest[2])
+        entry = ContestEntry(
+            robot=robot, postures=rest[0], locomotion=rest[1], bot=bot, program=rest[2]
+        )
         if entry.hash != entry_hash or bot_file != _files(entry)[_BOT]:
             raise UserError(say("contest.entry-changed", folder=str(place)))
         return entry
@@ -324,7 +325,7 @@ class EntryFolder:
             return None
 
 
-def _files(entry: Entry) -> dict[str, bytes]:
+def _files(entry: ContestEntry) -> dict[str, bytes]:
     files = {
         _BOT: msgspec.json.encode({"bot": entry.bot}),
         _ROBOT: entry.robot,

@@ -11,26 +11,26 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, Settings, new
+from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, StageSettings, new
 from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
 from lacoc_shared.contest.courts import wrong_in
-from lacoc_shared.contest.file import Contest, wrong_entries
+from lacoc_shared.contest.file import ContestFile, wrong_entries
 from lacoc_shared.contest.wrong_value import convert, place_and_words
 from lacoc_shared.mistakes import Gathered, UserError, text_of
 from lacoc_shared.words import LANGUAGES, say
 
 _USUAL_ARENA = "othello"
-_SETTINGS = Settings.__struct_fields__
+_SETTINGS = StageSettings.__struct_fields__
 _DRAWS = get_args(Draw)
 _AT_ONCE = _DRAWS[0]
 _TEAMS_FOR_THIRD = 4
 """With fewer teams, no two teams lose a semi-final."""
 
 
-class _Stage(msgspec.Struct, frozen=True, kw_only=True):
-    """What a stage's table in the contest file has, besides the entries of `Settings`."""
+class _StageEntries(msgspec.Struct, frozen=True, kw_only=True):
+    """What a stage's table in the contest file has, besides the entries of `StageSettings`."""
 
     format: str
     after: str = ""
@@ -70,7 +70,7 @@ class OpenStage:
     """Names of the arena's seats."""
 
 
-def open_stage(contest: Contest, file: Path) -> OpenStage | None:
+def open_stage(contest: ContestFile, file: Path) -> OpenStage | None:
     """Read the open stage of a contest file; None: there is none.
 
     Args:
@@ -96,7 +96,7 @@ def open_stage(contest: Contest, file: Path) -> OpenStage | None:
     return OpenStage(table.arena, table.settings, contest.limits, seats)
 
 
-def plans(contest: Contest, file: Path) -> list[Planned]:
+def plans(contest: ContestFile, file: Path) -> list[Planned]:
     """Read the stages of a contest file, without an open one.
 
     Args:
@@ -123,7 +123,7 @@ def plans(contest: Contest, file: Path) -> list[Planned]:
 
 
 def _read(
-    name: str, table: Mapping[str, Any], contest: Contest, before: Mapping[str, Planned | None]
+    name: str, table: Mapping[str, Any], contest: ContestFile, before: Mapping[str, Planned | None]
 ) -> Planned:
     """Read one stage.
 
@@ -184,12 +184,12 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
 
 
 def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> Planned:
-    own = {key: value for key, value in table.items() if key in _Stage.__struct_fields__}
+    own = {key: value for key, value in table.items() if key in _StageEntries.__struct_fields__}
     rest = {key: value for key, value in table.items() if key not in own}
     if unknown := [key for key in rest if key not in _SETTINGS]:
-        known = [*_Stage.__struct_fields__, *_SETTINGS]
+        known = [*_StageEntries.__struct_fields__, *_SETTINGS]
         raise UserError(say("contest.stage-entry", entry=text_of(unknown[0]), known=known))
-    stage = msgspec.convert(own, _Stage)
+    stage = msgspec.convert(own, _StageEntries)
     if stage.draw not in _DRAWS:
         raise UserError(say("contest.stage-draw", draw=text_of(stage.draw), known=[*_DRAWS]))
     if stage.format not in FORMATS:
@@ -208,7 +208,7 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         stage=name,
         title=title,
         format=stage.format,
-        settings=msgspec.convert(rest, Settings),
+        settings=msgspec.convert(rest, StageSettings),
         after=stage.after,
         draw=stage.draw,
         apart=stage.apart,

@@ -91,7 +91,7 @@ def _save_record(source: Path, to: Path, wanted: str) -> None:
     segments = segment_paths(source.parent, source.stem)
     try:
         if segments and not regular.is_regular(source):
-            replace(to, lambda part: pack.write(pack.read(segments), part))
+            replace(to, lambda part: pack.write_packed(pack.read_messages(segments), part))
             return
     except UserError:
         if not regular.is_regular(source):  # else the court has packed it meanwhile

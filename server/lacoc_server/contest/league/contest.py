@@ -27,9 +27,9 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.format import Format, Pair, Stage
 from lacoc_server.contest.league.matches import (
-    Game,
-    Match,
-    Rules,
+    ContestMatch,
+    CountedGame,
+    StageRules,
     counting,
     fact_teams,
     resolve,
@@ -44,7 +44,7 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
 
     plan: Planned
     stage: Stage
-    matches: tuple[Match, ...]
+    matches: tuple[ContestMatch, ...]
     tables: tuple[Table, ...]
     rounds_to_draw: int
     """Rounds that are still to be drawn; in some formats fewer may be enough."""
@@ -162,7 +162,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
 class Changes(msgspec.Struct, frozen=True, kw_only=True):
     """What one more fact would change."""
 
-    matches: tuple[tuple[Match | None, Match | None], ...]
+    matches: tuple[tuple[ContestMatch | None, ContestMatch | None], ...]
     """Each match that has other teams, another state or another winner: before and after."""
     ranks: tuple[tuple[str, str, int, int], ...]
     """Each team with another rank: stage, team, rank before and after."""
@@ -193,11 +193,11 @@ def _here(contest: Contest) -> set[str]:
     return {team.name for team in contest.teams if not team.gone}
 
 
-def _by_pairing(contest: Contest) -> dict[str, Match]:
+def _by_pairing(contest: Contest) -> dict[str, ContestMatch]:
     return {match.pairing.id: match for view in contest.stages for match in view.matches}
 
 
-def _outcome(match: Match | None) -> tuple[object, ...]:
+def _outcome(match: ContestMatch | None) -> tuple[object, ...]:
     return (match.teams, match.state, match.winner) if match else ()
 
 
@@ -301,7 +301,7 @@ def _view(
 ) -> StageView:
     gone = {team.name for team in teams.values() if team.gone}
     out = {team.name for team in teams.values() if team.disqualified}
-    rules = Rules(
+    rules = StageRules(
         settings=stage.settings, entries=stage.entries, decisive=how.decisive, balanced=how.balanced
     )
     matches = resolve(how.pairings(stage), by_pairing, gone, rules)
@@ -318,7 +318,9 @@ def _view(
     )
 
 
-def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str, Phrase]) -> None:
+def _note_unused(
+    match: ContestMatch | None, about: Sequence[OfMatch], unused: dict[str, Phrase]
+) -> None:
     """Note the results and decisions that a match does not use."""
     used = {game.fact for game in match.games} if match else set()
     teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
@@ -336,7 +338,7 @@ def _note_unused(match: Match | None, about: Sequence[OfMatch], unused: dict[str
 
 
 def _why_unused(
-    match: Match, fact: Played | Replaced, counts: Game | None, is_void: bool
+    match: ContestMatch, fact: Played | Replaced, counts: CountedGame | None, is_void: bool
 ) -> Phrase:
     """Say why a match does not use a result.
 

@@ -182,7 +182,7 @@ def by_lot(teams: Iterable[str], lot: str) -> tuple[str, ...]:
     return tuple(sorted(teams, key=ticket))
 
 
-def apart(
+def clubs_apart(
     entries: tuple[str, ...],
     club_of: Mapping[str, str],
     met: Callable[[tuple[str, ...]], Iterable[tuple[str, str]]],

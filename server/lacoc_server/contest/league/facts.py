@@ -88,7 +88,7 @@ class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
     """May be "" only while entries are open."""
 
 
-class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """How a stage is played. A format reads what it needs."""
 
     games: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
@@ -118,7 +118,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
 
     stage: Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,31}$")]
     format: Name
-    settings: Settings = Settings()
+    settings: StageSettings = StageSettings()
     after: str = ""
     """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
     title: dict[Literal["en", "ja"], Name] = {}
@@ -358,7 +358,7 @@ def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:
     return tuple(found)
 
 
-class _File(msgspec.Struct, frozen=True, kw_only=True):
+class _FactsFile(msgspec.Struct, frozen=True, kw_only=True):
     version: int
     facts: tuple[AnyFact, ...]
 
@@ -378,7 +378,7 @@ def ordered(facts: Iterable[AnyFact]) -> tuple[AnyFact, ...]:
 
 def encode(facts: Iterable[AnyFact]) -> bytes:
     """Write facts as JSON; facts that arrived in another order give the same bytes."""
-    return msgspec.json.encode(_File(version=VERSION, facts=ordered(facts)))
+    return msgspec.json.encode(_FactsFile(version=VERSION, facts=ordered(facts)))
 
 
 def decode(data: bytes) -> tuple[AnyFact, ...]:
@@ -397,6 +397,6 @@ def decode(data: bytes) -> tuple[AnyFact, ...]:
                     known=VERSION,
                 )
             )
-        return ordered(msgspec.json.decode(data, type=_File).facts)
+        return ordered(msgspec.json.decode(data, type=_FactsFile).facts)
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(say("league.wrong-facts", error=str(error))) from None

@@ -1,7 +1,7 @@
 """What a match or a game is in its contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
 
 from lacoc_server.contest.league.contest import Contest, StageView
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.words import Phrase, say
 
@@ -23,7 +23,7 @@ def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
     return say("fixture.named", name=pairing)
 
 
-def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phrase:
+def fixture(contest: Contest, view: StageView, match: ContestMatch, game: int) -> Phrase:
     """Say what a game is in its contest: "Semi-final 1, game 2 of 3".
 
     Args:
@@ -37,7 +37,7 @@ def fixture(contest: Contest, view: StageView, match: Match, game: int) -> Phras
     return said if games == 1 else say("fixture.game", match=said, game=game, games=games)
 
 
-def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
+def match_fixture(contest: Contest, view: StageView, match: ContestMatch) -> Phrase:
     """Say what a match is in its contest: "Semi-final 1"; arguments as in `fixture`."""
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
@@ -62,7 +62,7 @@ def match_fixture(contest: Contest, view: StageView, match: Match) -> Phrase:
     return say("fixture.round", stage=title(contest, view.name), group=group, round=pairing.round)
 
 
-def _winners(view: StageView, match: Match, stage: Phrase | None, number: int) -> Phrase:
+def _winners(view: StageView, match: ContestMatch, stage: Phrase | None, number: int) -> Phrase:
     """Name a match of the winners' bracket: "Final", "Semi-final 1", or by round and number."""
     pairing = match.pairing
     double = any(one.pairing.section == "l" for one in view.matches)
@@ -80,6 +80,6 @@ def _winners(view: StageView, match: Match, stage: Phrase | None, number: int) -
     return say("fixture.knockout", stage=stage, round=pairing.round, number=number)
 
 
-def _is_knockout(match: Match) -> bool:
+def _is_knockout(match: ContestMatch) -> bool:
     """Return whether the match is of a bracket."""
     return match.pairing.loser_place is not None

@@ -12,10 +12,10 @@ from lacoc_server.contest.league.facts import (
     Played,
     Replaced,
     Replay,
-    Settings,
+    StageSettings,
     Voided,
 )
-from lacoc_server.contest.league.pairing import AnySource, Entry, LoserOf, Pairing, WinnerOf
+from lacoc_server.contest.league.pairing import AnySource, Entrant, LoserOf, Pairing, WinnerOf
 
 NOBODY = ""
 """Stands for the team of a place that is empty for ever."""
@@ -29,7 +29,7 @@ How = Literal["", "played", "extra", "difference", "seed", "walkover", "bye", "v
 """How a match was decided; "" before that."""
 
 
-class Game(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A game that counts."""
 
     number: int
@@ -47,14 +47,14 @@ class Game(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         return {"left": self.teams[0], "right": self.teams[1]}.get(self.outcome, NOBODY)
 
 
-class Match(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+class ContestMatch(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A pairing with all that the facts say of it."""
 
     pairing: Pairing
     teams: tuple[Team, Team]
     """By place of the pairing."""
     state: State
-    games: tuple[Game, ...] = ()
+    games: tuple[CountedGame, ...] = ()
     next_game: int = 0
     """Number of the game to play; 0: none."""
     next_seats: tuple[str, str] | None = None
@@ -84,10 +84,10 @@ class Match(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         return first, second
 
 
-class Rules(msgspec.Struct, frozen=True, kw_only=True):
+class StageRules(msgspec.Struct, frozen=True, kw_only=True):
     """What decides the matches of a stage."""
 
-    settings: Settings
+    settings: StageSettings
     entries: tuple[str, ...]
     """By seeding."""
     decisive: bool
@@ -100,8 +100,8 @@ def resolve(
     pairings: Sequence[Pairing],
     facts: Mapping[str, Sequence[OfMatch]],
     gone: Collection[str],
-    rules: Rules,
-) -> dict[str, Match]:
+    rules: StageRules,
+) -> dict[str, ContestMatch]:
     """Work out all matches of a stage.
 
     Args:
@@ -113,7 +113,7 @@ def resolve(
     Returns:
         The matches by the pairing's id, in the order of the pairings.
     """
-    matches: dict[str, Match] = {}
+    matches: dict[str, ContestMatch] = {}
     left: dict[str, int] = {}
     for pairing in pairings:
         match = _match(pairing, matches, facts.get(pairing.id, ()), gone, rules, left)
@@ -126,21 +126,21 @@ def resolve(
 
 def _match(
     pairing: Pairing,
-    matches: Mapping[str, Match],
+    matches: Mapping[str, ContestMatch],
     facts: Sequence[OfMatch],
     gone: Collection[str],
-    rules: Rules,
+    rules: StageRules,
     left: Mapping[str, int],
-) -> Match:
+) -> ContestMatch:
     first, second = (_team(source, matches) for source in pairing.sources)
     if condition := pairing.only_if_second_won:
         before = matches[condition]
         if before.decided and before.winner != before.teams[1]:
-            return Match(pairing=pairing, teams=(first, second), state="off")
+            return ContestMatch(pairing=pairing, teams=(first, second), state="off")
         if not before.decided:
-            return Match(pairing=pairing, teams=(None, None), state="waits")
+            return ContestMatch(pairing=pairing, teams=(None, None), state="waits")
     if first is None or second is None:
-        return Match(pairing=pairing, teams=(first, second), state="waits")
+        return ContestMatch(pairing=pairing, teams=(first, second), state="waits")
     teams = (first, second)
     if NOBODY in teams:
         return _decided(pairing, teams, (), first or second, "bye")
@@ -154,13 +154,13 @@ def _between(
     swapped: bool,
     facts: Sequence[OfMatch],
     gone: Collection[str],
-    rules: Rules,
-) -> Match:
+    rules: StageRules,
+) -> ContestMatch:
     """Work out the match of two teams."""
     counted, is_void, absent = counting(teams, facts)
     if is_void:
         return _decided(pairing, teams, (), NOBODY, "void")
-    games: list[Game] = []
+    games: list[CountedGame] = []
     for number in range(1, rules.settings.games + rules.settings.extra_games + 1):
         ended = _verdict(games, teams, rules)
         if ended is not None:
@@ -181,7 +181,7 @@ def _between(
     more_left = sum(1 if game.teams == teams else -1 for game in counted.values())
     first_right = swapped if more_left == 0 else more_left > 0
     seats = (teams[1], teams[0]) if first_right else teams
-    return Match(
+    return ContestMatch(
         pairing=pairing,
         teams=teams,
         state="open",
@@ -193,7 +193,7 @@ def _between(
 
 def counting(
     teams: tuple[str, str], facts: Iterable[OfMatch]
-) -> tuple[dict[int, Game], bool, set[str]]:
+) -> tuple[dict[int, CountedGame], bool, set[str]]:
     """Find what counts of a match between two teams.
 
     Facts about other teams are left out: they belong to a pairing that has changed since. Of two
@@ -202,7 +202,7 @@ def counting(
     Returns:
         The games by number, whether the match is void, and the teams that did not appear.
     """
-    games: dict[int, Game] = {}
+    games: dict[int, CountedGame] = {}
     is_void = False
     absent: set[str] = set()
     for fact in facts:
@@ -228,8 +228,8 @@ def fact_teams(fact: OfMatch) -> tuple[str, ...]:
     return getattr(fact, "teams", ())
 
 
-def _game(fact: Played | Replaced) -> Game:
-    return Game(
+def _game(fact: Played | Replaced) -> CountedGame:
+    return CountedGame(
         number=fact.game,
         teams=fact.teams,
         scores=fact.scores,
@@ -239,8 +239,8 @@ def _game(fact: Played | Replaced) -> Game:
     )
 
 
-def _team(source: AnySource, matches: Mapping[str, Match]) -> Team:
-    if isinstance(source, Entry):
+def _team(source: AnySource, matches: Mapping[str, ContestMatch]) -> Team:
+    if isinstance(source, Entrant):
         return source.team
     if isinstance(source, WinnerOf):
         return matches[source.pairing].winner
@@ -249,7 +249,9 @@ def _team(source: AnySource, matches: Mapping[str, Match]) -> Team:
     return NOBODY
 
 
-def _verdict(games: Sequence[Game], teams: tuple[str, str], rules: Rules) -> tuple[str, How] | None:
+def _verdict(
+    games: Sequence[CountedGame], teams: tuple[str, str], rules: StageRules
+) -> tuple[str, How] | None:
     """Return the winner (NOBODY: a draw) and how it was decided; None: play goes on."""
     first, second = (sum(game.winner == team for game in games) for team in teams)
     left = rules.settings.games - len(games)
@@ -268,11 +270,11 @@ def _verdict(games: Sequence[Game], teams: tuple[str, str], rules: Rules) -> tup
 
 
 def _decided(
-    pairing: Pairing, teams: tuple[str, str], games: Iterable[Game], winner: str, how: How
-) -> Match:
+    pairing: Pairing, teams: tuple[str, str], games: Iterable[CountedGame], winner: str, how: How
+) -> ContestMatch:
     """Make a decided match. A match without a winner sends nobody on."""
     loser = next((team for team in teams if team != winner), NOBODY) if winner else NOBODY
-    return Match(
+    return ContestMatch(
         pairing=pairing,
         teams=teams,
         state="decided",

@@ -7,7 +7,7 @@ class Source(msgspec.Struct, frozen=True, tag_field="source", omit_defaults=True
     """Where the team of a place comes from."""
 
 
-class Entry(Source, frozen=True, tag="entry"):
+class Entrant(Source, frozen=True, tag="entry"):
     """A team of the draw."""
 
     team: str
@@ -29,7 +29,7 @@ class Bye(Source, frozen=True, tag="bye"):
     """Nobody; whoever meets nobody goes on without a match."""
 
 
-AnySource = Entry | WinnerOf | LoserOf | Bye
+AnySource = Entrant | WinnerOf | LoserOf | Bye
 
 
 class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from lacoc_server.contest.league.matches import NOBODY, Match
+from lacoc_server.contest.league.matches import NOBODY, ContestMatch
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -211,12 +211,12 @@ def _split(
     ]
 
 
-def counted(matches: Iterable[Match]) -> list[Counted]:
+def counted(matches: Iterable[ContestMatch]) -> list[Counted]:
     """Return the matches that count for standings: the decided ones that are not void."""
     return [line for match in matches for line in _counted(match)]
 
 
-def _counted(match: Match) -> list[Counted]:
+def _counted(match: ContestMatch) -> list[Counted]:
     if match.state != "decided" or match.how == "void":
         return []
     teams = tuple(team for team in match.teams if team)

@@ -36,7 +36,7 @@ _AGAIN_S = 2.0
 """Time between two attempts to open a court here, or to end one elsewhere."""
 
 
-class Pause:
+class RetryPause:
     """The time between two attempts to do something.
 
     Args:
@@ -67,7 +67,7 @@ class Attempts(Generic[T]):
 
     def __init__(self, do: Callable[[], T | None], pause_s: float, aside: Executor) -> None:
         self._do = do
-        self._pause = Pause(pause_s)
+        self._pause = RetryPause(pause_s)
         self._aside = aside
         self._running: Future[T | None] | None = None
 
@@ -116,7 +116,7 @@ class AwayCourt:
         self._heard_s = time.monotonic()
         self._is_here = name in stand_ins(where.stand_ins)
         self._is_open_here = False
-        self._may_close = Pause(_AGAIN_S)
+        self._may_close = RetryPause(_AGAIN_S)
         self._aside = aside = ThreadPoolExecutor(2, f"court {name}")
         self._connects = Attempts(self._connected, _CONNECT_S, aside)
         self._opens = Attempts(self._open, _AGAIN_S, aside)

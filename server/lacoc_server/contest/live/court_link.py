@@ -11,7 +11,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from lacoc_shared import codec
 from lacoc_shared.codec import encode, message_hash
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import Done, Event, Frame, Health, Refusal, Sheet
 from lacoc_shared.messages.office import (
     EARLIER_OFFICE,
@@ -39,7 +39,7 @@ _FETCH_S = 2.0
 _MAX_BYTES = 1 << 20  # of a sheet, of the list of events, or of a part of a record
 
 
-class NoAnswer(Enum):
+class Unanswered(Enum):
     """No readable answer came; the court may have done what was asked. Ask again, same call."""
 
     NO_ANSWER = "no-answer"
@@ -61,17 +61,17 @@ class Asked(Generic[T]):
         self._kind = kind
         self._refused = refused
 
-    def take(self) -> T | Refusal | NoAnswer | None:
+    def take(self) -> T | Refusal | Unanswered | None:
         """Return the court's answer, or None if it has not come yet; never blocks."""
         return self._read(wait=False)
 
-    def wait(self) -> T | Refusal | NoAnswer:
+    def wait(self) -> T | Refusal | Unanswered:
         """Wait for the court's answer."""
         found = self._read(wait=True)
         assert found is not None, "a question that is waited for has an answer"
         return found
 
-    def _read(self, wait: bool) -> T | Refusal | NoAnswer | None:
+    def _read(self, wait: bool) -> T | Refusal | Unanswered | None:
         try:
             answer = self._question.wait() if wait else self._question.take()
             return None if answer is None else codec.decode(answer, self._kind, _MAX_BYTES)
@@ -79,11 +79,11 @@ class Asked(Generic[T]):
             try:
                 refusal = codec.decode(refused.payload, Refusal, _MAX_BYTES)
             except codec.BadMessage:
-                return NoAnswer.NO_ANSWER
+                return Unanswered.NO_ANSWER
             self._refused(refusal)
             return refusal
         except (NoReply, codec.BadMessage):
-            return NoAnswer.NO_ANSWER
+            return Unanswered.NO_ANSWER
 
 
 class CourtResult(NamedTuple):
@@ -116,7 +116,7 @@ class CourtLink:
         self._session = session
         self._token = token
         self._generation = generation
-        self._keys = Keys(court)
+        self._keys = KeySpace(court)
         self._frames = session.mailbox(self._keys.frame, 1)
         self._healths = session.mailbox(self._keys.health, 1)
         self._heard_s: float | None = None

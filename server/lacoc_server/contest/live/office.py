@@ -16,8 +16,8 @@ from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import (
-    Ended,
-    Seen,
+    GameEnd,
+    SeenCourt,
     calls,
     is_open_call,
     results,
@@ -25,7 +25,7 @@ from lacoc_server.contest.league.timetable.calling import (
     wanted,
 )
 from lacoc_server.contest.league.timetable.schedule import due, waits_for_organiser
-from lacoc_server.contest.league.timetable.whereabouts import Known
+from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.teller import Teller
@@ -88,7 +88,7 @@ class Office:
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
         self.contest: Contest = self._compute()
-        self.known = Known({name: Seen(0) for name in links}, self._teller.pace, {})
+        self.known = OfficeKnowledge({name: SeenCourt(0) for name in links}, self._teller.pace, {})
         """What it knew at the newest step; any thread may read it."""
 
     @property
@@ -149,7 +149,7 @@ class Office:
         self._take_back(now_ms)
         self._fill(now_ms)
         self._teller.tell(self.contest, self._facts, seen, now_ms)
-        self.known = Known(seen, self._teller.pace, dict(self.held))
+        self.known = OfficeKnowledge(seen, self._teller.pace, dict(self.held))
 
     def _may_draw(self, now_ms: int) -> bool:
         """Return whether teams have had their time to enter, and there are enough of them."""
@@ -158,9 +158,9 @@ class Office:
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
         return over and sum(not team.gone for team in self.contest.teams) >= _TEAMS_LEAST
 
-    def _look(self, name: str, link: CourtLink | None, now_ms: int) -> Seen:
+    def _look(self, name: str, link: CourtLink | None, now_ms: int) -> SeenCourt:
         if link is None:
-            return Seen(self._heard_ms[name])
+            return SeenCourt(self._heard_ms[name])
         link.poll()
         if link.is_there:
             self._heard_ms[name] = now_ms
@@ -168,9 +168,9 @@ class Office:
         if (result := link.result) is not None:
             left, right = result.scores
             who = outcome(_SEATS, result.outcome)
-            ended = Ended((left, right), who, f"{result.match_id}.mcap")
+            ended = GameEnd((left, right), who, f"{result.match_id}.mcap")
         begun, there = link.phase in _BEGUN, link.is_there
-        return Seen(self._heard_ms[name], link.call or "", begun, ended, there)
+        return SeenCourt(self._heard_ms[name], link.call or "", begun, ended, there)
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.

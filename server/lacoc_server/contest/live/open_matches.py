@@ -7,7 +7,7 @@ import secrets
 from collections.abc import Callable, Iterator, Mapping
 
 from lacoc_server.contest.kept.plans import OpenStage
-from lacoc_server.contest.league.timetable.calling import OPEN_CALL, Seen, is_open_call
+from lacoc_server.contest.league.timetable.calling import OPEN_CALL, SeenCourt, is_open_call
 from lacoc_server.contest.live.court_link import Asked, CourtLink
 from lacoc_shared.contest.tokens import lasting_hash
 from lacoc_shared.messages import Done, Refusal
@@ -77,7 +77,7 @@ class OpenMatches:
         )
 
     def whereabouts(
-        self, seen: Mapping[str, Seen], addresses: Mapping[str, str]
+        self, seen: Mapping[str, SeenCourt], addresses: Mapping[str, str]
     ) -> Iterator[tuple[str, Whereabouts]]:
         """Yield for each open seat its token, and where it is or that it waits.
 

@@ -8,11 +8,11 @@ from lacoc_server.contest.kept.plans import game
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Planned
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.whereabouts import (
-    Courts,
-    Pace,
+    ContestPace,
+    SeenCourts,
     full_minute,
     game_ms,
     starts,
@@ -59,7 +59,7 @@ class Teller:
         self._hash = cache(lambda token: seal.hash_token(token, salt))
         self._token_of = token_of
         self._open_matches = open_matches
-        self.pace = Pace(0, 0, least_rest_ms)
+        self.pace = ContestPace(0, 0, least_rest_ms)
         """How fast the contest goes, as of the newest estimate."""
         self.expected: dict[str, tuple[str, int]] = {}
         """Where and when the next matches will probably begin, by pairing, as of it: times
@@ -75,7 +75,7 @@ class Teller:
         self._asked: dict[str, Asked[Done]] = {}
 
     def tell(
-        self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, Seen], now_ms: int
+        self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, SeenCourt], now_ms: int
     ) -> None:
         """Tell the courts what has changed.
 
@@ -93,14 +93,14 @@ class Teller:
         if is_new or now_ms - self._looked_ms >= _LOOK_MS:
             self._contest, self._calls, self._looked_ms = contest, calls, now_ms
             usual_ms = game_ms(facts, self._guess_ms(contest))
-            self.pace = Pace(now_ms, usual_ms, self._least_rest_ms)
+            self.pace = ContestPace(now_ms, usual_ms, self._least_rest_ms)
             coming = foreseen(contest, FORMATS)
             begins = dict(starts(contest, coming, seen, self.pace))
             self.expected = {
                 pairing: (start.court, full_minute(start.at_ms))
                 for pairing, start in begins.items()
             }
-            found = whereabouts(contest, Courts(seen, self._addresses), self.pace, begins)
+            found = whereabouts(contest, SeenCourts(seen, self._addresses), self.pace, begins)
             here = [(self._token_of(team), there) for team, there in found.items()]
             if self._open_matches is not None:
                 here += self._open_matches.whereabouts(seen, self._addresses)

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, Self
 
 from lacoc_server.contest.kept.folder import ContestFolder
-from lacoc_server.contest.league.contest import Contest as Computed
+from lacoc_server.contest.league.contest import Contest
 from lacoc_shared.command.child import apart, command_line, kept_child
-from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import check_free, endpoint
 from lacoc_shared.words import Phrase, say
@@ -103,7 +103,7 @@ def pages(
         yield opened["url"]
 
 
-def told_address(contest: Contest, name: str, opened: str) -> str:
+def told_address(contest: ContestFile, name: str, opened: str) -> str:
     """Return the address for contestants of a court on this machine; they may be on others.
 
     Args:
@@ -120,7 +120,7 @@ def told_address(contest: Contest, name: str, opened: str) -> str:
     return f"{opened.partition('/')[0]}/{contest.own_host}:{port}"
 
 
-def _check_free(contest: Contest, name: str, listen: Sequence[str]) -> None:
+def _check_free(contest: ContestFile, name: str, listen: Sequence[str]) -> None:
     """Check that a court can listen at its addresses, without the time that a process takes.
 
     Raises:
@@ -172,7 +172,7 @@ class Bots:
         for process in (*self._playing.values(), *self._ending):
             _end(process)
 
-    def follow(self, contest: Computed) -> None:
+    def follow(self, contest: Contest) -> None:
         """Start the bots of teams that are called for the first time.
 
         A bot that ended too early is started again. A bot is ended if its team has other files now.

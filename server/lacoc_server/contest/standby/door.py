@@ -14,11 +14,11 @@ from lacoc_server.contest.standby.messages import (
     AnyAnswer,
     AnyAsk,
     Got,
-    Known,
     Lacks,
-    Part,
-    Record,
-    Step,
+    OfficeThere,
+    PartAsk,
+    RecordAsk,
+    StepAsk,
     There,
 )
 from lacoc_server.contest.standby.sealing import REQUEST, BadSeal, Sealing
@@ -92,15 +92,15 @@ class StandbyDoor:
             self._tenure.hear(asked.generation)
             with self._one:
                 match asked:
-                    case Step():
+                    case StepAsk():
                         return self._step(asked)
-                    case Part():
+                    case PartAsk():
                         return self._part(asked)
-                    case Record():
+                    case RecordAsk():
                         return self._record(asked)
         except UserError as error:
             return Lacks(why=error.phrase)
-        return Known(generation=self._tenure.generation)
+        return OfficeThere(generation=self._tenure.generation)
 
     def news(self) -> Iterator[Phrase]:
         """Yield what the organiser must know: a second machine copies, or has become silent."""
@@ -113,7 +113,7 @@ class StandbyDoor:
             yield say("standby.copies", at=self._address)
         self._is_told = not is_silent
 
-    def _step(self, asked: Step) -> AnyAnswer:
+    def _step(self, asked: StepAsk) -> AnyAnswer:
         newest = self._store.facts()
         bodies = self._store.bodies(max(0, asked.facts - 1), _FACTS_BYTES)
         if asked.facts:
@@ -132,10 +132,10 @@ class StandbyDoor:
             waiting=None
             if version == asked.applications
             else {name: one.at_ms for name, one in waiting.items()},
-            records=unpacked(self._where.records),
+            records=with_segments(self._where.records),
         )
 
-    def _part(self, asked: Part) -> AnyAnswer:
+    def _part(self, asked: PartAsk) -> AnyAnswer:
         content = self._content(asked)
         if content is None:
             return Lacks(why=say("standby.not-here", name=asked.name[:80]))
@@ -144,7 +144,7 @@ class StandbyDoor:
         part = Copied(file=asked.name, offset=asked.offset, data=data, is_whole=is_whole)
         return Got(part=part)
 
-    def _content(self, asked: Part) -> bytes | None:
+    def _content(self, asked: PartAsk) -> bytes | None:
         match asked.kind:
             case "entry":
                 return encode(self._where.entries.load(asked.name))
@@ -155,7 +155,7 @@ class StandbyDoor:
                 path = small_files(self._where).get(asked.name)
                 return None if path is None else _read(path)
 
-    def _record(self, asked: Record) -> AnyAnswer:
+    def _record(self, asked: RecordAsk) -> AnyAnswer:
         if MatchName.parse(asked.match_id) is None:
             return Lacks(why=say("standby.not-here", name=asked.match_id[:80]))
         try:
@@ -187,7 +187,7 @@ def version_of(waiting: Mapping[str, Application]) -> str:
     return hashlib.blake2b(encode(listed), digest_size=16).hexdigest()
 
 
-def unpacked(records: Path) -> tuple[str, ...]:
+def with_segments(records: Path) -> tuple[str, ...]:
     """Return the ids of the matches that have segments, and no packed record yet.
 
     Args:

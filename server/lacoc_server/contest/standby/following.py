@@ -17,15 +17,15 @@ import msgspec
 from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.copying import Taken, have, take
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_server.contest.kept.folder import ContestFolder, hash_of
 from lacoc_server.contest.kept.machine import Machine
 from lacoc_server.contest.kept.plans import open_stage, plans
 from lacoc_server.contest.kept.publish import entries_of
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Played, generation
-from lacoc_server.contest.standby.door import hashes, small_files, unpacked, version_of
-from lacoc_server.contest.standby.messages import Got, Kind, Part, Record, Step, There
+from lacoc_server.contest.standby.door import hashes, small_files, version_of, with_segments
+from lacoc_server.contest.standby.messages import Got, Kind, PartAsk, RecordAsk, StepAsk, There
 from lacoc_server.contest.standby.other import LacksIt, Other
 from lacoc_shared import codec
 from lacoc_shared.command.replacing import write
@@ -44,11 +44,11 @@ class _Changed(Exception):
     """Something has changed at the office while it was copied: the step is done again."""
 
 
-class Ended(Exception):
+class CopyingEnded(Exception):
     """The office goes on here, or this folder is no copy any more: nothing is copied."""
 
 
-class Copy(NamedTuple):
+class CopyState(NamedTuple):
     """How far a copy is."""
 
     at_ms: int
@@ -83,7 +83,10 @@ class Follower:
         self._applications = Applications(where.applications)
         self._facts = self._store.facts()
         self._generation = generation(self._facts)
-        self._open: set[str] = {*unpacked(where.records), *_missing(where.records, self._facts)}
+        self._open: set[str] = {
+            *with_segments(where.records),
+            *_missing(where.records, self._facts),
+        }
         """Ids of the matches whose records are not whole here."""
         self._wrong_contest: str | None = None
         """Hash of a contest file that can't be used here."""
@@ -95,12 +98,12 @@ class Follower:
         self._store.__exit__()
         self._applications.__exit__()
 
-    def step(self) -> Copy:
+    def step(self) -> CopyState:
         """Copy all that has changed; return how far the copy is.
 
         Raises:
             NotThere: if the office does not answer. What came before is kept; call this again.
-            Ended: if nothing is to be copied any more.
+            CopyingEnded: if nothing is to be copied any more.
             UserError: if the office is not the right one, or something can't be read or written.
         """
         for _ in range(_TRIES):
@@ -108,7 +111,7 @@ class Follower:
                 return self._step()
         raise UserError(say("standby.changes"))
 
-    def _step(self) -> Copy:
+    def _step(self) -> CopyState:
         self._ask_ended()
         at_ms = time.time_ns() // 1_000_000
         there = self._ask_step()
@@ -128,7 +131,7 @@ class Follower:
             machine.save(self._where.machine, found)
         names = {fact.record for fact in self._facts if isinstance(fact, Played) and fact.record}
         whole = sum(name.removesuffix(".mcap") not in self._open for name in names)
-        return Copy(found.copied_ms, len(self._facts), whole, len(self._open))
+        return CopyState(found.copied_ms, len(self._facts), whole, len(self._open))
 
     def _mark(self) -> None:
         """Mark this folder as a copy, before anything of another machine is written into it."""
@@ -139,12 +142,12 @@ class Follower:
     def _ask_ended(self) -> Machine:
         found = machine.read(self._where.machine)
         if found.ends:
-            raise Ended
+            raise CopyingEnded
         return found
 
     def _ask_step(self) -> There:
         last = self._store.bodies(max(0, len(self._facts) - 1), 0)
-        step = Step(
+        step = StepAsk(
             generation=self._generation,
             address=self._address,
             facts=len(self._facts),
@@ -159,7 +162,7 @@ class Follower:
     def _copy_entries(self, wanted: Collection[str]) -> None:
         for one in sorted(wanted):
             if not (self._where.entries.path / one).exists():
-                entry = codec.decode(self._fetch("entry", one), Entry, _ENTRY_MAX_BYTES)
+                entry = codec.decode(self._fetch("entry", one), ContestEntry, _ENTRY_MAX_BYTES)
                 if entry.hash != one:
                     raise UserError(say("contest.entry-changed", folder=one))
                 self._where.entries.save(entry)
@@ -203,7 +206,7 @@ class Follower:
         for match_id in sorted(self._open):
             while True:
                 self._ask_ended()
-                asked = Record(
+                asked = RecordAsk(
                     generation=self._generation, match_id=match_id, have=have(records, match_id)
                 )
                 try:
@@ -226,14 +229,14 @@ class Follower:
             if team in here and here[team].at_ms == at_ms:
                 continue
             data = self._fetch("application", team)
-            handed_ms, entry = codec.decode(data, tuple[int, Entry], _ENTRY_MAX_BYTES)
+            handed_ms, entry = codec.decode(data, tuple[int, ContestEntry], _ENTRY_MAX_BYTES)
             self._applications.put(team, entry, handed_ms)
 
     def _fetch(self, kind: Kind, name: str) -> bytes:
         data = b""
         while True:
             self._ask_ended()
-            asked = Part(generation=self._generation, kind=kind, name=name, offset=len(data))
+            asked = PartAsk(generation=self._generation, kind=kind, name=name, offset=len(data))
             try:
                 part = self._other.ask(asked, Got).part
             except LacksIt:

@@ -4,7 +4,7 @@ import threading
 from contextlib import ExitStack
 from typing import Self
 
-from lacoc_server.contest.standby.messages import Knock, Known
+from lacoc_server.contest.standby.messages import KnockAsk, OfficeThere
 from lacoc_server.contest.standby.other import LacksIt, NotThere, Other, OtherToken
 from lacoc_server.contest.standby.sealing import Sealing
 from lacoc_server.contest.standby.tenure import Tenure
@@ -59,7 +59,7 @@ class Lookout:
                 other = self._opened.enter_context(Other(address, self._sealing))
                 self._others[address] = other
             try:
-                asked = Knock(generation=self._tenure.generation)
-                self._tenure.hear(self._others[address].ask(asked, Known).generation)
+                asked = KnockAsk(generation=self._tenure.generation)
+                self._tenure.hear(self._others[address].ask(asked, OfficeThere).generation)
             except (NotThere, OtherToken, LacksIt):
                 continue

@@ -19,7 +19,9 @@ FILES = ("contest", "secrets", "code", "contacts", "stand-ins")
 stand in."""
 
 
-class Ask(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="ask"):
+class StandbyAsk(
+    msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="ask"
+):
     """What all requests have."""
 
     generation: Annotated[int, msgspec.Meta(ge=0)]
@@ -27,11 +29,11 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True,
     that is asked with a later generation ends."""
 
 
-class Knock(Ask, frozen=True, kw_only=True, tag="knock"):
-    """A question whether an office is there. The answer is `Known`."""
+class KnockAsk(StandbyAsk, frozen=True, kw_only=True, tag="knock"):
+    """A question whether an office is there. The answer is `OfficeThere`."""
 
 
-class Step(Ask, frozen=True, kw_only=True, tag="step"):
+class StepAsk(StandbyAsk, frozen=True, kw_only=True, tag="step"):
     """A question of the second machine: what is there that I lack? The answer is `There`."""
 
     address: str
@@ -44,7 +46,7 @@ class Step(Ask, frozen=True, kw_only=True, tag="step"):
     """Version of the list of applications that it has."""
 
 
-class Part(Ask, frozen=True, kw_only=True, tag="part"):
+class PartAsk(StandbyAsk, frozen=True, kw_only=True, tag="part"):
     """A question for a part of something. The answer is `Copied`."""
 
     kind: Kind
@@ -53,7 +55,7 @@ class Part(Ask, frozen=True, kw_only=True, tag="part"):
     """Where the part begins [bytes]."""
 
 
-class Record(Ask, frozen=True, kw_only=True, tag="record"):
+class RecordAsk(StandbyAsk, frozen=True, kw_only=True, tag="record"):
     """A question for the next part of a match's record, as `Copy` of an office to a court."""
 
     match_id: str
@@ -61,10 +63,10 @@ class Record(Ask, frozen=True, kw_only=True, tag="record"):
     """Bytes that are here already, by the file's name."""
 
 
-AnyAsk = Knock | Step | Part | Record
+AnyAsk = KnockAsk | StepAsk | PartAsk | RecordAsk
 
 
-class Known(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="known"):
+class OfficeThere(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="known"):
     """An office is there."""
 
     generation: int
@@ -99,4 +101,4 @@ class Lacks(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="
     why: Phrase
 
 
-AnyAnswer = Known | There | Got | Lacks
+AnyAnswer = OfficeThere | There | Got | Lacks

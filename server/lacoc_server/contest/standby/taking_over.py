@@ -13,8 +13,8 @@ from lacoc_server.contest.kept.machine import Machine, Retired
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import AnyFact, Called, generation
 from lacoc_server.contest.league.timetable.calling import is_open_call
-from lacoc_server.contest.standby.door import unpacked
-from lacoc_server.contest.standby.messages import Knock, Known
+from lacoc_server.contest.standby.door import with_segments
+from lacoc_server.contest.standby.messages import KnockAsk, OfficeThere
 from lacoc_server.contest.standby.other import NotThere, Other, OtherToken
 from lacoc_server.contest.standby.sealing import Sealing
 from lacoc_shared.mistakes import UserError
@@ -81,7 +81,7 @@ def _check_gone(other: Other) -> None:
         UserError: if it does.
     """
     try:
-        other.ask(Knock(generation=0), Known)
+        other.ask(KnockAsk(generation=0), OfficeThere)
     except (NotThere, OtherToken):
         return
     raise UserError(say("standby.office-is-there", at=other.address))
@@ -121,7 +121,7 @@ def set_aside(records: Path, facts: Sequence[AnyFact]) -> None:
         facts: the facts.
     """
     calls = {fact.id for fact in facts if isinstance(fact, Called)}
-    for match_id in unpacked(records):
+    for match_id in with_segments(records):
         segments = segment_paths(records, match_id)
         try:
             assigned = Record.read(segments).header.setup.assigned

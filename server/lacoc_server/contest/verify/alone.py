@@ -14,7 +14,7 @@ from lacoc_arenas import brains
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_server.contest.headless.pool import bot_of
-from lacoc_server.contest.kept.entries import Entry
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_server.simulate.headless import Seated, simulate
 from lacoc_server.simulate.inputs import Player, whole_match
 from lacoc_shared import __version__
@@ -31,12 +31,12 @@ class Side(NamedTuple):
     """Who played in a seat, as facts and entries say."""
 
     team: str
-    entry: Entry
+    entry: ContestEntry
     steer: str
     """The bot that steered the team if its entry has none; "": the facts do not name one."""
 
 
-class Checked(NamedTuple):
+class InputCheck(NamedTuple):
     """What came of a check of a game's inputs."""
 
     wrong: tuple[Phrase, ...] = ()
@@ -51,7 +51,7 @@ class _NoSheet(Exception):
 
 def check_inputs(
     record: Record, arena: Arena, sides: Sequence[Side], late_ticks: int, *, programs: bool
-) -> Checked:
+) -> InputCheck:
     """Check that the inputs of a record are those that `simulate` puts in.
 
     Args:
@@ -66,8 +66,8 @@ def check_inputs(
     beat = _first_difference(record, _players(sides, others, late_ticks))
     if beat is not None:
         if version != __version__:
-            return Checked(unchecked=(say("unchecked.inputs", there=version, here=__version__),))
-        return Checked(wrong=(say("verify.of-inputs", beat=beat),))
+            return InputCheck(unchecked=(say("unchecked.inputs", there=version, here=__version__),))
+        return InputCheck(wrong=(say("verify.of-inputs", beat=beat),))
     wrong: list[Phrase] = []
     unchecked: list[Phrase] = []
     for seat, side in enumerate(sides):
@@ -85,7 +85,7 @@ def check_inputs(
         else:
             why = say("unchecked.version", team=side.team, there=version, here=__version__)
             unchecked.append(why)
-    return Checked(tuple(wrong), tuple(unchecked))
+    return InputCheck(tuple(wrong), tuple(unchecked))
 
 
 def ends_alike(

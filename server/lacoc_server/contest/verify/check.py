@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lacoc_server.contest.league.facts import AnyFact, Played
-from lacoc_server.contest.verify.games import Found, Game, check_game, games_of
+from lacoc_server.contest.verify.games import GameCheck, GameToCheck, check_game, games_of
 from lacoc_server.contest.verify.history import check_earlier, decisions
 from lacoc_server.contest.verify.published import check_published, other_sheet, read
 from lacoc_server.contest.verify.sampling import least_forged, sample
@@ -17,7 +17,7 @@ _LONGEST_S = 3600.0
 """Longest time that the proof of a game may take [s]."""
 
 
-class Checked(NamedTuple):
+class ContestCheck(NamedTuple):
     """What the check of a published contest found."""
 
     findings: tuple[Phrase, ...]
@@ -49,7 +49,7 @@ def check(
     seed: int = 0,
     jobs: int | None = None,
     programs: bool = False,
-) -> Checked:
+) -> ContestCheck:
     """Check a published contest.
 
     Args:
@@ -75,7 +75,7 @@ def check(
     found = [*_check_games(folder, games, ids, jobs, progress, programs)]
     findings += (one for game in found for one in game.wrong)
     sound = [game for game in found if not (game.wrong or game.unchecked)]
-    return Checked(
+    return ContestCheck(
         findings=tuple(findings),
         unchecked=(
             *filter(None, [other_sheet(folder)]),
@@ -101,12 +101,12 @@ def _steered(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
 
 def _check_games(
     folder: Path,
-    games: Sequence[Game],
+    games: Sequence[GameToCheck],
     proven: set[str],
     jobs: int | None,
     progress: Callable[[int, int], None],
     programs: bool,
-) -> Iterator[Found]:
+) -> Iterator[GameCheck]:
     with Workers(jobs, limit_s=_LONGEST_S) as workers:
         futures = [
             workers.submit(check_game, folder, game, game.played.id in proven, programs)
@@ -125,5 +125,5 @@ def _check_games(
                     pairing=played.pairing,
                     game=played.game,
                 )
-                yield Found(wrong=(failed,))
+                yield GameCheck(wrong=(failed,))
             progress(number, len(games))

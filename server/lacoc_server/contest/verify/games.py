@@ -10,17 +10,17 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.headless.play import late_ticks, outcome
 from lacoc_server.contest.headless.pool import setup_of
-from lacoc_server.contest.kept.entries import Entry, EntryFolder
+from lacoc_server.contest.kept.entries import ContestEntry, EntryFolder
 from lacoc_server.contest.kept.folder import hash_of
 from lacoc_server.contest.kept.publish import ENTRIES, RECORDS
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.verify.alone import Checked, Side, check_inputs, ends_alike
+from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.verify.alone import InputCheck, Side, check_inputs, ends_alike
 from lacoc_server.contest.verify.history import call_of, files_of
 from lacoc_server.journal.replay import verify as prove
-from lacoc_server.journal.verdict import Kind, Verdict
+from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_shared.command import regular
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.mistakes import UserError
@@ -38,7 +38,7 @@ _ROUTINE = ("ready", "start", "official", "next")
 """Decisions that each match at a court has; they change no result."""
 
 
-class Game(msgspec.Struct, frozen=True, kw_only=True):
+class GameToCheck(msgspec.Struct, frozen=True, kw_only=True):
     """A game to check: what the facts say about it. A process can take it."""
 
     played: Played
@@ -54,7 +54,7 @@ class Game(msgspec.Struct, frozen=True, kw_only=True):
     """By seat: hashes of the entries with which the team may have played."""
 
 
-class Found(msgspec.Struct, frozen=True, kw_only=True):
+class GameCheck(msgspec.Struct, frozen=True, kw_only=True):
     """What the check of a game found."""
 
     wrong: tuple[Phrase, ...] = ()
@@ -67,12 +67,12 @@ class Found(msgspec.Struct, frozen=True, kw_only=True):
     """Whether a bot has entered for one of the teams, or steered it."""
 
 
-def games_of(facts: Sequence[AnyFact]) -> list[Game]:
+def games_of(facts: Sequence[AnyFact]) -> list[GameToCheck]:
     """Return all games that were played, also void ones, in the order of their facts."""
     return [_game(facts, fact) for fact in facts if isinstance(fact, Played)]
 
 
-def _game(facts: Sequence[AnyFact], played: Played) -> Game:
+def _game(facts: Sequence[AnyFact], played: Played) -> GameToCheck:
     call = call_of(facts, played)
     before = facts[: facts.index(call or played)]
     contest = compute(before, FORMATS)
@@ -82,14 +82,16 @@ def _game(facts: Sequence[AnyFact], played: Played) -> Game:
             if match.pairing.id != played.pairing:
                 continue
             if (why := _why_not(match, call, played)) is not None:
-                return Game(played=played, plan=None, why_not=why, call=call, files=files)
+                return GameToCheck(played=played, plan=None, why_not=why, call=call, files=files)
             late = late_ticks(contest, before, match)
-            return Game(played=played, plan=view.plan, call=call, late_ticks=late, files=files)
+            return GameToCheck(
+                played=played, plan=view.plan, call=call, late_ticks=late, files=files
+            )
     why = say("due.no-pairing")
-    return Game(played=played, plan=None, why_not=why, call=call, files=files)
+    return GameToCheck(played=played, plan=None, why_not=why, call=call, files=files)
 
 
-def _why_not(match: Match, call: Called | None, played: Played) -> Phrase | None:
+def _why_not(match: ContestMatch, call: Called | None, played: Played) -> Phrase | None:
     """Say why a game was not the next one of its match; None: it was."""
     for game in match.games:
         if game.number == played.game:
@@ -103,7 +105,7 @@ def _why_not(match: Match, call: Called | None, played: Played) -> Phrase | None
     return None
 
 
-def check_game(folder: Path, game: Game, proven: bool, programs: bool = False) -> Found:
+def check_game(folder: Path, game: GameToCheck, proven: bool, programs: bool = False) -> GameCheck:
     """Compare the result of a game with its record.
 
     Args:
@@ -115,26 +117,26 @@ def check_game(folder: Path, game: Game, proven: bool, programs: bool = False) -
     played = game.played
     file, pairing, number = played.record, played.pairing, played.game
     if not file:
-        return Found(wrong=(say("verify.no-record", pairing=pairing, game=number),))
+        return GameCheck(wrong=(say("verify.no-record", pairing=pairing, game=number),))
     if game.why_not is not None:
         why = game.why_not
-        return Found(wrong=(say("verify.not-due", pairing=pairing, game=number, why=why),))
+        return GameCheck(wrong=(say("verify.not-due", pairing=pairing, game=number, why=why),))
     try:
         data = regular.read(folder, RECORDS, file, most_bytes=RECORD_BYTES)
         if played.record_hash and hash_of(data) != played.record_hash:
             changed = say("verify.record-changed", record=file, pairing=pairing, game=number)
-            return Found(wrong=(changed,))
+            return GameCheck(wrong=(changed,))
         record = Record.read([folder / RECORDS / file])
         found = _compared(folder, game, record, programs)
         if not found.wrong and proven:
             return _proven(folder, game, record, found, programs)
     except UserError as error:
         bad = say("verify.bad-record", record=file, pairing=pairing, game=number, why=error.phrase)
-        return Found(wrong=(bad,))
+        return GameCheck(wrong=(bad,))
     return found
 
 
-def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found:
+def _compared(folder: Path, game: GameToCheck, record: Record, programs: bool) -> GameCheck:
     """Compare a game with its record, without physics; arguments as in `check_game`.
 
     Raises:
@@ -151,13 +153,13 @@ def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found
     has_bots = game.call is not None or all(one.entry.bot for one in sides)
     if not wrong and game.played.steer and has_bots:
         wrong.append(say("verify.of-steer", bot=game.played.steer))
-    checked = Checked()
+    checked = InputCheck()
     if not wrong and game.call is None:
         checked = check_inputs(record, arena, sides, game.late_ticks, programs=programs)
     elif not wrong:
         at_court = (say("unchecked.court", team=one.team) for one in sides if one.entry.bot)
-        checked = Checked(unchecked=tuple(at_court))
-    return Found(
+        checked = InputCheck(unchecked=tuple(at_court))
+    return GameCheck(
         wrong=tuple(_other_game(game, what) for what in (*wrong, *checked.wrong)),
         unchecked=tuple(_unchecked(game, why) for why in checked.unchecked),
         decided=() if wrong or game.call is None else tuple(_decisions(record, game.played)),
@@ -165,7 +167,9 @@ def _compared(folder: Path, game: Game, record: Record, programs: bool) -> Found
     )
 
 
-def _proven(folder: Path, game: Game, record: Record, found: Found, programs: bool) -> Found:
+def _proven(
+    folder: Path, game: GameToCheck, record: Record, found: GameCheck, programs: bool
+) -> GameCheck:
     """Prove the record of a game, and add what that found.
 
     With another arithmetic a forger can choose between paths that are a little apart. So a game
@@ -191,7 +195,7 @@ def _proven(folder: Path, game: Game, record: Record, found: Found, programs: bo
             game=played.game,
         )
         return msgspec.structs.replace(found, wrong=(said,))
-    if verdict.kind is Kind.SAME or game.call is not None or found.unchecked:
+    if verdict.kind is VerdictKind.SAME or game.call is not None or found.unchecked:
         return found
     sides = _sides(folder, game, record)
     if ends_alike(record, _arena(game), sides, game.late_ticks, programs=programs):
@@ -200,7 +204,7 @@ def _proven(folder: Path, game: Game, record: Record, found: Found, programs: bo
     return msgspec.structs.replace(found, unchecked=(why,))
 
 
-def _arena(game: Game) -> Arena:
+def _arena(game: GameToCheck) -> Arena:
     """Load the arena of a game; an installed one alone, because facts must not name code to run.
 
     Raises:
@@ -210,7 +214,7 @@ def _arena(game: Game) -> Arena:
     return arenas.load_installed(game.plan.arena, game.plan.arena_settings)
 
 
-def _sides(folder: Path, game: Game, record: Record) -> list[Side]:
+def _sides(folder: Path, game: GameToCheck, record: Record) -> list[Side]:
     """Return who played, by seat; a team without an entry that fits the record is left out."""
     entries = EntryFolder(folder / ENTRIES)
     sides: list[Side] = []
@@ -228,7 +232,7 @@ def _teams(sides: Sequence[Side]) -> set[str]:
     return {one.team for one in sides}
 
 
-def _other_game(game: Game, what: Phrase) -> Phrase:
+def _other_game(game: GameToCheck, what: Phrase) -> Phrase:
     played = game.played
     return say(
         "verify.other-game",
@@ -239,11 +243,11 @@ def _other_game(game: Game, what: Phrase) -> Phrase:
     )
 
 
-def _unchecked(game: Game, why: Phrase) -> Phrase:
+def _unchecked(game: GameToCheck, why: Phrase) -> Phrase:
     return say("verify.unchecked", pairing=game.played.pairing, game=game.played.game, why=why)
 
 
-def _differences(game: Game, arena: Arena, record: Record) -> Iterator[Phrase]:
+def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Phrase]:
     """Yield each difference between a record and what the facts say about its game."""
     played = game.played
     setup, result = record.header.setup, record.result
@@ -275,7 +279,7 @@ def _differences(game: Game, arena: Arena, record: Record) -> Iterator[Phrase]:
         yield say("verify.of-result")
 
 
-def _is_of_court(record: Record, setup: Setup, game: Game, arena: Arena) -> bool:
+def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) -> bool:
     """Return whether a record is of the court of the call; or without a call, of no court."""
     if game.call is not None:
         return setup.court == game.call.court
@@ -320,7 +324,7 @@ def _content(join: JoinSeat) -> tuple[object, ...]:
     return (join.team, *(None if file is None else file.data for file in files))
 
 
-def _load(entries: EntryFolder, entry: str) -> Entry | None:
+def _load(entries: EntryFolder, entry: str) -> ContestEntry | None:
     try:
         return entries.load(entry)
     except UserError:

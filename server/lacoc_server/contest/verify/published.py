@@ -85,12 +85,12 @@ def other_sheet(folder: Path) -> Phrase | None:
 def _version(folder: Path) -> int:
     """Return the version of the sheet's layout; ours if it can't be read: that is told later."""
     try:
-        return msgspec.json.decode(_sheet(folder), type=_Layout).version
+        return msgspec.json.decode(_sheet(folder), type=_AnySheet).version
     except (UserError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
         return sheets.VERSION
 
 
-class _Layout(msgspec.Struct):
+class _AnySheet(msgspec.Struct):
     """The one entry that sheets of all versions have."""
 
     version: int

@@ -39,7 +39,7 @@ class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
     strays: int
 
 
-class _Saved(msgspec.Struct, frozen=True, array_like=True):
+class _SavedMatch(msgspec.Struct, frozen=True, array_like=True):
     """A whole match; the fields from `phase` on are those of `MatchState`."""
 
     format: int
@@ -71,7 +71,7 @@ class _Saved(msgspec.Struct, frozen=True, array_like=True):
 _SEAT_FIELDS = _SavedSeat.__struct_fields__
 _PLAIN_FIELDS = tuple(
     name
-    for name in _Saved.__struct_fields__
+    for name in _SavedMatch.__struct_fields__
     if name not in ("format", "made_of", "physics", "places", "history", "seats")
 )
 _MOST_BYTES = 1 << 28
@@ -81,7 +81,7 @@ _MOST_BYTES = 1 << 28
 def save(match: MatchState) -> bytes:
     """Return the match as bytes; see `Match.save`."""
     return encode(
-        _Saved(
+        _SavedMatch(
             _FORMAT,
             _made_of(match),
             match.physics.save() if _has_robots(match) else None,
@@ -95,7 +95,7 @@ def save(match: MatchState) -> bytes:
 
 def load(match: MatchState, data: bytes) -> None:
     """Let the match go on from bytes; see `Match.load`."""
-    saved = decode(data, _Saved, _MOST_BYTES)
+    saved = decode(data, _SavedMatch, _MOST_BYTES)
     if (saved.format, saved.made_of) != (_FORMAT, _made_of(match)):
         raise ValueError(
             "it was saved by another version, or with another arena, settings or limits"

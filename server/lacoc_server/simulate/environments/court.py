@@ -34,7 +34,7 @@ _MOST = 1e4
 """Bound of points, and of times without a limit."""
 
 
-class Court:
+class AgentCourt:
     """A game with its robots, and the form of what agents see and do.
 
     Args:

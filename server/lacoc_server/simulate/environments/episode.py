@@ -15,7 +15,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import Key
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
-from lacoc_server.simulate.environments.opening import Opening, begun_at, places
+from lacoc_server.simulate.environments.opening import Opening, begun_at, start_place_count
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.simulate.headless import to_play
 from lacoc_server.simulate.inputs import closing
@@ -39,7 +39,7 @@ _PRESSED = Struct("<IBBB")
 _MOST_BYTES = 1 << 28
 
 
-class _Saved(msgspec.Struct, frozen=True, array_like=True):
+class _SavedEpisode(msgspec.Struct, frozen=True, array_like=True):
     opening: Opening
     angles: bool
     robots: bytes
@@ -234,7 +234,7 @@ class Episode:
         self.require_begun()
         seats = len(self._seqs) if self.begun.angles else 0
         return encode(
-            _Saved(
+            _SavedEpisode(
                 self.opening,
                 self.begun.angles,
                 self.begun.robots,
@@ -261,7 +261,7 @@ class Episode:
                 the value is of another type. The episode is then as it was.
         """
         try:
-            saved = decode(saved_bytes(data), _Saved, _MOST_BYTES)
+            saved = decode(saved_bytes(data), _SavedEpisode, _MOST_BYTES)
             extra = decode(saved.extra, kind, _MOST_BYTES)
             if saved.angles != self.begun.angles:
                 raise BadMessage("only one of the two episodes is steered by angles")
@@ -269,7 +269,7 @@ class Episode:
                 raise BadMessage("it lacks the angles that the robots move to")
             if saved.robots != self.begun.robots:
                 raise BadMessage("it has other robots or gaits")
-            if not 0 <= saved.opening.place < places(self.begun.arena):
+            if not 0 <= saved.opening.place < start_place_count(self.begun.arena):
                 raise BadMessage("the arena has no such start place")
             before = self.opening
             self._open(saved.opening)

@@ -40,7 +40,7 @@ def draw(arena: Arena, chance: np.random.Generator) -> Opening:
     seats = len(arena.seats)
     late = chance.integers(0, MOST_LATE_TICKS + 1, seats)
     return Opening(
-        place=int(chance.integers(0, places(arena))),
+        place=int(chance.integers(0, start_place_count(arena))),
         late_ticks=tuple(int(ticks) for ticks in late),
         seat=int(chance.integers(0, seats)),
     )
@@ -85,7 +85,7 @@ def with_options(drawn: Opening, options: dict[str, Any], arena: Arena) -> Openi
     seats = [seat.id for seat in arena.seats]
     place, late, seat = drawn.place, drawn.late_ticks, drawn.seat
     if "place" in options:
-        place = whole("place", options["place"], 0, places(arena) - 1)
+        place = whole("place", options["place"], 0, start_place_count(arena) - 1)
     if "late_ticks" in options:
         late = _late_ticks(options["late_ticks"], len(seats), arena.match.duration_s)
     if "seat" in options:
@@ -113,7 +113,7 @@ def _late_ticks(given: Any, seats: int, duration_s: float) -> tuple[int, ...]:
     return late
 
 
-def places(arena: Arena) -> int:
+def start_place_count(arena: Arena) -> int:
     """Return how many start places an opening can choose from: 1 in a game that lists none."""
     found = _listed(arena.settings)
     return len(found[1]) if found else 1

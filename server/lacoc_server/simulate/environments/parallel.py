@@ -10,9 +10,9 @@ from pettingzoo import ParallelEnv
 
 from lacoc_arenas.learned.arguments import table, whole
 from lacoc_arenas.learned.senses import Numbers, Senses
-from lacoc_server.simulate.environments.court import Actions, Court, lead
-from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.court import Actions, AgentCourt, lead
 from lacoc_server.simulate.environments.opening import known_options
+from lacoc_server.simulate.environments.painter import Painter
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -27,8 +27,8 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         arena: name or folder of the arena.
         render_mode: "rgb_array", or None.
         settings: entries that replace those of the arena file.
-        robots: the robot of each seat; see `Court`.
-        actions: "keys" or "angles"; see `Court`.
+        robots: the robot of each seat; see `AgentCourt`.
+        actions: "keys" or "angles"; see `AgentCourt`.
         restart: with keys, whether [x] is one more action.
         beats: beats of 20 ms in a step.
 
@@ -52,7 +52,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         restart: bool = False,
         beats: int = 1,
     ) -> None:
-        self.court = Court(arena, settings, robots, actions, restart, beats)
+        self.court = AgentCourt(arena, settings, robots, actions, restart, beats)
         self.metadata = {
             **type(self).metadata,
             "name": f"lacoc_{self.court.arena.name.replace('-', '_')}_v0",
@@ -63,7 +63,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         self.agents: list[str] = []
         self._episode = self.court.episode()
         self._senses = Senses(self._episode.match.sheet())
-        self._drawn = Drawn(render_mode)
+        self._painter = Painter(render_mode)
         self.observation_spaces = {
             agent: self.court.observation_space(self._senses, seat)
             for seat, agent in enumerate(self.possible_agents)
@@ -198,11 +198,11 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return a picture, an array (height, width, 3); None without a render mode."""
         match = self._episode.match
-        return self._drawn.draw(match.physics, match.game, self._episode.frame.markers)
+        return self._painter.draw(match.physics, match.game, self._episode.frame.markers)
 
     def close(self) -> None:
         """Free what draws pictures."""
-        self._drawn.close()
+        self._painter.close()
 
     def _seen(self) -> dict[str, Numbers]:
         left, right = self.possible_agents

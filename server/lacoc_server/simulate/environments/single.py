@@ -10,9 +10,9 @@ import numpy.typing as npt
 from lacoc_arenas import brains
 from lacoc_arenas.bot import Brain, Key
 from lacoc_arenas.learned.senses import Numbers, Senses
-from lacoc_server.simulate.environments.court import Actions, Court, lead
-from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.court import Actions, AgentCourt, lead
 from lacoc_server.simulate.environments.opening import Opening, known_options
+from lacoc_server.simulate.environments.painter import Painter
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
@@ -59,11 +59,11 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         actions: Actions = "keys",
         restart: bool = False,
         beats: int = 1,
-        court: Court | None = None,
+        court: AgentCourt | None = None,
     ) -> None:
         if actions != "keys":
             raise UserError(say("environment.bot-keys"))
-        self.court = court or Court(arena, settings, robots, actions, restart, beats)
+        self.court = court or AgentCourt(arena, settings, robots, actions, restart, beats)
         self.metadata = {**type(self).metadata, "render_fps": 50 / self.court.beats}
         self.render_mode = render_mode
         self.episode = self.court.episode()
@@ -71,7 +71,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         self._senses = Senses(self._sheet)
         self._opponent = opponent
         self._bot = brains.find(self.court.arena, opponent)
-        self._drawn = Drawn(render_mode)
+        self._painter = Painter(render_mode)
         self.observation_space = self.court.observation_space(self._senses, 0)
         self.action_space = self.court.action_space(0)
         self._brain: Brain
@@ -198,12 +198,12 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return a picture, an array (height, width, 3); None without a render mode."""
-        return self.draw(self._drawn)
+        return self.draw(self._painter)
 
-    def draw(self, drawn: Drawn) -> npt.NDArray[np.uint8] | None:
-        """Return the picture of the present frame, drawn by `drawn`."""
+    def draw(self, painter: Painter) -> npt.NDArray[np.uint8] | None:
+        """Return the picture of the present frame, drawn by `painter`."""
         match = self.episode.match
-        return drawn.draw(match.physics, match.game, self.episode.frame.markers)
+        return painter.draw(match.physics, match.game, self.episode.frame.markers)
 
     def check(self, action: Any) -> None:
         """Check that an episode has begun, and that the action space has an action.
@@ -216,7 +216,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     def close(self) -> None:
         """Free what draws pictures."""
-        self._drawn.close()
+        self._painter.close()
 
     def _begin(self, opening: Opening) -> None:
         """Begin an episode with an opening."""

@@ -12,16 +12,16 @@ from gymnasium.vector.utils import batch_space
 
 from lacoc_arenas.learned.arguments import short, whole
 from lacoc_arenas.learned.senses import Numbers
-from lacoc_server.simulate.environments.court import Court
-from lacoc_server.simulate.environments.drawn import Drawn
+from lacoc_server.simulate.environments.court import AgentCourt
 from lacoc_server.simulate.environments.opening import known_options
+from lacoc_server.simulate.environments.painter import Painter
 from lacoc_server.simulate.environments.single import LacocEnv
 from lacoc_server.simulate.environments.walk import WalkEnv
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 
-class Row(Protocol):
+class RowEnvironment(Protocol):
     """An environment of one agent, as `Rows` uses it."""
 
     OPTIONS: tuple[str, ...]
@@ -44,11 +44,11 @@ class Row(Protocol):
     def check(self, action: Any) -> None:
         """Check that an episode has begun, and that the action space has an action."""
 
-    def draw(self, drawn: Drawn) -> npt.NDArray[np.uint8] | None:
+    def draw(self, painter: Painter) -> npt.NDArray[np.uint8] | None:
         """Return a picture."""
 
 
-OneRow = TypeVar("OneRow", bound=Row)
+OneRow = TypeVar("OneRow", bound=RowEnvironment)
 
 
 class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
@@ -89,7 +89,7 @@ class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
         used = whole("threads", threads, 0) or os.cpu_count() or 1
         self._others = min(used, num_envs) - 1
         self._threads = self._start_threads()
-        self._drawn = Drawn(render_mode)  # its camera fits all rows: they have the same model
+        self._painter = Painter(render_mode)  # its camera fits all rows: they have the same model
 
     def _start_threads(self) -> ThreadPoolExecutor:
         return ThreadPoolExecutor(max(1, self._others), "environment-rows")
@@ -217,14 +217,14 @@ class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
             return None
         pictures = []
         for row in self.rows:
-            picture = row.draw(self._drawn)
+            picture = row.draw(self._painter)
             assert picture is not None
             pictures.append(picture)
         return tuple(pictures)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Free what draws pictures, and the threads."""
-        self._drawn.close()
+        self._painter.close()
         self._threads.shutdown()
 
 
@@ -259,7 +259,7 @@ class LacocVectorEnv(Rows[LacocEnv]):
         beats: int = 1,
     ) -> None:
         count = whole("num_envs", num_envs, 1)
-        court = Court(arena, settings, robots, "keys", restart, beats)
+        court = AgentCourt(arena, settings, robots, "keys", restart, beats)
         rows = [LacocEnv(opponent=opponent, court=court) for _ in range(count)]
         super().__init__(rows, render_mode, threads)
 

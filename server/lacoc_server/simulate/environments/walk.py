@@ -14,8 +14,8 @@ from lacoc_arenas.learned.senses import Numbers
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate.environments.court import shares
-from lacoc_server.simulate.environments.drawn import Drawn
 from lacoc_server.simulate.environments.episode import saved_bytes
+from lacoc_server.simulate.environments.painter import Painter
 from lacoc_server.simulate.environments.steered import Steered
 from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, practice_field
 from lacoc_server.trial.figures import measure
@@ -70,7 +70,7 @@ _BODY = {
 """What is seen of the body in a walk by angles, and the bounds of its numbers."""
 
 
-class _Saved(msgspec.Struct, frozen=True, array_like=True):
+class _SavedWalk(msgspec.Struct, frozen=True, array_like=True):
     model: str
     world: bytes
     target: Posture
@@ -178,7 +178,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         limits = np.radians(np.array(self._spec.ranges_deg))
         self._middle = (limits[:, 0] + limits[:, 1]) / 2
         self._half = (limits[:, 1] - limits[:, 0]) / 2
-        self._drawn = Drawn(render_mode)
+        self._painter = Painter(render_mode)
         joints = self._spec.joints
         shape = (postures, joints) if self._tables else (joints,)
         self._shape = shape
@@ -292,7 +292,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         """
         self._require_begun()
         return encode(
-            _Saved(
+            _SavedWalk(
                 self._world.model_hash,
                 self._world.save(),
                 self._drive.target,
@@ -312,7 +312,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
                 was.
         """
         try:
-            was = decode(saved_bytes(saved), _Saved, 1 << 20)
+            was = decode(saved_bytes(saved), _SavedWalk, 1 << 20)
             if was.model != self._world.model_hash:
                 raise ValueError("another robot was saved")
             self._world.load(was.world)
@@ -326,12 +326,12 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return a picture, an array (height, width, 3); None without a render mode."""
-        return self.draw(self._drawn)
+        return self.draw(self._painter)
 
-    def draw(self, drawn: Drawn) -> npt.NDArray[np.uint8] | None:
-        """Return the picture of the present state, drawn by `drawn`."""
+    def draw(self, painter: Painter) -> npt.NDArray[np.uint8] | None:
+        """Return the picture of the present state, drawn by `painter`."""
         game = self._arena.game
-        return drawn.draw(self._world, game, pack_states((0,) * len(game.markers)))
+        return painter.draw(self._world, game, pack_states((0,) * len(game.markers)))
 
     def check(self, action: Any) -> None:
         """Check that an episode has begun, and that the action space has an action.
@@ -344,7 +344,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     def close(self) -> None:
         """Free what draws pictures."""
-        self._drawn.close()
+        self._painter.close()
 
     def _require_begun(self) -> None:
         if not self._has_begun:

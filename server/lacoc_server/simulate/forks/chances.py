@@ -18,10 +18,10 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Match
 from lacoc_server.simulate.forks import odds
-from lacoc_server.simulate.forks.jobs import bots_of, opened
-from lacoc_server.simulate.forks.line import Change, Line, of_bot
-from lacoc_server.simulate.forks.odds import Moment
-from lacoc_server.simulate.forks.origin import Source
+from lacoc_server.simulate.forks.jobs import bots_of, opened_record
+from lacoc_server.simulate.forks.line import ForkChange, ForkLine, of_bot
+from lacoc_server.simulate.forks.odds import MomentOdds
+from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.simulate.software import folder_hash, software
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Frame
@@ -40,11 +40,11 @@ class Odds(msgspec.Struct, frozen=True, kw_only=True):
     format: int = FORMAT
     match_id: str
     record_hash: str
-    """Hash of the record (`origin.Source.hash`)."""
+    """Hash of the record (`origin.ForkSource.hash`)."""
     seats: tuple[str, str]
     bots: tuple[str, str]
     """Who plays the forks, by seat."""
-    moments: tuple[Moment, ...]
+    moments: tuple[MomentOdds, ...]
     """In their order. If the match has a result, the last one is its end: chance 1, 0.5 or 0."""
 
 
@@ -59,7 +59,7 @@ class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):
     """Folder of the arena, if it is not installed."""
 
 
-class Engine(Protocol):
+class ForkEngine(Protocol):
     """What plays forks: processes of this machine (`studio.workers`)."""
 
     def submit(
@@ -80,8 +80,8 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     arena: str | None = None
 
 
-def compute(
-    wish: Wish, engine: Engine, known: Odds | None, progress: Callable[[int, int], None]
+def compute_odds(
+    wish: Wish, engine: ForkEngine, known: Odds | None, progress: Callable[[int, int], None]
 ) -> Iterator[Odds]:
     """Compute the odds of a record.
 
@@ -98,11 +98,11 @@ def compute(
         UserError: if the record can't be forked, does not have two seats, or has no play, or if a
             bot has a mistake.
     """
-    source = opened(wish.file)
+    source = opened_record(wish.file)
     first, second = _two_seats(source)
-    course = Course(source)
+    course = MatchCourse(source)
     kept = _still_known(source, wish, known)
-    moments: dict[int, Moment] = {}
+    moments: dict[int, MomentOdds] = {}
     ends = course.end
     if ends is not None:
         moments[ends.beat] = ends
@@ -130,7 +130,7 @@ def compute(
         yield result()
 
 
-class Course:
+class MatchCourse:
     """The course of a recorded match: its beats of play, their clock, and its end.
 
     Args:
@@ -140,7 +140,7 @@ class Course:
         UserError: if it has no beat of play.
     """
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: ForkSource) -> None:
         record = source.record
         frames = [decode(encoded, Frame) for _, encoded in record.frames]
         clocks = {one.beat: one.clock_ticks for one in frames if one.phase == Phase.PLAYING}
@@ -168,7 +168,7 @@ def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
         return error.phrase
 
 
-def key(source: Source, beat: int, bots: tuple[str, str], arena: str | None = None) -> str:
+def key(source: ForkSource, beat: int, bots: tuple[str, str], arena: str | None = None) -> str:
     """Return the hash of all that decides how the forks of a moment go.
 
     Args:
@@ -201,15 +201,15 @@ def margin(result: Result, seats: Sequence[str]) -> float:
 
 
 def _margins(job: ChanceJob) -> Iterator[float]:
-    source = opened(job.file)
+    source = opened_record(job.file)
     folder = Path(job.arena) if job.arena else None
     seats = _two_seats(source)
     match, saved = _match_at(job.file, job.beat, job.arena)
     bots = bots_of(source, job.bots, folder)
     for variant in job.variants:
         match.load(saved)
-        change = Change(players={i: of_bot(bot, i, variant) for i, bot in enumerate(bots)})
-        line = Line(source.record, match, change)
+        change = ForkChange(players={i: of_bot(bot, i, variant) for i, bot in enumerate(bots)})
+        line = ForkLine(source.record, match, change)
         journal = Journal(match, None)
         while True:
             beat, _ = journal.beat(line.inputs())
@@ -225,7 +225,7 @@ def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
 
     Forks change the match, so each of them begins with a load.
     """
-    before = opened(file).record.until(beat - 1)
+    before = opened_record(file).record.until(beat - 1)
     match = resume(before, folder=Path(arena) if arena else None).match
     while match.beats < beat - 1:  # beats in which nothing was recorded
         match.beat()
@@ -233,13 +233,13 @@ def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
     return match, match.save()
 
 
-def _two_seats(source: Source) -> tuple[str, str]:
+def _two_seats(source: ForkSource) -> tuple[str, str]:
     if len(source.seats) != 2:
         raise UserError(say("odds.two-seats", seats=source.seats))
     return source.seats[0], source.seats[1]
 
 
-def _still_known(source: Source, wish: Wish, known: Odds | None) -> dict[int, Moment]:
+def _still_known(source: ForkSource, wish: Wish, known: Odds | None) -> dict[int, MomentOdds]:
     """Return the moments whose forks would go the same way if they were played again."""
     if known is None or known.bots != wish.bots:
         return {}
@@ -250,16 +250,16 @@ def _still_known(source: Source, wish: Wish, known: Odds | None) -> dict[int, Mo
     }
 
 
-def _job(wish: Wish, beat: int, kept: dict[int, Moment]) -> ChanceJob:
+def _job(wish: Wish, beat: int, kept: dict[int, MomentOdds]) -> ChanceJob:
     done = len(kept[beat].margins) if beat in kept else 0
     variants = tuple(range(done + 1, wish.forks + 1))
     return ChanceJob(file=wish.file, beat=beat, bots=wish.bots, variants=variants, arena=wish.arena)
 
 
 def _moment(
-    source: Source, wish: Wish, course: Course, beat: int, ended: tuple[float, ...]
-) -> Moment:
-    return Moment(
+    source: ForkSource, wish: Wish, course: MatchCourse, beat: int, ended: tuple[float, ...]
+) -> MomentOdds:
+    return MomentOdds(
         beat=beat,
         clock_s=course.clock_s(beat),
         margins=ended,
@@ -268,13 +268,13 @@ def _moment(
     )
 
 
-def _end(result: Result | None, source: Source, beat: int) -> Moment | None:
+def _end(result: Result | None, source: ForkSource, beat: int) -> MomentOdds | None:
     if result is None or not result.computed:
         return None
     winner = result.official if result.official not in ("", "void") else result.computed
     won = {source.seats[0]: 1.0, "draw": 0.5}.get(winner, 0.0)
     points = float(result.scores[0] - result.scores[1])
-    return Moment(beat=beat, clock_s=result.clock_s, margins=(points,), chance=won)
+    return MomentOdds(beat=beat, clock_s=result.clock_s, margins=(points,), chance=won)
 
 
 def _content(bot: str) -> bytes:

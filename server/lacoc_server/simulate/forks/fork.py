@@ -7,15 +7,15 @@ from pathlib import Path
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Beat, Match
-from lacoc_server.simulate.forks.line import REFEREE, Change, Line
-from lacoc_server.simulate.forks.origin import Source, stem
+from lacoc_server.simulate.forks.line import REFEREE, ForkChange, ForkLine
+from lacoc_server.simulate.forks.origin import ForkSource, stem
 from lacoc_shared.command import keep
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
-from lacoc_shared.record.pack import read, write
+from lacoc_shared.record.pack import read_messages, write_packed
 from lacoc_shared.record.schema import ForkChanges, Result
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
@@ -35,15 +35,15 @@ class Forked:
     changes: tuple[Phrase, ...]
     """Events that a take-back removed or made new."""
     left_out: int
-    """Recorded take-backs that were left out (`Line.left_out`)."""
+    """Recorded take-backs that were left out (`ForkLine.left_out`)."""
     record: Path | None
     """The fork's record; None: none was wanted."""
 
 
 def fork(
-    source: Source,
+    source: ForkSource,
     beat: int,
-    change: Change | None = None,
+    change: ForkChange | None = None,
     *,
     changes: ForkChanges | None = None,
     match_id: str = "fork",
@@ -81,16 +81,16 @@ def fork(
         try:
             while match.beats < beat - 1:  # beats in which nothing was recorded
                 journal.beat()
-            forked = _played(source, journal, change or Change(), seconds, out)
+            forked = _played(source, journal, change or ForkChange(), seconds, out)
         finally:
             journal.close()
         if out is not None and journal.writer is not None:
             # The fork's own beats are one more segment of the record that it goes on from.
-            write([*before.messages, *read([journal.writer.path])], out)
+            write_packed([*before.messages, *read_messages([journal.writer.path])], out)
     return forked
 
 
-def _check_phase(match: Match, change: Change) -> None:
+def _check_phase(match: Match, change: ForkChange) -> None:
     """Check that players can take over in the match's phase.
 
     Raises:
@@ -101,11 +101,15 @@ def _check_phase(match: Match, change: Change) -> None:
 
 
 def _played(
-    source: Source, journal: Journal, change: Change, seconds: float | None, out: Path | None
+    source: ForkSource,
+    journal: Journal,
+    change: ForkChange,
+    seconds: float | None,
+    out: Path | None,
 ) -> Forked:
     match, first = journal.match, journal.match.beats + 1
     _check_phase(match, change)
-    line = Line(source.record, match, change, seconds)
+    line = ForkLine(source.record, match, change, seconds)
     changes: list[Phrase] = []
     for _, replies in _beats(line, journal):
         for reply in replies:
@@ -121,7 +125,7 @@ def _played(
     )
 
 
-def _beats(line: Line, journal: Journal) -> Iterator[tuple[Beat, list[DecisionReply]]]:
+def _beats(line: ForkLine, journal: Journal) -> Iterator[tuple[Beat, list[DecisionReply]]]:
     """Play a fork; yield each beat with the replies to the change's decisions.
 
     Raises:

@@ -10,8 +10,8 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_arenas.bot import BotFactory
 from lacoc_server.simulate.forks.fork import Forked, fork
-from lacoc_server.simulate.forks.line import Change, Press, of_bot
-from lacoc_server.simulate.forks.origin import Source, read_source
+from lacoc_server.simulate.forks.line import ForkChange, Press, of_bot
+from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.simulate.forks.script import Script, of_script
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.schema import ForkChanges, ForkSeat
@@ -40,14 +40,14 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     """Folder of the arena, if it is not installed."""
 
 
-def play(job: ForkJob) -> Forked:
+def play_fork(job: ForkJob) -> Forked:
     """Play a fork.
 
     Raises:
         UserError: as `fork.fork` does; or if there is no such seat or bot, or a script has a
             mistake.
     """
-    source = opened(job.file)
+    source = opened_record(job.file)
     folder = Path(job.folder) if job.folder else None
     arena = Path(job.arena) if job.arena else None
     return fork(
@@ -62,16 +62,16 @@ def play(job: ForkJob) -> Forked:
     )
 
 
-def attempt(job: ForkJob) -> Forked | Phrase:
+def attempt_fork(job: ForkJob) -> Forked | Phrase:
     """Play a fork in a worker process; an error that a user can correct is returned."""
     try:
-        return play(job)
+        return play_fork(job)
     except UserError as error:
         return error.phrase
 
 
 @lru_cache(maxsize=1)
-def opened(file: str) -> Source:
+def opened_record(file: str) -> ForkSource:
     """Read a record; the one that was read last is kept, because many forks go on from it.
 
     Raises:
@@ -80,7 +80,7 @@ def opened(file: str) -> Source:
     return read_source(Path(file))
 
 
-def bots_of(source: Source, names: tuple[str, ...], folder: Path | None) -> list[BotFactory]:
+def bots_of(source: ForkSource, names: tuple[str, ...], folder: Path | None) -> list[BotFactory]:
     """Find bots for a record's arena.
 
     Raises:
@@ -91,7 +91,7 @@ def bots_of(source: Source, names: tuple[str, ...], folder: Path | None) -> list
     return [brains.find(arena, name) for name in names]
 
 
-def changes_of(job: ForkJob, source: Source) -> ForkChanges:
+def changes_of(job: ForkJob, source: ForkSource) -> ForkChanges:
     """Return how a fork is made, as its record names it."""
     bots = dict(zip(source.seats, job.bots, strict=False))
     seats = tuple(
@@ -115,7 +115,7 @@ def _script_name(job: ForkJob, seat: str) -> str:
     return Path(job.scripts[seat].file).name if seat in job.scripts else ""
 
 
-def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
+def _change(job: ForkJob, source: ForkSource, folder: Path | None) -> ForkChange:
     seats = source.seats
     for seat in (*job.restart, *job.scripts):
         if seat not in seats:
@@ -132,10 +132,10 @@ def _change(job: ForkJob, source: Source, folder: Path | None) -> Change:
         if seats.index(seat) in players:
             raise UserError(say("fork.two-players", seat=seat))
         players[seats.index(seat)] = of_script(script, seats.index(seat))
-    return Change(job.take_back, job.restart, players)
+    return ForkChange(job.take_back, job.restart, players)
 
 
-def _check_event(job: ForkJob, source: Source) -> None:
+def _check_event(job: ForkJob, source: ForkSource) -> None:
     """Check that the event that is to be taken back happened before the fork."""
     for event in source.record.events:
         if event.number == job.take_back and event.beat >= job.beat:

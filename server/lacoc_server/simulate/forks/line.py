@@ -35,7 +35,7 @@ Press = Callable[[Match, Frame], Key | None]
 
 
 @dataclass(frozen=True)
-class Change:
+class ForkChange:
     """What differs between a fork and its record; by default nothing."""
 
     take_back: int | None = None
@@ -51,7 +51,7 @@ class Change:
         return self.take_back is None and not self.restart and not self.players
 
 
-class Line:
+class ForkLine:
     """Gives a fork its inputs.
 
     Args:
@@ -62,7 +62,7 @@ class Line:
     """
 
     def __init__(
-        self, record: Record, match: Match, change: Change, seconds: float | None = None
+        self, record: Record, match: Match, change: ForkChange, seconds: float | None = None
     ) -> None:
         self.match = match
         self.decided_beat: int | None = None

@@ -24,7 +24,7 @@ _SLOW = 0.1
 """Where less than this part of a swing happens in a stretch at its end, the swing ends before."""
 
 
-class Moment(msgspec.Struct, frozen=True, kw_only=True):
+class MomentOdds(msgspec.Struct, frozen=True, kw_only=True):
     """A moment of a match, and how its forks ended."""
 
     beat: int
@@ -42,8 +42,8 @@ class Moment(msgspec.Struct, frozen=True, kw_only=True):
 class Swing(NamedTuple):
     """A stretch of a match in which the odds changed."""
 
-    before: Moment
-    after: Moment
+    before: MomentOdds
+    after: MomentOdds
 
     @property
     def change(self) -> float:
@@ -55,7 +55,7 @@ def chance(margins: Sequence[float]) -> float:
     """Return the chance of the first seat to win one more fork, from 0 to 1.
 
     Args:
-        margins: how the forks ended, at least one (`Moment.margins`).
+        margins: how the forks ended, at least one (`MomentOdds.margins`).
     """
     count = len(margins)
     mean = math.fsum(margins) / count
@@ -65,7 +65,7 @@ def chance(margins: Sequence[float]) -> float:
     return student(mean / (spread * math.sqrt(1 + 1 / count)), freedom)
 
 
-def pooled(moments: Iterable[Moment]) -> tuple[Moment, ...]:
+def pooled(moments: Iterable[MomentOdds]) -> tuple[MomentOdds, ...]:
     """Return moments in their order, with the chances that follow from all their forks.
 
     A little earlier or later, two bots go on from nearly the same position. So the forks of the
@@ -77,7 +77,7 @@ def pooled(moments: Iterable[Moment]) -> tuple[Moment, ...]:
     """
     ordered = sorted(moments, key=lambda moment: moment.beat)
 
-    def of(moment: Moment, near: Sequence[float]) -> Moment:
+    def of(moment: MomentOdds, near: Sequence[float]) -> MomentOdds:
         if not moment.key:
             return moment
         return msgspec.structs.replace(moment, chance=chance([*moment.margins, *near]))
@@ -85,7 +85,7 @@ def pooled(moments: Iterable[Moment]) -> tuple[Moment, ...]:
     return tuple(map(of, ordered, near_margins(ordered)))
 
 
-def near_margins(ordered: Sequence[Moment]) -> list[list[float]]:
+def near_margins(ordered: Sequence[MomentOdds]) -> list[list[float]]:
     """Return for each moment the margins of neighbouring moments that count for its chance too.
 
     Args:
@@ -93,7 +93,7 @@ def near_margins(ordered: Sequence[Moment]) -> list[list[float]]:
     """
     near_s = NEAR_S + _SPARE_S
 
-    def of(index: int, moment: Moment) -> list[float]:
+    def of(index: int, moment: MomentOdds) -> list[float]:
         neighbours = [*ordered[max(0, index - 1) : index], *ordered[index + 1 : index + 2]]
         near = [one for one in neighbours if abs(one.clock_s - moment.clock_s) <= near_s]
         return [margin for one in near if one.key for margin in one.margins] if moment.key else []
@@ -126,13 +126,13 @@ def student(t: float, freedom: int) -> float:
     return min(1.0, max(0.0, (1 + inside) / 2))
 
 
-def steps(moments: Iterable[Moment]) -> list[Swing]:
+def steps(moments: Iterable[MomentOdds]) -> list[Swing]:
     """Return the stretches between neighbouring moments, in order."""
     ordered = sorted(moments, key=lambda moment: moment.beat)
     return [Swing(*pair) for pair in pairwise(ordered)]
 
 
-def swings(moments: Iterable[Moment]) -> list[Swing]:
+def swings(moments: Iterable[MomentOdds]) -> list[Swing]:
     """Return the stretches in which the odds only grew or only fell, the largest change first.
 
     Slow beginnings and ends of these stretches are left out.
@@ -158,7 +158,7 @@ def grid(playing: Sequence[int], step: int) -> list[int]:
     return list(playing[::step])
 
 
-def highlights(moments: Sequence[Moment], most: int = 8, least: float = 0.05) -> list[Swing]:
+def highlights(moments: Sequence[MomentOdds], most: int = 8, least: float = 0.05) -> list[Swing]:
     """Return the stretches in which the odds changed most, the largest change first.
 
     Args:

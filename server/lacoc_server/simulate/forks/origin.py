@@ -22,7 +22,7 @@ _CALL = "fork"
 
 
 @dataclass(frozen=True)
-class Source:
+class ForkSource:
     """A record to fork."""
 
     record: Record
@@ -54,7 +54,7 @@ class Source:
         return digest.hexdigest()
 
 
-def read_source(path: Path) -> Source:
+def read_source(path: Path) -> ForkSource:
     """Read a record that is to be forked.
 
     Args:
@@ -67,7 +67,7 @@ def read_source(path: Path) -> Source:
     record = Record.read(path, lambda *message: messages.append(message))
     if record.lost:
         raise UserError(say("fork.damaged", cut=record.cut))
-    return Source(record, tuple(messages))
+    return ForkSource(record, tuple(messages))
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Stem:
     """Setup of the fork."""
 
 
-def stem(source: Source, beat: int, match_id: str, changes: ForkChanges | None = None) -> Stem:
+def stem(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | None = None) -> Stem:
     """Return the part of a record that a fork goes on from.
 
     Args:
@@ -106,7 +106,7 @@ def stem(source: Source, beat: int, match_id: str, changes: ForkChanges | None =
     return Stem(before, tuple(_messages(source, beat, setup)), setup)
 
 
-def _setup(source: Source, beat: int, match_id: str, changes: ForkChanges | None) -> Setup:
+def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | None) -> Setup:
     """Return a fork's setup: nothing in it can be taken for the match that was played."""
     was = source.record.header.setup
     origin = Origin(
@@ -124,7 +124,7 @@ def _setup(source: Source, beat: int, match_id: str, changes: ForkChanges | None
     return replace(was, match_id=match_id, court=COURT, assigned=assigned, origin=origin)
 
 
-def _messages(source: Source, beat: int, setup: Setup) -> list[Message]:
+def _messages(source: ForkSource, beat: int, setup: Setup) -> list[Message]:
     """Return the messages before a beat, but no health; they name the fork, not the match."""
     found: list[Message] = []
     for topic, number, data in source.messages:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
@@ -16,7 +16,7 @@ from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.keys import forward_key
 from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.studio import CellPlace, Change, CoachReply, Progress, Weight
+from lacoc_shared.studio import CellChange, CellPlace, CoachReply, Progress, Weight
 from lacoc_shared.words import say
 
 _UNDO_TRIALS = 50
@@ -28,7 +28,7 @@ Tell = Callable[[Progress], None]
 """Takes the progress of a search; called many times a second."""
 
 
-class Found(NamedTuple):
+class CoachFound(NamedTuple):
     """What the coach found."""
 
     matters: list[Matter]
@@ -85,7 +85,7 @@ def task_of(
     return Task(robot, stand, table, goal)
 
 
-def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> Found:
+def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> CoachFound:
     """Find which numbers of a table matter, and search for a better table.
 
     Args:
@@ -115,38 +115,38 @@ def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Te
     trials.on_done = lambda: None
     tables = [own] if best is None else [own, best.angles_deg]
     figures = trials.figures(tables)
-    return Found(matters, best, figures[0], figures[-1], trials.count, stopped)
+    return CoachFound(matters, best, figures[0], figures[-1], trials.count, stopped)
 
 
-def reply_of(task: Task, key: int, found: Found) -> CoachReply:
+def reply_of(task: Task, key: int, found: CoachFound) -> CoachReply:
     """Make the message that tells what the coach found."""
     own = task.table.angles_deg
     best = own if found.best is None else found.best.angles_deg
     return CoachReply(
         key=key,
         matters=tuple(
-            Weight(cell=place(task.table, one.number), up=one.up, down=one.down)
+            Weight(cell=cell_place(task.table, one.number), up=one.up, down=one.down)
             for one in found.matters
         ),
-        changes=changes(task.table, own, best),
+        changes=cell_changes(task.table, own, best),
         before=vars(found.before),
         after=vars(found.after),
-        score_before=score(found.before, task.goal),
-        score_after=score(found.after, task.goal),
+        score_before=goal_score(found.before, task.goal),
+        score_after=goal_score(found.after, task.goal),
         trials=found.trials,
         cancelled=found.stopped,
     )
 
 
-def changes(table: KeyTable, before: Angles, after: Angles) -> tuple[Change, ...]:
+def cell_changes(table: KeyTable, before: Angles, after: Angles) -> tuple[CellChange, ...]:
     """List the numbers that differ between two versions of a table."""
     return tuple(
-        Change(cell=place(table, index), from_deg=before[index], to_deg=after[index])
+        CellChange(cell=cell_place(table, index), from_deg=before[index], to_deg=after[index])
         for index in differing(before, after)
     )
 
 
-def place(table: KeyTable, index: int) -> CellPlace:
+def cell_place(table: KeyTable, index: int) -> CellPlace:
     """Return the place of a number in the key's sequence, in the first posture that has it."""
     row, joint = table.cell(index)
     return CellPlace(posture=table.order.index(row), joint=joint)

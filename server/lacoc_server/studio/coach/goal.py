@@ -21,7 +21,7 @@ class Goal(StrEnum):
     LEFT = "left"
 
 
-def score(figures: Figures, goal: Goal) -> float:
+def goal_score(figures: Figures, goal: Goal) -> float:
     """Return the score of a walk [mm/s].
 
     The score is negative if the robot rests on its body or tips over. It is also negative if no

@@ -7,7 +7,7 @@ from concurrent.futures import TimeoutError as NotDone
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.floors import course_of
 from lacoc_server.studio.workers import Workers
@@ -112,7 +112,7 @@ class Trials:
         return [found for job in jobs for found in job.result()]
 
     def _scores(self, walks: Sequence[Figures]) -> list[float]:
-        return [score(figures, self.task.goal) for figures in walks]
+        return [goal_score(figures, self.task.goal) for figures in walks]
 
     def _walks(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[Figures]:
         size = min(_MOST_AT_ONCE, max(1, len(tables) // (4 * self._workers.count)))

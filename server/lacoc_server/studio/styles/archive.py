@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.trial.figures import Figures
 
@@ -26,14 +26,14 @@ _EQUAL_MM_S = 5.0
 """Scores in the same step of this size count as equal; then the smaller change is better."""
 
 
-class Place(NamedTuple):
+class MapPlace(NamedTuple):
     """A cell of the map: index along each axis."""
 
     speed: int
     arousal: int
 
 
-class Grid(NamedTuple):
+class MapGrid(NamedTuple):
     """The axes of a map; both begin at 0, and their last cells have no upper end.
 
     The calmest cell is twice as wide as the others, because its lower half would stay almost empty:
@@ -47,12 +47,12 @@ class Grid(NamedTuple):
     speeds: int = _SPEEDS
     arousals: int = _AROUSALS
 
-    def place(self, figures: Figures) -> Place | None:
+    def place(self, figures: Figures) -> MapPlace | None:
         """Return the cell of a gait; None if it goes backward or has no cycle."""
         arousal = arousal_mm_s(figures)
         if arousal is None or figures.speed_mm_s < 0:
             return None
-        return Place(
+        return MapPlace(
             min(int(figures.speed_mm_s / self.speed_mm_s), self.speeds - 1),
             max(0, min(int(arousal / self.arousal_mm_s) - 1, self.arousals - 1)),
         )
@@ -86,7 +86,7 @@ def arousal_mm_s(figures: Figures) -> float | None:
     return figures.clearance_mm / figures.cycle_s if figures.cycle_s else None
 
 
-def grid_of(robot: RobotSpec, own: Figures) -> Grid:
+def grid_of(robot: RobotSpec, own: Figures) -> MapGrid:
     """Make the axes of a robot's map, so that its own gait lies in it.
 
     Args:
@@ -97,7 +97,7 @@ def grid_of(robot: RobotSpec, own: Figures) -> Grid:
     foot_mm_s = 1000 * robot.ang_min_rad_s * long_m
     speed_mm_s = max(_SPEED_PART * foot_mm_s, _OWN_PART * own.speed_mm_s)
     arousal = max(_AROUSAL_PART * foot_mm_s, _OWN_PART * (arousal_mm_s(own) or 0.0))
-    return Grid(_whole(speed_mm_s, 5), _whole(arousal, 2))
+    return MapGrid(_whole(speed_mm_s, 5), _whole(arousal, 2))
 
 
 def _whole(size_mm_s: float, step_mm_s: int) -> float:
@@ -119,7 +119,7 @@ def is_straight(figures: Figures) -> bool:
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
     """Return what a gait is worth: its score in coarse steps, then how little was changed."""
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
-    return math.floor(score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
+    return math.floor(goal_score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 
 
 class Archive:
@@ -130,9 +130,9 @@ class Archive:
         grid: the axes.
     """
 
-    def __init__(self, own: Angles, grid: Grid) -> None:
+    def __init__(self, own: Angles, grid: MapGrid) -> None:
         self.grid = grid
-        self.elites: dict[Place, Elite] = {}
+        self.elites: dict[MapPlace, Elite] = {}
         self._own = own
 
     def would_take(self, angles_deg: Angles, figures: Figures) -> bool:
@@ -151,10 +151,10 @@ class Archive:
         self.elites[place] = Elite(angles_deg, figures, worth(self._own, angles_deg, figures))
         return True
 
-    def empty_beside(self, place: Place) -> int:
+    def empty_beside(self, place: MapPlace) -> int:
         """Count the empty cells beside a cell: at most four."""
         beside = [
-            Place(place.speed + by, place.arousal + to)
+            MapPlace(place.speed + by, place.arousal + to)
             for by, to in ((1, 0), (-1, 0), (0, 1), (0, -1))
         ]
         return sum(

@@ -4,14 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lacoc_server.studio.coach.coach import changes
+from lacoc_server.studio.coach.coach import cell_changes
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.studio.coach.trials import Task
 from lacoc_server.studio.styles.gait_map import Mapped
 from lacoc_server.studio.styles.style import WAYS, Styles
 from lacoc_server.studio.styles.variants import Varied
 from lacoc_server.trial.figures import Figures
-from lacoc_shared.studio import Difference, MapCell, MapReply, OtherGait, VariantsReply
+from lacoc_shared.studio import GaitDifference, MapCell, MapReply, OtherGait, VariantsReply
 
 _SEEN = 0.4
 """A difference of fewer steps can hardly be seen."""
@@ -55,15 +55,15 @@ def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> O
     own = task.table.angles_deg
     return OtherGait(
         table=table,
-        changes=changes(task.table, own, table),
+        changes=cell_changes(task.table, own, table),
         differences=tuple(_differences(styles, own, table)),
         figures=vars(figures),
     )
 
 
-def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[Difference]:
+def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[GaitDifference]:
     """Yield the ways in which a table looks different, the most visible way first."""
     steps = styles.look(table) - styles.look(own)
     for index in np.argsort(-abs(steps), kind="stable"):
         if abs(steps[index]) >= _SEEN:
-            yield Difference(way=WAYS[index], steps=round(float(steps[index]), 2))
+            yield GaitDifference(way=WAYS[index], steps=round(float(steps[index]), 2))

@@ -15,7 +15,7 @@ from typing import IO
 
 import msgspec
 
-from lacoc_shared.gait.workbook.content import Sheet, read_sheet, refused
+from lacoc_shared.gait.workbook.content import WorkbookSheet, read_sheet, refused
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import say
 
@@ -28,11 +28,11 @@ _LENGTH_BYTES = 4
 
 _Asked = tuple[str, bytes]
 """The name of a file, and the file."""
-_Answer = Sheet | list[Mistake]
+_Answer = WorkbookSheet | list[Mistake]
 """A sheet, or why the file is refused."""
 
 
-def sheet_of(data: bytes, name: str) -> Sheet:
+def read_sheet_apart(data: bytes, name: str) -> WorkbookSheet:
     """Read the sheet of a workbook that has the gait, as `content.read_sheet` does.
 
     Args:
@@ -45,12 +45,12 @@ def sheet_of(data: bytes, name: str) -> Sheet:
     answer = _reader.ask((name, data))
     if answer is None:
         raise refused(name, say("gait.too-costly"), say("gait.table"))
-    if isinstance(answer, Sheet):
+    if isinstance(answer, WorkbookSheet):
         return answer
     raise FileRefused(answer)
 
 
-class _Reader:
+class _ReaderProcess:
     """The process that reads, one workbook at a time; it is started again after a costly one."""
 
     def __init__(self) -> None:
@@ -112,7 +112,7 @@ class _Reader:
                     pipe.close()
 
 
-_reader = _Reader()
+_reader = _ReaderProcess()
 
 
 def _put(pipe: IO[bytes], message: bytes) -> None:

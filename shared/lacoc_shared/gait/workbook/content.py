@@ -57,7 +57,7 @@ class Odd(StrEnum):
     """It is shown as a percentage."""
 
 
-class Sheet(msgspec.Struct, frozen=True):
+class WorkbookSheet(msgspec.Struct, frozen=True):
     """The cells of a sheet as text, as far as they are read."""
 
     title: str
@@ -67,7 +67,7 @@ class Sheet(msgspec.Struct, frozen=True):
     """Row and column of each odd cell, counted from 1."""
 
 
-def read_sheet(data: bytes, name: str) -> Sheet:
+def read_sheet(data: bytes, name: str) -> WorkbookSheet:
     """Read the sheet that has the gait.
 
     Args:
@@ -212,7 +212,7 @@ class _Counter:
         raise _TooMuchError(say("gait.entities"))
 
 
-def _sheet(data: bytes, name: str) -> Sheet:
+def _sheet(data: bytes, name: str) -> WorkbookSheet:
     """Read the cells: their values, and where a value is missing, whether there is a formula."""
     import openpyxl  # only the process that reads needs it
 
@@ -244,7 +244,7 @@ def _sheet(data: bytes, name: str) -> Sheet:
             for column, (cell, formula) in enumerate(row, start=1)
             if (kind := _kind(cell, None if calculated else formula)) is not None
         ]
-    return Sheet(title, rows, odd)
+    return WorkbookSheet(title, rows, odd)
 
 
 def _title(titles: list[str], name: str) -> str:

@@ -14,8 +14,8 @@ from lacoc_shared.gait.legend import KEY
 from lacoc_shared.gait.reader import POSTURES_HEADER, Legs, Range, read_cells
 from lacoc_shared.gait.tables import LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
-from lacoc_shared.gait.workbook.apart import sheet_of
-from lacoc_shared.gait.workbook.content import COMPOUND_FILE, MAX_BYTES, Odd, Sheet, refused
+from lacoc_shared.gait.workbook.apart import read_sheet_apart
+from lacoc_shared.gait.workbook.content import COMPOUND_FILE, MAX_BYTES, Odd, WorkbookSheet, refused
 from lacoc_shared.gait.workbook.look import add_sheets
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.words import Phrase, say
@@ -82,7 +82,7 @@ def read_workbook(
     Raises:
         FileRefused: with every mistake in the file; a mistake in a cell names the cell.
     """
-    sheet = sheet_of(data, name)
+    sheet = read_sheet_apart(data, name)
     odd = {(row, column): kind for row, column, kind in sheet.odd}
     try:
         table = read_cells(
@@ -105,7 +105,7 @@ def read_workbook(
     return table
 
 
-def sheet_rows(sheet: Sheet) -> list[Row]:
+def sheet_rows(sheet: WorkbookSheet) -> list[Row]:
     """Return the rows of a workbook's sheet."""
     return [Row(number, row) for number, row in enumerate(sheet.rows, start=1)]
 
@@ -130,7 +130,7 @@ def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
     return stream.getvalue()
 
 
-def _is_angle(sheet: Sheet, place: tuple[int, int]) -> bool:
+def _is_angle(sheet: WorkbookSheet, place: tuple[int, int]) -> bool:
     row, column = place
     return column > 1 and KEY.fullmatch(sheet.rows[row - 1][0].strip()) is not None
 

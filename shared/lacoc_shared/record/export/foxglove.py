@@ -102,7 +102,7 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Messa
         for beat, frame in shown[::_EVERY]:
             time = _time(started_ns + beat * BEAT_NS)
             yield from ((beat, topic, message) for topic, message in figures(frame, sheet, time))
-        picture = _Picture(scene, sheet)
+        picture = _ScenePicture(scene, sheet)
         yield begin, "/scene", picture.shapes(_time(started_ns + begin * BEAT_NS))
         moving = [item for item in shown[::_EVERY] if item[1].poses]
         for (beat, _), transforms in zip(
@@ -122,7 +122,7 @@ def _log(event: Event, time: Timestamp) -> Log:
     return Log(timestamp=time, level=level, message=render(event.said, "en"), name=event.kind)
 
 
-class _Picture:
+class _ScenePicture:
     """A scene drawn with the colours of a sheet."""
 
     def __init__(self, scene: Scene, sheet: Sheet) -> None:

@@ -9,11 +9,11 @@ import msgspec
 
 from lacoc_client.workshop.design.learning.draft import NAME, Draft, read_draft
 from lacoc_client.workshop.design.learning.keeper import Keeper
-from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.phases.evidence import Evidence, Named, Voted
 from lacoc_client.workshop.phases.phases import PHASES
-from lacoc_client.workshop.phases.progress import Progress, State, progress
+from lacoc_client.workshop.phases.progress import State, StudentProgress, progress
 from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -50,7 +50,7 @@ class Phases(msgspec.Struct, frozen=True, kw_only=True):
     trouble: Phrase | None
     """Why progress is not kept, or that its file was damaged; None: all is well."""
     phases: tuple[PhaseState, ...]
-    rules: Rules
+    rules: StudentRules
 
 
 class Diary:
@@ -69,7 +69,7 @@ class Diary:
         self._student = student
         self._is_read = False
         self._evidence: list[Evidence] = []
-        self._progress: Progress | None = None
+        self._progress: StudentProgress | None = None
         self._reading = asyncio.Lock()
         self._is_forgotten = False
         self.draft: Draft | None = None
@@ -156,7 +156,7 @@ class Diary:
         return tuple(self._evidence)
 
     @property
-    def progress(self) -> Progress:
+    def progress(self) -> StudentProgress:
         """How far the student is in the six phases."""
         if self._progress is None or self._progress.seen != len(self._evidence):
             self._progress = progress(self._evidence, self._progress)
@@ -168,7 +168,7 @@ class Diary:
         words = (one.word for one in reversed(self._evidence) if isinstance(one, Named))
         return next(words, "")
 
-    def phases(self, rules: Rules) -> Phases:
+    def phases(self, rules: StudentRules) -> Phases:
         """Describe for a page how far the student is.
 
         Args:

@@ -13,7 +13,7 @@ from lacoc_client.workshop.design.learning.student import Student
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
-    Checked,
+    CheckedGait,
     Coached,
     Compared,
     Edited,
@@ -189,7 +189,7 @@ class Learner:
             mistakes = tuple(error.mistakes)
         else:
             version = _version(table, asked.sequences)
-            await self._diary.add(Checked(version=version, keys=keys, mistakes=0))
+            await self._diary.add(CheckedGait(version=version, keys=keys, mistakes=0))
         return CheckReply(keys=keys, mistakes=mistakes)
 
 

@@ -9,7 +9,7 @@ Help = Literal["none", "matters", "cell", "three", "table"]
 _HELPS: tuple[Help, ...] = ("none", "matters", "cell", "three", "table")
 
 
-class Rules(msgspec.Struct, frozen=True, kw_only=True):
+class StudentRules(msgspec.Struct, frozen=True, kw_only=True):
     """Rules for students. Whoever designs alone may do everything (`FREE`)."""
 
     closed: tuple[Annotated[int, msgspec.Meta(ge=1, le=6)], ...] = ()
@@ -27,4 +27,4 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True):
         return (size or "matters") in _HELPS[1 : _HELPS.index(self.coach) + 1]
 
 
-FREE = Rules()
+FREE = StudentRules()

@@ -6,9 +6,9 @@ import msgspec
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.design.learning.diary import Diary
-from lacoc_client.workshop.design.learning.rules import Rules
+from lacoc_client.workshop.design.learning.rules import StudentRules
 
 
 class Student:
@@ -20,7 +20,7 @@ class Student:
         rules: returns what the teacher allows.
     """
 
-    def __init__(self, name: str, diary: Diary, rules: Callable[[], Rules]) -> None:
+    def __init__(self, name: str, diary: Diary, rules: Callable[[], StudentRules]) -> None:
         self.name = name
         self.diary = diary
         self._rules = rules
@@ -28,7 +28,7 @@ class Student:
         """The student's pages."""
 
     @property
-    def rules(self) -> Rules:
+    def rules(self) -> StudentRules:
         """What the teacher allows."""
         return self._rules()
 
@@ -43,4 +43,6 @@ class Student:
 
     def phases_message(self) -> bytes:
         """Return the message that says how far the student is."""
-        return wire.map_message(Kind.PHASES, msgspec.structs.asdict(self.diary.phases(self.rules)))
+        return wire.map_message(
+            MessageKind.PHASES, msgspec.structs.asdict(self.diary.phases(self.rules))
+        )

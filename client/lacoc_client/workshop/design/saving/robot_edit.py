@@ -40,7 +40,7 @@ RobotEntry = Literal[
 """A number of a robot, by the name that the studio's facts give it."""
 
 
-class _Place(NamedTuple):
+class _NumberPlace(NamedTuple):
     """Where a number stands in a robot file."""
 
     table: str
@@ -49,29 +49,29 @@ class _Place(NamedTuple):
     """Place in the list; None: the entry is no list."""
 
 
-_PLACES: Mapping[str, _Place] = {
-    "body_width_m": _Place("body", "size_m", 0),
-    "body_length_m": _Place("body", "size_m", 1),
-    "body_height_m": _Place("body", "size_m", 2),
-    "body_mass_kg": _Place("body", "mass_kg"),
-    "root_link_m": _Place("link", "lengths_m", 0),
-    "first_link_m": _Place("link", "lengths_m", 1),
-    "second_link_m": _Place("link", "lengths_m", 2),
-    "link_radius_m": _Place("link", "radius_m"),
-    "root_link_kg": _Place("link", "masses_kg", 0),
-    "first_link_kg": _Place("link", "masses_kg", 1),
-    "second_link_kg": _Place("link", "masses_kg", 2),
-    "range_low_deg": _Place("link", "range_deg", 0),
-    "range_high_deg": _Place("link", "range_deg", 1),
-    "start_height_m": _Place("start", "height_m"),
-    "ang_min_deg_s": _Place("drive", "ang_min_deg_s"),
-    "hold_s": _Place("drive", "hold_s"),
-    "torque_n_m": _Place("servo", "torque_n_m"),
-    "kp": _Place("servo", "kp"),
-    "kv": _Place("servo", "kv"),
-    "damping": _Place("servo", "damping"),
-    "armature": _Place("servo", "armature"),
-    "friction": _Place("surface", "friction"),
+_PLACES: Mapping[str, _NumberPlace] = {
+    "body_width_m": _NumberPlace("body", "size_m", 0),
+    "body_length_m": _NumberPlace("body", "size_m", 1),
+    "body_height_m": _NumberPlace("body", "size_m", 2),
+    "body_mass_kg": _NumberPlace("body", "mass_kg"),
+    "root_link_m": _NumberPlace("link", "lengths_m", 0),
+    "first_link_m": _NumberPlace("link", "lengths_m", 1),
+    "second_link_m": _NumberPlace("link", "lengths_m", 2),
+    "link_radius_m": _NumberPlace("link", "radius_m"),
+    "root_link_kg": _NumberPlace("link", "masses_kg", 0),
+    "first_link_kg": _NumberPlace("link", "masses_kg", 1),
+    "second_link_kg": _NumberPlace("link", "masses_kg", 2),
+    "range_low_deg": _NumberPlace("link", "range_deg", 0),
+    "range_high_deg": _NumberPlace("link", "range_deg", 1),
+    "start_height_m": _NumberPlace("start", "height_m"),
+    "ang_min_deg_s": _NumberPlace("drive", "ang_min_deg_s"),
+    "hold_s": _NumberPlace("drive", "hold_s"),
+    "torque_n_m": _NumberPlace("servo", "torque_n_m"),
+    "kp": _NumberPlace("servo", "kp"),
+    "kv": _NumberPlace("servo", "kv"),
+    "damping": _NumberPlace("servo", "damping"),
+    "armature": _NumberPlace("servo", "armature"),
+    "friction": _NumberPlace("surface", "friction"),
 }
 assert _PLACES.keys() == set(get_args(RobotEntry))
 
@@ -109,7 +109,7 @@ def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
     return edited
 
 
-def _set(robot: Any, place: _Place, value: float) -> None:
+def _set(robot: Any, place: _NumberPlace, value: float) -> None:
     """Put a number into its place in a parsed robot file.
 
     A number of the table [link] is also put into each leg that has an entry of the same name.
@@ -134,5 +134,5 @@ def _like(old: Any, value: float) -> Any:
     return float(value)
 
 
-def _shown(place: _Place) -> str:
+def _shown(place: _NumberPlace) -> str:
     return f"{place.table}.{place.name}"

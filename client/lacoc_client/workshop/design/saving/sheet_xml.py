@@ -40,7 +40,7 @@ class Formula:
 
 
 @dataclass
-class Cell:
+class XmlCell:
     """A cell in the XML; `start`, `inner_start`, `inner_end` and `end` are byte offsets."""
 
     place: Place
@@ -55,12 +55,12 @@ class Cell:
 
 
 @dataclass
-class _Line:
+class _XmlRow:
     number: int
     start: int
     inner_start: int
     end: int = 0
-    cells: list[Cell] = field(default_factory=list)
+    cells: list[XmlCell] = field(default_factory=list)
 
 
 class Content(NamedTuple):
@@ -88,7 +88,7 @@ class SheetXml:
         if _NO_UTF_8.match(data):
             raise NotEditable("its text is not UTF-8")
         self._data = data
-        self._lines: dict[int, _Line] = {}
+        self._lines: dict[int, _XmlRow] = {}
         self._data_end = -1
         self.prefix = ""
         """Prefix of the elements' names with its colon, such as "x:"; often ""."""
@@ -99,7 +99,7 @@ class SheetXml:
         if self._data_end < 0:
             raise NotEditable("it has no cells")
 
-    def cells(self) -> list[Cell]:
+    def cells(self) -> list[XmlCell]:
         """Return the cells in the order of the file."""
         return [cell for line in self._lines.values() for cell in line.cells]
 
@@ -116,7 +116,7 @@ class SheetXml:
         p = self.prefix
         return Content(f"<{p}is><{p}t>{escape(text)}</{p}t></{p}is>", "inlineStr")
 
-    def copy(self, cell: Cell) -> Content:
+    def copy(self, cell: XmlCell) -> Content:
         """Return the content of a cell, with its style."""
         inner = self.raw(cell.inner_start, cell.inner_end)
         return Content(inner, cell.attributes.get("t", ""), cell.attributes.get("s", ""))
@@ -149,7 +149,7 @@ class SheetXml:
         cells = "".join(self._cell((row, column), new[column], "") for column in sorted(new))
         return f'<{p}row r="{row}">{cells}</{p}row>'.encode()
 
-    def _changed_line(self, line: _Line, new: Mapping[int, Content]) -> bytes:
+    def _changed_line(self, line: _XmlRow, new: Mapping[int, Content]) -> bytes:
         head = self.raw(line.start, line.inner_start).rstrip(">").rstrip("/")
         head = re.sub(_ATTRIBUTE.format("spans"), "", head)
         texts: dict[int, str] = {}
@@ -178,7 +178,7 @@ class SheetXml:
             f"<{p}c{attributes}>{content.inner}</{p}c>" if content.inner else f"<{p}c{attributes}/>"
         )
 
-    def _named(self, cell: Cell) -> str:
+    def _named(self, cell: XmlCell) -> str:
         """Return a cell's XML with its address, such as B2, which some programs leave out."""
         raw = self.raw(cell.start, cell.end)
         if "r" in cell.attributes:
@@ -194,8 +194,8 @@ class _Indexer:
     def __init__(self, sheet: SheetXml, data: bytes) -> None:
         self._sheet = sheet
         self._data = data
-        self._line: _Line | None = None
-        self._cell: Cell | None = None
+        self._line: _XmlRow | None = None
+        self._cell: XmlCell | None = None
         self._in_value = self._in_formula = False
         self._row = 0
         self._column = 0
@@ -221,14 +221,14 @@ class _Indexer:
         elif local == "row" and self._line is None:
             self._row = int(attributes.get("r", self._row + 1))
             self._column = 0
-            self._line = _Line(self._row, start, tag_end)
+            self._line = _XmlRow(self._row, start, tag_end)
             self._sheet._lines[self._row] = self._line
         elif local == "c" and self._line is not None:
             if "r" in attributes:
                 self._column = coordinate_to_tuple(attributes["r"])[1]
             else:
                 self._column += 1
-            self._cell = Cell((self._row, self._column), attributes, start, tag_end)
+            self._cell = XmlCell((self._row, self._column), attributes, start, tag_end)
             self._line.cells.append(self._cell)
         elif self._cell is not None and local == "f":
             self._cell.formula = Formula(attributes, start)

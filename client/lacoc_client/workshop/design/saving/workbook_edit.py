@@ -15,18 +15,18 @@ from openpyxl.utils import get_column_letter, range_boundaries
 from lacoc_client.workshop.design.saving.book_parts import BookParts
 from lacoc_client.workshop.design.saving.sheet_ranges import with_ranges
 from lacoc_client.workshop.design.saving.sheet_xml import (
-    Cell,
     Content,
     NotEditable,
     Place,
     SheetXml,
+    XmlCell,
 )
 from lacoc_client.workshop.design.saving.workbook_layout import Layout, find_layout
 from lacoc_shared.gait.cells import angle_of, number_of, number_text
 from lacoc_shared.gait.legend import KEY
 from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.workbook import INPUT_SHEET, MIRROR_SHEET
-from lacoc_shared.gait.workbook.apart import sheet_of
+from lacoc_shared.gait.workbook.apart import read_sheet_apart
 from lacoc_shared.gait.workbook.file import read_workbook, sheet_rows
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -47,7 +47,7 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
         FileRefused: if the file is no workbook with postures.
         UserError: if the postures can't be saved without losing something else in the file.
     """
-    sheet = sheet_of(data, name)
+    sheet = read_sheet_apart(data, name)
     layout = find_layout(sheet_rows(sheet), name, table)
     try:
         edited = _Edit(BookParts(data), sheet.title, layout).result() or data
@@ -66,7 +66,7 @@ def formulas_in(data: bytes, name: str) -> int:
         data: an .xlsx file that can be read as postures.
         name: name of the file, for messages.
     """
-    sheet = sheet_of(data, name)
+    sheet = read_sheet_apart(data, name)
     postures = {row.number for row in sheet_rows(sheet) if KEY.fullmatch(row.cells[0].strip())}
     try:
         book = BookParts(data)
@@ -177,7 +177,7 @@ class _Edit:
         Raises:
             NotEditable: if a changed cell is part of a formula over several cells.
         """
-        masters: dict[str, Cell] = {}
+        masters: dict[str, XmlCell] = {}
         touched: set[str] = set()
         for place, cell in self._cells.items():
             if cell.formula is None:
@@ -201,7 +201,7 @@ class _Edit:
                 own[place] = self._with_formula(cell, text)
         return own
 
-    def _with_formula(self, cell: Cell, text: str) -> Content:
+    def _with_formula(self, cell: XmlCell, text: str) -> Content:
         p = self._sheet.prefix
         return Content(f"<{p}f>{escape(text)}</{p}f>", style=cell.attributes.get("s", ""))
 
@@ -230,7 +230,7 @@ class _Edit:
                     cells[cell.place] = _with_value(sheet, cell, "")
         return bool(depend)
 
-    def _mirrors(self, cell: Cell) -> bool:
+    def _mirrors(self, cell: XmlCell) -> bool:
         """Return whether a cell's stored result equals the table's cell at the same address."""
         there = self._layout.texts.get(cell.place, "")
         if number_of(there) is not None:
@@ -268,7 +268,7 @@ def _translated(formula: str, origin: Place, place: Place) -> str:
     return text.removeprefix("=")
 
 
-def _with_value(sheet: SheetXml, cell: Cell, value: str) -> Content:
+def _with_value(sheet: SheetXml, cell: XmlCell, value: str) -> Content:
     """Return a cell's content with its formula and a stored result; "": no stored result."""
     assert cell.formula is not None
     p, kind = sheet.prefix, ""

@@ -10,7 +10,7 @@ import msgspec
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.answers import in_loop
-from lacoc_client.web.gateway.wire import Kind
+from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import sent_gait
 from lacoc_client.workshop.design.studios.asker import Asker
@@ -141,7 +141,7 @@ class StudioDesk:
 
         def tell(progress: Progress) -> None:
             body = {"job": name, **msgspec.structs.asdict(progress)}
-            in_loop(loop, lambda: self._send(wire.map_message(Kind.PROGRESS, body)))
+            in_loop(loop, lambda: self._send(wire.map_message(MessageKind.PROGRESS, body)))
 
         asker = self._studios.free()
         listening = await asker.progress(job, tell)

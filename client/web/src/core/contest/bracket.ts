@@ -1,9 +1,9 @@
 /** Where the matches of a bracket stand: columns are rounds, rows are counted in boxes. Pure. */
 
-import { byId, isMatch, type Match, origin, type StageView } from "./sheet";
+import { byId, type ContestMatch, isMatch, origin, type StageView } from "./sheet";
 
 export interface Box {
-  match: Match;
+  match: ContestMatch;
   column: number;
   /** Row of its middle. */
   row: number;
@@ -110,9 +110,9 @@ export function bracket(view: StageView, { from = 0, root }: Cut = {}): Bracket 
 
 /** Place the matches of a part, and return the row below them. */
 function placed(
-  part: readonly Match[],
+  part: readonly ContestMatch[],
   kept: readonly number[],
-  matches: ReadonlyMap<string, Match>,
+  matches: ReadonlyMap<string, ContestMatch>,
   boxes: Map<string, Box>,
   top: number,
 ): number {
@@ -122,7 +122,7 @@ function placed(
       .map((match) => [match.pairing.id, match]),
   );
   let next = top + 0.5;
-  const place = (match: Match): number => {
+  const place = (match: ContestMatch): number => {
     const before = feeders(match, matches).flatMap(({ id }) => here.get(id) ?? []);
     const at = before.map(place);
     const row = at.length ? (at[0]! + at.at(-1)!) / 2 : next++;
@@ -138,7 +138,7 @@ function placed(
 }
 
 function headed(
-  part: readonly Match[],
+  part: readonly ContestMatch[],
   kept: readonly number[],
   section: string,
   row: number,
@@ -153,7 +153,7 @@ function headed(
 }
 
 /** A match and all that lead to it, by pairing. */
-function tree(root: string, matches: ReadonlyMap<string, Match>): Set<string> {
+function tree(root: string, matches: ReadonlyMap<string, ContestMatch>): Set<string> {
   const match = matches.get(root);
   const before = match ? feeders(match, matches).map(({ id }) => tree(id, matches)) : [];
   return new Set([root, ...before.flatMap((ids) => [...ids])]);
@@ -161,8 +161,8 @@ function tree(root: string, matches: ReadonlyMap<string, Match>): Set<string> {
 
 /** The matches whose winners meet in a match, with their places there. */
 export function feeders(
-  match: Match,
-  matches: ReadonlyMap<string, Match>,
+  match: ContestMatch,
+  matches: ReadonlyMap<string, ContestMatch>,
 ): { id: string; place: 0 | 1 }[] {
   const found: { id: string; place: 0 | 1 }[] = [];
   for (const place of [0, 1] as const) {

@@ -13,7 +13,7 @@ export interface Team {
   disqualified: boolean;
 }
 
-export interface Settings {
+export interface StageSettings {
   games?: number;
   extra_games?: number;
   rounds?: number;
@@ -34,7 +34,7 @@ export interface Planned {
   by?: string;
   stage: string;
   format: string;
-  settings?: Settings;
+  settings?: StageSettings;
   after?: string;
   title?: Record<"en" | "ja", string>;
   draw?: "at-once" | "organiser";
@@ -62,12 +62,12 @@ export interface Called {
 
 export interface Stage {
   name: string;
-  settings: Settings;
+  settings: StageSettings;
   entries: string[];
   drawn: string[][][];
 }
 
-export interface Entry {
+export interface Entrant {
   source: "entry";
   team: string;
 }
@@ -90,14 +90,14 @@ export interface Pairing {
   id: string;
   section: string;
   round: number;
-  sources: [Entry | WinnerOf | LoserOf | Bye, Entry | WinnerOf | LoserOf | Bye];
+  sources: [Entrant | WinnerOf | LoserOf | Bye, Entrant | WinnerOf | LoserOf | Bye];
   winner_place?: number | null;
   loser_place?: number | null;
   loser_goes_on?: boolean;
   only_if_second_won?: string;
 }
 
-export interface Game {
+export interface CountedGame {
   number: number;
   teams: [string, string];
   scores: [number, number];
@@ -106,11 +106,11 @@ export interface Game {
   fact: string;
 }
 
-export interface Match {
+export interface ContestMatch {
   pairing: Pairing;
   teams: [string | null, string | null];
   state: "waits" | "open" | "decided" | "off";
-  games?: Game[];
+  games?: CountedGame[];
   next_game?: number;
   next_seats?: [string, string] | null;
   winner?: string | null;
@@ -142,7 +142,7 @@ export interface Table {
 export interface StageView {
   plan: Planned;
   stage: Stage;
-  matches: Match[];
+  matches: ContestMatch[];
   tables: Table[];
   rounds_to_draw: number;
 }

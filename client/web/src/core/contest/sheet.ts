@@ -3,8 +3,8 @@
 import type {
   Called,
   Coming,
+  ContestMatch,
   ContestSheet,
-  Match,
   Pairing,
   Rating,
   StageView,
@@ -25,15 +25,15 @@ export interface Round {
   /** Part of a bracket, such as "w" or "l"; "" in other formats. */
   section: string;
   round: number;
-  matches: Match[];
+  matches: ContestMatch[];
 }
 
-export function isDecided(match: Match): boolean {
+export function isDecided(match: ContestMatch): boolean {
   return match.state === "decided" || match.state === "off";
 }
 
 /** Whether a match has, or may get, two teams: it is no bye and will be played. */
-export function isMatch(match: Match): boolean {
+export function isMatch(match: ContestMatch): boolean {
   return !match.teams.includes(NOBODY) && match.state !== "off";
 }
 
@@ -146,7 +146,7 @@ export function rounds(view: StageView): Round[] {
 }
 
 /** The number of a match in its round, by which it is called. */
-export function numberOf(match: Match): number {
+export function numberOf(match: ContestMatch): number {
   return Number(match.pairing.id.split(".").at(-1));
 }
 
@@ -155,7 +155,7 @@ export function numberOf(match: Match): number {
  *
  * A pairing with a bye is no match, so what comes from it comes from the pairing before.
  */
-export function origin(source: Source, byId: ReadonlyMap<string, Match>): Source {
+export function origin(source: Source, byId: ReadonlyMap<string, ContestMatch>): Source {
   if (source.source !== "winner") return source;
   const before = byId.get(source.pairing);
   if (!before || isMatch(before)) return source;
@@ -163,12 +163,12 @@ export function origin(source: Source, byId: ReadonlyMap<string, Match>): Source
   return place < 0 ? { source: "bye" } : origin(before.pairing.sources[place]!, byId);
 }
 
-export function byId(view: StageView): Map<string, Match> {
+export function byId(view: StageView): Map<string, ContestMatch> {
   return new Map(view.matches.map((match) => [match.pairing.id, match]));
 }
 
 /** The places of a match, left seat first: as in its only game, or in the first one to come. */
-export function seating(match: Match): readonly [0 | 1, 0 | 1] {
+export function seating(match: ContestMatch): readonly [0 | 1, 0 | 1] {
   const games = match.games ?? [];
   const seats = games.length === 1 && isDecided(match) ? games[0]!.teams : match.next_seats;
   const swapped = games.length < 2 && seats && seats[0] === match.teams[1];
@@ -176,12 +176,12 @@ export function seating(match: Match): readonly [0 | 1, 0 | 1] {
 }
 
 /** Whether a match counts games won, not the points of its only game. */
-export function countsGames(match: Match, view: StageView): boolean {
+export function countsGames(match: ContestMatch, view: StageView): boolean {
   return (view.stage.settings.games ?? 1) > 1 || (match.games?.length ?? 0) > 1;
 }
 
 /** The score of a match, by place; null before the first game. */
-export function score(match: Match, view: StageView): [number, number] | null {
+export function score(match: ContestMatch, view: StageView): [number, number] | null {
   const games = match.games ?? [];
   if (!games.length) return null;
   const points = (place: 0 | 1) => {
@@ -197,7 +197,7 @@ export function score(match: Match, view: StageView): [number, number] | null {
 /** How a match ended, where its score does not say it: name of a message `contest.how.…`. */
 export type How = "draw" | "extra" | "difference" | "seed" | "walkover" | "absent" | "void" | "bye";
 
-export function howEnded(match: Match): How | null {
+export function howEnded(match: ContestMatch): How | null {
   if (match.state !== "decided" || !match.how) return null;
   if (match.how === "played") return match.winner ? null : "draw";
   if (match.how === "walkover" && !match.winner) return "absent";
@@ -207,7 +207,7 @@ export function howEnded(match: Match): How | null {
 /** A match with the stage that it belongs to. */
 export interface Played {
   view: StageView;
-  match: Match;
+  match: ContestMatch;
 }
 
 /** What a contest says of one team. */

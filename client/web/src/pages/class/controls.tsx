@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useId, useRef } from "preact/hooks";
 import { COACHES, PHASES } from "../../core/class";
-import type { Rules } from "../../core/wire";
+import type { StudentRules } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Mistakes } from "../../ui/mistakes";
@@ -60,7 +60,7 @@ function Teaching({ teacher }: { teacher: Teacher }) {
           name="coach"
           value={rules.coach}
           onChange={(event) => {
-            const coach = event.currentTarget.value as Rules["coach"];
+            const coach = event.currentTarget.value as StudentRules["coach"];
             void teacher.change({ ...rules, coach });
           }}
         >

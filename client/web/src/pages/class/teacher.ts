@@ -15,8 +15,8 @@ import {
   type Mistake,
   PARSE_MAX_BYTES,
   type Request,
-  type Rules,
   type ShowReply,
+  type StudentRules,
   type TournamentState,
 } from "../../core/wire";
 import { sentence, t } from "../../i18n";
@@ -55,7 +55,7 @@ export class Teacher {
   readonly cards = signal<readonly Card[]>([]);
   readonly tournament = signal<TournamentState>(NO_TOURNAMENT);
   /** As they are shown: a click is answered at once, the gateway's word holds. */
-  readonly rules = signal<Rules>(OPEN_RULES);
+  readonly rules = signal<StudentRules>(OPEN_RULES);
   /** The student whose details are open; "": none. */
   readonly opened = signal("");
   readonly screen = signal<Screen | null>(null);
@@ -134,7 +134,7 @@ export class Teacher {
     return this.hide(sentence(error.why));
   }
 
-  async change(rules: Rules): Promise<void> {
+  async change(rules: StudentRules): Promise<void> {
     this.rules.value = rules;
     const taken = await this.act("rules", { rules });
     if (taken === null) this.rules.value = this.state.peek()?.rules ?? OPEN_RULES;

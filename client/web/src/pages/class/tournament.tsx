@@ -2,7 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { replayAddress } from "../../core/record_files";
-import type { LeftOut, Played, TournamentState } from "../../core/wire";
+import type { ClassMatch, LeftOut, TournamentState } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Icon } from "../../ui/icons";
 import type { Teacher } from "./teacher";
@@ -182,7 +182,7 @@ function Left({ teacher, out }: { teacher: Teacher; out: readonly LeftOut[] }) {
 
 interface MatchesProps {
   teacher: Teacher;
-  matches: readonly Played[];
+  matches: readonly ClassMatch[];
 }
 
 /** All matches, the newest first; each leads to its replay. */

@@ -5,10 +5,10 @@ import { type Box, type Bracket, bracket, type Cut, type Line } from "../../core
 import { fit } from "../../core/contest/fit";
 import {
   byId,
+  type ContestMatch,
   type ContestSheet,
   howEnded,
   isDecided,
-  type Match,
   origin,
   type StageView,
   score,
@@ -164,7 +164,7 @@ function MatchBox({ sheet, view, box }: BoxProps) {
 interface LineProps {
   sheet: ContestSheet;
   view: StageView;
-  match: Match;
+  match: ContestMatch;
   place: 0 | 1;
 }
 
@@ -213,7 +213,7 @@ function Link({ href, label, children }: LinkProps) {
   );
 }
 
-function won(match: Match, place: 0 | 1): boolean {
+function won(match: ContestMatch, place: 0 | 1): boolean {
   return isDecided(match) && !!match.winner && match.winner === match.teams[place];
 }
 

@@ -2,7 +2,7 @@
 
 import { computed, signal } from "@preact/signals";
 import { flag } from "../../core/address";
-import type { Game, Match } from "../../core/contest/sheet";
+import type { ContestMatch, CountedGame } from "../../core/contest/sheet";
 import { replayAddress } from "../../core/record_files";
 import { t } from "../../i18n";
 
@@ -56,13 +56,13 @@ export function TeamLink({ name, won = false }: TeamLinkProps) {
 }
 
 /** Names the element of a match, to which other parts of the page lead. */
-export function matchId(match: Match): string {
+export function matchId(match: ContestMatch): string {
   return `match-${match.pairing.id}`;
 }
 
 interface GameScoreProps {
-  match: Match;
-  game: Game;
+  match: ContestMatch;
+  game: CountedGame;
 }
 
 /** The points of a game by place of the match; they lead to its replay. */

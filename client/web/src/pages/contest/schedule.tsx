@@ -1,11 +1,11 @@
 /** The matches of a stage, round by round, with their results. */
 
 import {
+  type ContestMatch,
   type ContestSheet,
   countsGames,
   howEnded,
   isDecided,
-  type Match,
   type Round,
   rounds,
   type StageView,
@@ -62,7 +62,7 @@ function OneRound({ sheet, view, round, open }: Props & { round: Round; open: bo
 }
 
 interface RowProps extends Props {
-  match: Match;
+  match: ContestMatch;
   /** Whether other parts of the page lead here. */
   id?: boolean;
   /** What stands before the match; by default its group, or its number in a bracket. */
@@ -115,15 +115,15 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
 }
 
 /** The score of a match that is one game. */
-function Single({ match, swapped }: { match: Match; swapped: boolean }) {
+function Single({ match, swapped }: { match: ContestMatch; swapped: boolean }) {
   const game = match.games![0]!;
   const teams = swapped ? match.teams.toReversed() : match.teams;
-  return <GameScore match={{ ...match, teams: teams as Match["teams"] }} game={game} />;
+  return <GameScore match={{ ...match, teams: teams as ContestMatch["teams"] }} game={game} />;
 }
 
 interface PlaceProps {
   sheet: ContestSheet;
-  match: Match;
+  match: ContestMatch;
   place: 0 | 1;
 }
 

@@ -3,11 +3,11 @@
 import {
   type Called,
   type Coming,
+  type ContestMatch,
   type ContestSheet,
   found,
   isKnockout,
   isMatch,
-  type Match,
   numberOf,
   type Planned,
   type Round,
@@ -122,7 +122,7 @@ export function originTitle(sheet: ContestSheet, source: Source): string {
 }
 
 /** The same in a bracket, where lines say from which round a winner comes. */
-export function shortOrigin(sheet: ContestSheet, source: Source, to: Match): string {
+export function shortOrigin(sheet: ContestSheet, source: Source, to: ContestMatch): string {
   const from = source.source === "winner" ? found(sheet, source.pairing)?.match : null;
   if (!from) return originTitle(sheet, source);
   const { section } = from.pairing;
@@ -133,7 +133,7 @@ export function shortOrigin(sheet: ContestSheet, source: Source, to: Match): str
 }
 
 /** The number that a match of a bracket has in its round; "" where the round has only one. */
-export function numberTitle(view: StageView, match: Match): string {
+export function numberTitle(view: StageView, match: ContestMatch): string {
   const { section, round } = match.pairing;
   const there = view.matches.filter(
     ({ pairing }) => pairing.section === section && pairing.round === round,
@@ -142,6 +142,6 @@ export function numberTitle(view: StageView, match: Match): string {
 }
 
 /** The court on which a match is played now; "" if none. */
-export function courtOf(running: readonly Called[], match: Match): string {
+export function courtOf(running: readonly Called[], match: ContestMatch): string {
   return running.find(({ pairing }) => pairing === match.pairing.id)?.court ?? "";
 }

@@ -1,7 +1,7 @@
 /** What can be done on this page. It is not the same wherever the page is opened. */
 
 import { COACHES, OPEN_RULES } from "../../core/class";
-import type { Rules } from "../../core/wire";
+import type { StudentRules } from "../../core/wire";
 
 export interface Can {
   /** Open and save the files of a folder; else they are only dropped and downloaded. */
@@ -11,7 +11,7 @@ export interface Can {
   /** Work on the six phases. */
   learn: boolean;
   /** What the teacher allows in a class. */
-  rules: Rules;
+  rules: StudentRules;
 }
 
 /** On one's own machine. */
@@ -23,7 +23,7 @@ export const ALL: Can = {
 };
 
 /** Whether the coach may help so much. */
-export function allows({ rules }: Can, help: Rules["coach"]): boolean {
+export function allows({ rules }: Can, help: StudentRules["coach"]): boolean {
   return COACHES.indexOf(help) <= COACHES.indexOf(rules.coach);
 }
 

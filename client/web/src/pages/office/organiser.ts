@@ -6,9 +6,9 @@ import { Refused } from "../../core/connection";
 import { Feed } from "../../core/contest/feed";
 import {
   type AnyRequest,
+  type ContestLinks,
   Desk,
   type Effect,
-  type Links,
   type OfficeView,
   type Overviewed,
   type Said,
@@ -52,7 +52,7 @@ export class Organiser {
   readonly desk = new Desk();
   readonly feed = new Feed();
   readonly view = signal<OfficeView | null>(null);
-  readonly links = signal<Links | null>(null);
+  readonly links = signal<ContestLinks | null>(null);
   /** Address of the pages for everybody: this page may have been opened at another one. */
   readonly pages = signal(pagesUrl());
   readonly over = signal<Over | null>(null);
@@ -109,7 +109,7 @@ export class Organiser {
     this.links.value = null;
     try {
       const wanted = { secret: this.key, team };
-      this.links.value = await this.desk.connection.ask<Links>("links", wanted);
+      this.links.value = await this.desk.connection.ask<ContestLinks>("links", wanted);
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
       toast(sentence(error.why), "no");

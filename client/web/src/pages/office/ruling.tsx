@@ -3,11 +3,11 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import {
+  type ContestMatch,
   type ContestSheet,
   found,
   howEnded,
   isMatch,
-  type Match,
   type StageView,
   score,
 } from "../../core/contest/sheet";
@@ -83,7 +83,7 @@ export function Rulings({ organiser }: Props) {
 interface LineProps {
   sheet: ContestSheet;
   view: StageView;
-  match: Match;
+  match: ContestMatch;
 }
 
 function Line({ sheet, view, match }: LineProps) {
@@ -238,13 +238,13 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
 }
 
 /** The numbers of the games that have been played, and of the next one. */
-function gamesOf(match: Match): number[] {
+function gamesOf(match: ContestMatch): number[] {
   const numbers = (match.games ?? []).map(({ number }) => number);
   return match.next_game ? [...numbers, match.next_game] : numbers.length ? numbers : [1];
 }
 
 /** Who sat left and right in a game, or will sit there. */
-function seatsOf(match: Match, number: number): readonly [string, string] {
+function seatsOf(match: ContestMatch, number: number): readonly [string, string] {
   const game = match.games?.find((one) => one.number === number);
   const teams = game?.teams ?? match.next_seats ?? match.teams;
   return [teams[0] ?? "", teams[1] ?? ""];
@@ -255,7 +255,7 @@ function isPoints(value: number): boolean {
 }
 
 /** A team of a match; bold if it has won. */
-function Side({ match, place }: { match: Match; place: 0 | 1 }) {
+function Side({ match, place }: { match: ContestMatch; place: 0 | 1 }) {
   const team = match.teams[place];
   return team && match.winner === team ? <b class="won">{team}</b> : <span>{team}</span>;
 }

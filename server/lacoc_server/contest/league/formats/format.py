@@ -5,9 +5,9 @@ from typing import Protocol
 
 import msgspec
 
-from lacoc_server.contest.league.facts import Settings
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import Bye, Entry, Pairing
+from lacoc_server.contest.league.facts import StageSettings
+from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.league.pairing import Bye, Entrant, Pairing
 from lacoc_server.contest.league.standings import Table, counted, standings
 
 Pair = tuple[str, ...]
@@ -18,7 +18,7 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
     """What of a stage is fixed once it is drawn."""
 
     name: str
-    settings: Settings
+    settings: StageSettings
     entries: tuple[str, ...]
     """By seeding, the best first."""
     drawn: tuple[tuple[Pair, ...], ...] = ()
@@ -49,19 +49,21 @@ class Format(Protocol):
     def rounds(self, stage: Stage) -> int:
         """Return the most rounds that are drawn one by one; 0: the draw fixes all rounds."""
 
-    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+    def is_decided(
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
+    ) -> bool:
         """Return whether the stage ends before all its rounds are drawn.
 
         Asked when all matches of the drawn rounds are decided.
         """
 
     def next_round(
-        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
         """Pair the next round, once all earlier rounds are decided."""
 
     def tables(
-        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]
     ) -> tuple[Table, ...]:
         """Rank the teams, in a table for each group.
 
@@ -75,7 +77,9 @@ class Format(Protocol):
 class _AllRounds:
     """A method of those formats in which all rounds are played."""
 
-    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+    def is_decided(
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
+    ) -> bool:
         """Return False: all rounds are played."""
         return False
 
@@ -88,7 +92,7 @@ class DrawnAtOnce(_AllRounds):
         return 0
 
     def next_round(
-        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
         """Return no pairs."""
         return ()
@@ -107,14 +111,14 @@ class DrawnByRound(_AllRounds):
                 id=stage.id("r", number, order),
                 section="r",
                 round=number,
-                sources=(Entry(pair[0]), Entry(pair[1]) if len(pair) == 2 else Bye()),
+                sources=(Entrant(pair[0]), Entrant(pair[1]) if len(pair) == 2 else Bye()),
             )
             for number, pairs in enumerate(stage.drawn, 1)
             for order, pair in enumerate(pairs, 1)
         )
 
     def tables(
-        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]
     ) -> tuple[Table, ...]:
         """Rank the teams."""
         found = counted(matches.values())

@@ -5,8 +5,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import msgspec
 
 from lacoc_server.contest.league.formats.format import DrawnAtOnce, Stage
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import AnySource, Bye, Entry, LoserOf, Pairing, WinnerOf
+from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.league.pairing import AnySource, Bye, Entrant, LoserOf, Pairing, WinnerOf
 from lacoc_server.contest.league.standings import Standing, Table, counted, standings
 
 ORDER = ("seed",)
@@ -35,7 +35,7 @@ class Knockout(DrawnAtOnce):
         return tuple(double_bracket(stage) if self.double else single_bracket(stage))
 
     def tables(
-        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]
     ) -> tuple[Table, ...]:
         """Rank the teams by how far they came; those still in come first."""
         places = _places(matches.values())
@@ -53,7 +53,7 @@ class Knockout(DrawnAtOnce):
         return (Table(section="", tie_breaks=ORDER, rows=tuple(ranked)),)
 
 
-def _places(matches: Collection[Match]) -> dict[str, int]:
+def _places(matches: Collection[ContestMatch]) -> dict[str, int]:
     """Return the final places that are decided, by team."""
     resets = {match.pairing.only_if_second_won: match for match in matches}
     places: dict[str, int] = {}
@@ -68,7 +68,7 @@ def _places(matches: Collection[Match]) -> dict[str, int]:
     return places
 
 
-def _leaving(match: Match) -> list[str]:
+def _leaving(match: ContestMatch) -> list[str]:
     """Return the teams that leave the stage after a decided match."""
     if not match.winner:
         leaving = match.teams
@@ -88,7 +88,7 @@ def seeded(entries: Sequence[str]) -> list[AnySource]:
     while len(order) < len(entries):
         size = 2 * len(order)
         order = [place for seed in order for place in (seed, size - 1 - seed)]
-    return [Entry(entries[seed]) if seed < len(entries) else Bye() for seed in order]
+    return [Entrant(entries[seed]) if seed < len(entries) else Bye() for seed in order]
 
 
 def single_bracket(stage: Stage) -> Iterator[Pairing]:

@@ -3,8 +3,8 @@
 from collections.abc import Collection, Iterator, Mapping
 
 from lacoc_server.contest.league.formats.format import DrawnAtOnce, Stage
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import Entry, Pairing
+from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.league.pairing import Entrant, Pairing
 from lacoc_server.contest.league.standings import Table, counted, standings
 
 ORDER = ("points", "direct", "difference", "scored", "wins", "seed")
@@ -24,7 +24,7 @@ class RoundRobin(DrawnAtOnce):
                 id=stage.id(section, number, order),
                 section=section,
                 round=number,
-                sources=(Entry(teams[left]), Entry(teams[right])),
+                sources=(Entrant(teams[left]), Entrant(teams[right])),
             )
             for section, teams in groups(stage).items()
             for number in range(1, _rounds(stage, len(teams)) + 1)
@@ -33,7 +33,7 @@ class RoundRobin(DrawnAtOnce):
         return tuple(sorted(found, key=lambda pairing: pairing.round))
 
     def tables(
-        self, stage: Stage, matches: Mapping[str, Match], last: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]
     ) -> tuple[Table, ...]:
         """Rank the teams of each group."""
         return tuple(

@@ -12,7 +12,7 @@ from statistics import NormalDist, fmean, pvariance
 
 from lacoc_server.contest.league.formats.format import DrawnByRound, Pair, Stage
 from lacoc_server.contest.league.formats.round_robin import ORDER, circle_round
-from lacoc_server.contest.league.matches import Game, Match
+from lacoc_server.contest.league.matches import ContestMatch, CountedGame
 
 _LAPS = 10
 """Most laps, unless the plan has a number of rounds."""
@@ -30,7 +30,9 @@ class Sequential(DrawnByRound):
         """Return the most rounds."""
         return stage.settings.rounds or _LAPS * _lap(stage)
 
-    def is_decided(self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]) -> bool:
+    def is_decided(
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
+    ) -> bool:
         """Return whether a lap is over after which the first places are decided.
 
         Each look at the results, and each place, could be the one that is wrong. So each of them
@@ -47,7 +49,7 @@ class Sequential(DrawnByRound):
         return all(lead(games, one, other) > least for one, other in pairwise(here))
 
     def next_round(
-        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
         """Pair the next round, by the circle method; opponents of a team that left have a rest."""
         teams = stage.entries
@@ -58,7 +60,7 @@ class Sequential(DrawnByRound):
         return tuple(pair for pair in pairs if not {*pair} & {*gone})
 
 
-def lead(games: Iterable[Game], one: str, other: str) -> float:
+def lead(games: Iterable[CountedGame], one: str, other: str) -> float:
     """Return by how much a team is ahead of another one, in standard deviations (a score test).
 
     The lead is what the team won more, against the other one and against the same opponents. Its

@@ -15,7 +15,7 @@ import networkx
 from caissify_pairings.engines.dutch import DutchEngine
 
 from lacoc_server.contest.league.formats.format import DrawnByRound, Pair, Stage
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.standings import DRAW, WIN, counted
 
 # The engine warns when it must break a rule; then the matching takes over, and nothing is wrong.
@@ -27,7 +27,7 @@ LARGEST = 60
 """Most teams that the engine pairs: 60 take a second, 200 some minutes."""
 
 
-class Player(msgspec.Struct, kw_only=True):
+class SwissTeam(msgspec.Struct, kw_only=True):
     """A team as the pairing of the next round sees it."""
 
     team: str
@@ -61,23 +61,23 @@ class Swiss(DrawnByRound):
         return stage.settings.rounds or max(1, (len(stage.entries) - 1).bit_length())
 
     def next_round(
-        self, stage: Stage, matches: Mapping[str, Match], gone: Collection[str]
+        self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
         """Pair the next round."""
         players = [one for one in history(stage, matches) if one.team not in gone]
         return tuple(
-            (pair[0].team,) if len(pair) == 1 else seated(pair[0], pair[1])
+            (pair[0].team,) if len(pair) == 1 else seat_pair(pair[0], pair[1])
             for pair in paired(players, len(stage.drawn) + 1)
         )
 
 
-def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
+def history(stage: Stage, matches: Mapping[str, ContestMatch]) -> list[SwissTeam]:
     """Return the teams, each with its points, opponents, sides and byes in the drawn rounds.
 
     They are in the order of the seeding.
     """
     players = {
-        team: Player(team=team, number=number) for number, team in enumerate(stage.entries, 1)
+        team: SwissTeam(team=team, number=number) for number, team in enumerate(stage.entries, 1)
     }
     for number, pairs in enumerate(stage.drawn, 1):
         before = {team: player.points for team, player in players.items()}
@@ -94,7 +94,7 @@ def history(stage: Stage, matches: Mapping[str, Match]) -> list[Player]:
     return [*players.values()]
 
 
-def _add(player: Player, side: int, others: Sequence[str], match: Match) -> None:
+def _add(player: SwissTeam, side: int, others: Sequence[str], match: ContestMatch) -> None:
     """Add a past match to what is known of a player: opponents, sides, points, byes.
 
     A match without a game adds no side.
@@ -117,7 +117,7 @@ def _float(before: Mapping[str, int], team: str, others: Sequence[str]) -> str:
     return "up" if before[team] < before[others[0]] else "none"
 
 
-def seated(one: Player, other: Player) -> tuple[str, str]:
+def seat_pair(one: SwissTeam, other: SwissTeam) -> tuple[str, str]:
     """Seat a pair; return who sits left, then who sits right.
 
     Who sat left less often sits left. If both did equally often, who sat right last does; if that
@@ -130,7 +130,7 @@ def seated(one: Player, other: Player) -> tuple[str, str]:
     return (second.team, first.team) if keys[1] < keys[0] else (first.team, second.team)
 
 
-def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
+def paired(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTeam, ...]]:
     """Pair the players of a round; with an odd number one has a bye.
 
     The engine (`dutch`) pairs them, unless there are too many players for it or the rules can't
@@ -157,7 +157,7 @@ def paired(players: Sequence[Player], round_number: int) -> list[tuple[Player, .
     )
 
 
-def dutch(players: Sequence[Player], round_number: int) -> list[tuple[Player, ...]]:
+def dutch(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTeam, ...]]:
     """Pair by the FIDE (Dutch) system."""
     by_number = {player.number: player for player in players}
     numbers = {player.team: player.number for player in players}
@@ -190,7 +190,7 @@ def dutch(players: Sequence[Player], round_number: int) -> list[tuple[Player, ..
     ]
 
 
-def _colours(player: Player) -> list[str]:
+def _colours(player: SwissTeam) -> list[str]:
     """Say which side a team should get next, as a history of colours for the engine.
 
     The engine must change a team's colour only after the same colour twice. Here a team must change
@@ -205,7 +205,7 @@ def _colours(player: Player) -> list[str]:
     return ["white", "white"] if due_right else ["black", "black"]
 
 
-def _legal(pairs: Iterable[tuple[Player, ...]], players: Sequence[Player]) -> bool:
+def _legal(pairs: Iterable[tuple[SwissTeam, ...]], players: Sequence[SwissTeam]) -> bool:
     """Say whether everybody is paired once, and no rule is broken."""
     found = list(pairs)
     everybody = sorted(player.number for pair in found for player in pair)
@@ -217,7 +217,7 @@ def _legal(pairs: Iterable[tuple[Player, ...]], players: Sequence[Player]) -> bo
     )
 
 
-def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
+def faults(pair: Sequence[SwissTeam]) -> tuple[int, int, int]:
     """Count what is wrong with a pair: met before, a second bye, both due the same side."""
     if len(pair) == 1:
         return 0, int(pair[0].had_bye), 0
@@ -226,7 +226,7 @@ def faults(pair: Sequence[Player]) -> tuple[int, int, int]:
     return int(other.team in one.met), 0, int(both_due)
 
 
-def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
+def fewest_faults(players: Sequence[SwissTeam]) -> list[tuple[SwissTeam, ...]]:
     """Pair so that as few rules as possible are broken.
 
     First as few pairs as possible have met before; then as few teams as possible get a second bye;
@@ -252,7 +252,7 @@ def fewest_faults(players: Sequence[Player]) -> list[tuple[Player, ...]]:
     ]
 
 
-def _cost(pair: Sequence[Player], apart: int, fold: int, many: int) -> int:
+def _cost(pair: Sequence[SwissTeam], apart: int, fold: int, many: int) -> int:
     """Return the cost of a pair: one graver fault costs more than any number of lesser ones.
 
     The gravest are those that `faults` counts, in its order. Then comes `apart`, then `fold`.

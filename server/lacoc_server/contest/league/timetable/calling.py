@@ -20,7 +20,7 @@ def is_open_call(call: str) -> bool:
     return call.startswith(OPEN_CALL)
 
 
-class Ended(NamedTuple):
+class GameEnd(NamedTuple):
     """The end of a game at a court."""
 
     scores: tuple[int, int]
@@ -30,7 +30,7 @@ class Ended(NamedTuple):
     """File name of the record."""
 
 
-class Seen(NamedTuple):
+class SeenCourt(NamedTuple):
     """A court as the office sees it."""
 
     heard_ms: int
@@ -39,13 +39,13 @@ class Seen(NamedTuple):
     """Id of the call whose match the court has; "": none."""
     begun: bool = False
     """Whether the match has begun to be played."""
-    ended: Ended | None = None
+    ended: GameEnd | None = None
     """How the match ended; None: it has no official end."""
     there: bool = False
     """Whether the court answers now."""
 
 
-def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
+def results(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterator[AnyFact]:
     """Yield the results of the called games that courts have brought to an end."""
     for call in contest.running:
         court = seen.get(call.court)
@@ -62,7 +62,7 @@ def results(contest: Contest, seen: Mapping[str, Seen]) -> Iterator[AnyFact]:
 
 
 def taken_back(
-    contest: Contest, seen: Mapping[str, Seen], now_ms: int, since_ms: int = 0
+    contest: Contest, seen: Mapping[str, SeenCourt], now_ms: int, since_ms: int = 0
 ) -> Iterator[AnyFact]:
     """Yield the games that are taken back from their courts.
 
@@ -84,7 +84,7 @@ def taken_back(
     }
     moves = {move.pairing: move for move in contest.moves}
     for call in contest.running:
-        court = seen.get(call.court, Seen(0))
+        court = seen.get(call.court, SeenCourt(0))
         move = moves.get(call.pairing)
         if court.call == call.id and court.begun:
             continue
@@ -100,7 +100,7 @@ def taken_back(
 
 def calls(
     contest: Contest,
-    seen: Mapping[str, Seen],
+    seen: Mapping[str, SeenCourt],
     now_ms: int,
     least_rest_ms: int,
     held: Collection[tuple[str, int]] = (),
@@ -127,11 +127,11 @@ def calls(
     ]
 
 
-def present(seen: Mapping[str, Seen], now_ms: int) -> list[str]:
+def present(seen: Mapping[str, SeenCourt], now_ms: int) -> list[str]:
     """Return the courts that were heard within the last `LOST_MS`, in the order of `seen`."""
     return [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
 
 
-def wanted(contest: Contest, seen: Mapping[str, Seen]) -> Iterable[Called]:
+def wanted(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterable[Called]:
     """Return the calls that their courts do not have yet: the office sends them again."""
-    return [call for call in contest.running if seen.get(call.court, Seen(0)).call != call.id]
+    return [call for call in contest.running if seen.get(call.court, SeenCourt(0)).call != call.id]

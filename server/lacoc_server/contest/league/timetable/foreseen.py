@@ -12,18 +12,18 @@ from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.facts import Planned, stage_of
 from lacoc_server.contest.league.fixture import match_fixture
 from lacoc_server.contest.league.formats.format import Format, Stage
-from lacoc_server.contest.league.matches import NOBODY, Match, Rules, resolve
-from lacoc_server.contest.league.pairing import AnySource, Entry, LoserOf, Pairing, WinnerOf
+from lacoc_server.contest.league.matches import NOBODY, ContestMatch, StageRules, resolve
+from lacoc_server.contest.league.pairing import AnySource, Entrant, LoserOf, Pairing, WinnerOf
 from lacoc_server.contest.league.timetable.schedule import is_final, playable
 from lacoc_shared.words import Phrase, say
 
-_TO_BE_DRAWN = Entry("")
+_TO_BE_DRAWN = Entrant("")
 
 
 class Foreseen(msgspec.Struct, frozen=True, kw_only=True):
     """A match that is still to come."""
 
-    match: Match
+    match: ContestMatch
     fixture: Phrase
     """What it is: "Semi-final 1"."""
     who: tuple[Phrase, Phrase]
@@ -57,16 +57,18 @@ def foreseen(contest: Contest, formats: Mapping[str, Format]) -> tuple[Foreseen,
     )
 
 
-def _foreseen(whole: Contest, view: StageView, match: Match, drawn: Collection[str]) -> Foreseen:
+def _foreseen(
+    whole: Contest, view: StageView, match: ContestMatch, drawn: Collection[str]
+) -> Foreseen:
     is_drawn = view.name in drawn
     who = _who(whole, view, match, drawn=is_drawn)
     fixture = match_fixture(whole, view, match)
     if not is_drawn:  # places in the seeding are no teams
-        match = Match(pairing=match.pairing, teams=(None, None), state="waits")
+        match = ContestMatch(pairing=match.pairing, teams=(None, None), state="waits")
     return Foreseen(match=match, fixture=fixture, who=who)
 
 
-def _is_to_come(match: Match) -> bool:
+def _is_to_come(match: ContestMatch) -> bool:
     """Return whether a match will be played; a place that stays empty makes none of it."""
     conditional = match.pairing.only_if_second_won
     return not (match.decided or conditional or NOBODY in match.teams)
@@ -94,7 +96,7 @@ def _planned(plan: Planned, teams: int, how: Format) -> StageView:
     """Return a stage as it will be; a team is named by its place in the seeding."""
     entries = tuple(str(number) for number in range(1, teams + 1))
     stage = Stage(name=plan.stage, settings=plan.settings, entries=entries)
-    rules = Rules(
+    rules = StageRules(
         settings=stage.settings, entries=entries, decisive=how.decisive, balanced=how.balanced
     )
     matches = [*resolve(how.pairings(stage), {}, (), rules).values()]
@@ -102,7 +104,7 @@ def _planned(plan: Planned, teams: int, how: Format) -> StageView:
     return StageView(plan=plan, stage=stage, matches=tuple(matches), tables=(), rounds_to_draw=0)
 
 
-def _rounds(stage: Stage, rounds: range, teams: int) -> Iterator[Match]:
+def _rounds(stage: Stage, rounds: range, teams: int) -> Iterator[ContestMatch]:
     """Yield the matches of rounds that are drawn later."""
     for number in rounds:
         for order in range(1, teams // 2 + 1):
@@ -112,10 +114,12 @@ def _rounds(stage: Stage, rounds: range, teams: int) -> Iterator[Match]:
                 round=number,
                 sources=(_TO_BE_DRAWN, _TO_BE_DRAWN),
             )
-            yield Match(pairing=pairing, teams=(None, None), state="waits")
+            yield ContestMatch(pairing=pairing, teams=(None, None), state="waits")
 
 
-def _who(whole: Contest, view: StageView, match: Match, *, drawn: bool) -> tuple[Phrase, Phrase]:
+def _who(
+    whole: Contest, view: StageView, match: ContestMatch, *, drawn: bool
+) -> tuple[Phrase, Phrase]:
     first, second = (
         _from(whole, view, source)
         if team is None

@@ -5,11 +5,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 import msgspec
 
 from lacoc_server.contest.league.contest import Contest, StageView, next_round
-from lacoc_server.contest.league.draws import apart
+from lacoc_server.contest.league.draws import clubs_apart
 from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new, stage_of
 from lacoc_server.contest.league.formats.format import Format, Stage
-from lacoc_server.contest.league.matches import Match
-from lacoc_server.contest.league.pairing import Entry
+from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.league.pairing import Entrant
 
 
 class Assignment(msgspec.Struct, frozen=True, kw_only=True):
@@ -22,7 +22,7 @@ class Assignment(msgspec.Struct, frozen=True, kw_only=True):
     """Who sits left and who sits right."""
 
 
-def playable(contest: Contest) -> list[Match]:
+def playable(contest: Contest) -> list[ContestMatch]:
     """Return the matches whose next game can be played, in the order in which to play them.
 
     A match that has begun goes on before others begin. Earlier stages and rounds come before later
@@ -48,7 +48,7 @@ def playable(contest: Contest) -> list[Match]:
     return matches
 
 
-def is_final(match: Match) -> bool:
+def is_final(match: ContestMatch) -> bool:
     """Return whether a match decides who wins its stage."""
     return match.pairing.winner_place == 1
 
@@ -58,13 +58,13 @@ def waits_for_others(view: StageView) -> bool:
     return not all(match.decided or is_final(match) for match in view.matches)
 
 
-def court_of(contest: Contest, match: Match) -> str:
+def court_of(contest: Contest, match: ContestMatch) -> str:
     """Return the only court on which a match is played; "": any court."""
     moved = next((move.court for move in contest.moves if move.pairing == match.pairing.id), "")
     return moved or (_plan(contest, match).final_court if is_final(match) else "")
 
 
-def not_before_ms(contest: Contest, match: Match, now_ms: int) -> int:
+def not_before_ms(contest: Contest, match: ContestMatch, now_ms: int) -> int:
     """Return the earliest time of a match, in milliseconds since 1970, UTC; 0: any time.
 
     A match that has begun goes on without a break of its stage. The rest of teams is not counted.
@@ -84,7 +84,7 @@ def not_before_ms(contest: Contest, match: Match, now_ms: int) -> int:
     return max(earliest)
 
 
-def _plan(contest: Contest, match: Match) -> Planned:
+def _plan(contest: Contest, match: ContestMatch) -> Planned:
     plans = [*(view.plan for view in contest.stages), *contest.planned]
     return next(plan for plan in plans if plan.stage == stage_of(match.pairing.id))
 
@@ -141,7 +141,7 @@ def _assigned(
         yield Assignment(court=court, pairing=match.pairing.id, game=match.next_game, teams=teams)
 
 
-def rested_ms(contest: Contest, match: Match, least_rest_ms: int, now_ms: int) -> int:
+def rested_ms(contest: Contest, match: ContestMatch, least_rest_ms: int, now_ms: int) -> int:
     """Return when both teams of a match will have rested, in milliseconds since 1970, UTC.
 
     A game that ended in the future did not: the machine's clock was set back since.
@@ -202,10 +202,10 @@ def kept_apart(
     def met(order: tuple[str, ...]) -> Iterator[tuple[str, str]]:
         for pairing in how.pairings(Stage(name="", settings=plan.settings, entries=order)):
             first, second = pairing.sources
-            if isinstance(first, Entry) and isinstance(second, Entry):
+            if isinstance(first, Entrant) and isinstance(second, Entrant):
                 yield first.team, second.team
 
-    return apart(teams, {team.name: team.club for team in contest.teams}, met)
+    return clubs_apart(teams, {team.name: team.club for team in contest.teams}, met)
 
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:

@@ -13,9 +13,9 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import Seen
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
-from lacoc_server.contest.league.timetable.whereabouts import Known
+from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.words import Phrase, say
 
@@ -35,7 +35,9 @@ class Ticker:
         self._over = False
         self._to_draw = ""
 
-    def newest(self, contest: Contest, facts: Sequence[AnyFact], known: Known) -> Iterator[Phrase]:
+    def newest(
+        self, contest: Contest, facts: Sequence[AnyFact], known: OfficeKnowledge
+    ) -> Iterator[Phrase]:
         """Yield what has happened since the last call.
 
         Args:
@@ -62,7 +64,7 @@ class Ticker:
             yield say("news.over")
         self._over = contest.over
 
-    def _courts(self, seen: Mapping[str, Seen]) -> Iterator[Phrase]:
+    def _courts(self, seen: Mapping[str, SeenCourt]) -> Iterator[Phrase]:
         for court, one in seen.items():
             was_there = self._there.get(court)
             if one.there or was_there is not None:

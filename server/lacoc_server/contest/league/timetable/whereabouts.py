@@ -13,9 +13,9 @@ from typing import NamedTuple
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played, stage_of
 from lacoc_server.contest.league.fixture import fixture
-from lacoc_server.contest.league.matches import Match
+from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
-from lacoc_server.contest.league.timetable.calling import Seen, present
+from lacoc_server.contest.league.timetable.calling import SeenCourt, present
 from lacoc_server.contest.league.timetable.foreseen import Foreseen
 from lacoc_server.contest.league.timetable.schedule import (
     court_of,
@@ -38,16 +38,16 @@ _MOMENT_S = 30
 """What comes sooner is said to come in a moment."""
 
 
-class Courts(NamedTuple):
+class SeenCourts(NamedTuple):
     """What is known of the courts."""
 
-    seen: Mapping[str, Seen]
+    seen: Mapping[str, SeenCourt]
     """In the order in which they are filled."""
     addresses: Mapping[str, str]
     """Addresses for contestants."""
 
 
-class Pace(NamedTuple):
+class ContestPace(NamedTuple):
     """How fast the contest goes."""
 
     now_ms: int
@@ -58,17 +58,17 @@ class Pace(NamedTuple):
     """Shortest time between two matches of a team."""
 
 
-class Known(NamedTuple):
+class OfficeKnowledge(NamedTuple):
     """What the office knows besides the facts, as of its newest look at the courts."""
 
-    seen: Mapping[str, Seen]
+    seen: Mapping[str, SeenCourt]
     """The courts, in the order in which they are filled."""
-    pace: Pace
+    pace: ContestPace
     held: Mapping[tuple[str, int], Phrase]
     """Games that a court refused, by pairing and number, with the reason."""
 
 
-class Start(NamedTuple):
+class ProbableStart(NamedTuple):
     """When and where a match probably begins."""
 
     court: str
@@ -100,7 +100,7 @@ def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
 
 
 def whereabouts(
-    contest: Contest, courts: Courts, pace: Pace, begins: Mapping[str, Start]
+    contest: Contest, courts: SeenCourts, pace: ContestPace, begins: Mapping[str, ProbableStart]
 ) -> dict[str, Whereabouts]:
     """Say of each team where it plays, or what it waits for.
 
@@ -129,7 +129,7 @@ def whereabouts(
     return found
 
 
-def _called(contest: Contest, team: str, call: Called, courts: Courts) -> Whereabouts:
+def _called(contest: Contest, team: str, call: Called, courts: SeenCourts) -> Whereabouts:
     """Say where a team plays, if its game was given to a court; the court may not have it yet."""
     view, match = _match(contest, call.pairing)
     opponent = call.teams[call.teams[0] == team]
@@ -165,9 +165,9 @@ def _waits(
     contest: Contest,
     team: str,
     view: StageView,
-    match: Match,
-    start: Start | None,
-    pace: Pace,
+    match: ContestMatch,
+    start: ProbableStart | None,
+    pace: ContestPace,
 ) -> Whereabouts:
     """Say what a team waits for, if its next match is known."""
     about = fixture(contest, view, match, max(1, match.next_game))
@@ -214,7 +214,7 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
     return Whereabouts(team=team, state="out", said=say("team.out", place=place), rank=rank)
 
 
-def _match(contest: Contest, pairing: str) -> tuple[StageView, Match]:
+def _match(contest: Contest, pairing: str) -> tuple[StageView, ContestMatch]:
     return next(
         (view, match)
         for view in contest.stages
@@ -223,14 +223,14 @@ def _match(contest: Contest, pairing: str) -> tuple[StageView, Match]:
     )
 
 
-def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
+def _coming(contest: Contest) -> dict[str, tuple[StageView, ContestMatch]]:
     """Find the next match of each team: one to be played now, else one that waits.
 
     A match waits for an opponent, or as a final for the other matches of its stage.
     """
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     waiting = (match for view in contest.stages for match in view.matches if not match.decided)
-    coming: dict[str, tuple[StageView, Match]] = {}
+    coming: dict[str, tuple[StageView, ContestMatch]] = {}
     for match in (*playable(contest), *waiting):
         for team in match.teams:
             if team:
@@ -239,8 +239,8 @@ def _coming(contest: Contest) -> dict[str, tuple[StageView, Match]]:
 
 
 def starts(
-    contest: Contest, coming: Sequence[Foreseen], seen: Mapping[str, Seen], pace: Pace
-) -> Iterator[tuple[str, Start]]:
+    contest: Contest, coming: Sequence[Foreseen], seen: Mapping[str, SeenCourt], pace: ContestPace
+) -> Iterator[tuple[str, ProbableStart]]:
     """Estimate when and where each match to come begins; yield its pairing's id and its start.
 
     The matches are given to the courts in their order. A court that has been silent for `LOST_MS`
@@ -289,7 +289,7 @@ def starts(
             court = min(court_ms, key=court_ms.__getitem__)
         appointed_ms = not_before_ms(contest, match, now_ms)
         at_ms = max(court_ms[court], waited, appointed_ms, *rested)
-        yield one.pairing.id, Start(court, at_ms, bisect_left(begun, at_ms))
+        yield one.pairing.id, ProbableStart(court, at_ms, bisect_left(begun, at_ms))
         count = _games(plan, match)
         for number in range(count):
             insort(begun, at_ms + number * game)
@@ -326,7 +326,7 @@ def full_minute(at_ms: int) -> int:
     return -(-at_ms // _MINUTE_MS) * _MINUTE_MS
 
 
-def _games(plan: Planned, match: Match) -> int:
+def _games(plan: Planned, match: ContestMatch) -> int:
     """Return how many games a match takes from now on, if whoever leads wins the rest."""
     wins = [sum(game.winner == team for game in match.games) for team in match.teams]
     return max(1, plan.settings.games // 2 + 1 - max(wins))

@@ -11,7 +11,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 
-class Drawn:
+class Painter:
     """Draws the pictures of an environment.
 
     Args:
