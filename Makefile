@@ -23,7 +23,7 @@ PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test test-all test-long format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
+.PHONY: help demo test test-all test-long format lint type walls core check build bench fuzz mutants soak wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -67,7 +67,10 @@ type: .venv/.lint .venv/.web ## Check types.
 walls: .venv/.lint ## Check who imports whom (docs/architecture.md).
 	$(BIN)/lint-imports
 
-check: lint type walls test ## Everything that must be right before a commit.
+core: .venv/.test ## Delete all satellites in a copy, and run the core's tests there.
+	$(BIN)/python tests/project/core_alone.py -n 2
+
+check: lint type walls core test ## Everything that must be right before a commit.
 
 build: .venv/.build ## Make the wheel and the source archive in dist/.
 	rm -rf dist

@@ -37,7 +37,7 @@ from lacoc_server.studio.coach.trials import Task, Trials, try_table
 from lacoc_server.studio.styles.archive import arousal_mm_s, is_sound
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import VARIANTS, vary
-from lacoc_server.studio.workers import Workers
+from lacoc_server.workers import Workers
 from lacoc_shared.gait.tables import Gait, LocomotionTable, Posture
 
 _ROBOT, _KEY = "hexapod", 2

@@ -29,7 +29,8 @@ def preload() -> None:
     """Import the modules of all commands, games and robots."""
     for group in ("lacoc.commands", "lacoc.commands.replay", "lacoc.arenas", "lacoc.robots"):
         for entry in importlib.metadata.entry_points(group=group):
-            entry.load()
+            with contextlib.suppress(ImportError):  # without its satellite
+                entry.load()
     import uvicorn.protocols.http.h11_impl  # noqa: F401
 
     gc.freeze()  # garbage collection in a child then copies no shared memory

@@ -11,7 +11,6 @@ import pytest
 from benchmarks import contest_played
 from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS
 
-from lacoc_client.film import contest as film_contest
 from lacoc_server.commands.contest.checking import NOT_PROVEN
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
@@ -202,6 +201,7 @@ def test_a_reel_finds_the_records(played: Path) -> None:
 
     A film of the contest's own folder takes records of the same names, in the same order.
     """
+    film_contest = pytest.importorskip("lacoc_client.film.contest")
     published = film_contest.records(played / "published")
     own = film_contest.records(played)
 

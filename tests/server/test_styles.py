@@ -28,8 +28,8 @@ from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import Mapped, fill
 from lacoc_server.studio.styles.style import WAYS, Styles, Way, far_apart
 from lacoc_server.studio.styles.variants import VARIANTS, vary
-from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
+from lacoc_server.workers import Workers
 
 GRID = MapGrid(20.0, 6.0)
 

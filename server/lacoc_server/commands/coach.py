@@ -34,8 +34,8 @@ from lacoc_server.studio.coach.trials import Task, Trials
 from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import VARIANTS, vary
-from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
+from lacoc_server.workers import Workers
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait

@@ -14,7 +14,7 @@ from lacoc_server.studio.coach.trials import Task, Trials
 from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import vary
-from lacoc_server.studio.workers import Workers
+from lacoc_server.workers import Workers
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import (
     CoachReply,

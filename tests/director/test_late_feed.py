@@ -3,10 +3,10 @@
 import time
 from typing import Any
 
+from lacoc_client.web.director.programme import Channel
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.late_feed import LateFeed
-from lacoc_client.web.gateway.programme import Channel
 from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
