@@ -38,7 +38,7 @@ from lacoc_server.simulate.forks.chances import (
 )
 from lacoc_server.simulate.forks.odds import MomentOdds, Swing
 from lacoc_server.simulate.forks.origin import ForkSource, read_source
-from lacoc_server.workers import Workers
+from lacoc_server.simulate.workers import Workers
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.words import Phrase
 

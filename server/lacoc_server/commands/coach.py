@@ -24,6 +24,7 @@ from lacoc_server.commands.coach_others import (
     written,
 )
 from lacoc_server.commands.trial import GaitFile, RobotName
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import Tell, cell_place, coach, coached_key, reply_of, task_of
 from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
@@ -35,7 +36,6 @@ from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import VARIANTS, vary
 from lacoc_server.trial.figures import Figures
-from lacoc_server.workers import Workers
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait

@@ -7,13 +7,13 @@ from concurrent.futures import TimeoutError as NotDone
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.goal import Goal, goal_score
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.floors import course_of
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press
-from lacoc_server.workers import Workers
 from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 
