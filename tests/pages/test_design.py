@@ -518,3 +518,32 @@ def test_a_page_that_comes_while_the_studio_stands_still_opens_by_itself(
             studio.resume()
         process.terminate()
         process.communicate(timeout=LIMIT_S)
+
+
+def test_trials_outlive_a_reload_and_an_outage(
+    open_page: OpenPage, tmp_path: Path, console: Any
+) -> None:
+    """Trials are there after a reload; one that is asked for in an outage is made after it."""
+    console.expect("WebSocket")
+    process, url, key = start_own_page(tmp_path, "design")
+    design = psutil.Process(process.pid)
+    try:
+        page = Designer(open_page, url)
+        page.begin(key)
+        page.tries()
+        speed = page.figure("speed_mm_s")
+        page.page.reload()
+        expect(page.find(".trials > li")).to_have_count(1)
+        page.page.click(".trials > li button >> nth=0")
+        assert page.figure("speed_mm_s") == speed
+
+        design.suspend()
+        page.sees(".banner", "connection")
+        page.press("Control+Enter")
+        page.is_toasted("as soon as it is back")
+        design.resume()
+        expect(page.find(".trials > li")).to_have_count(2)
+    finally:
+        design.resume()
+        process.terminate()
+        process.communicate(timeout=LIMIT_S)
