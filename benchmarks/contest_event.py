@@ -23,10 +23,10 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
+from browser import SLOW_SCREEN, chromium
 from playwright.sync_api import Browser, Locator, Page, TimeoutError
+from processes import LACOC, free_port, hush, read_line, started
 
-from benchmarks.own_page import SLOW_SCREEN, chromium
-from benchmarks.processes import LACOC, free_port, hush, read_line, started
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.acts import organiser
 from lacoc_shared.seat import Phase

@@ -15,7 +15,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from benchmarks.processes import ask, court, read_line, started, used_s
+from processes import ask, court, read_line, started, used_s
+
 from lacoc_server.court.pace import Pace
 from lacoc_shared.seat import Phase
 

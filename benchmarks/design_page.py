@@ -16,9 +16,9 @@ import time
 from statistics import median, quantiles
 from typing import Any
 
+from browser import chromium, own_page
 from playwright.sync_api import Page
 
-from benchmarks.own_page import chromium, own_page
 from benchmarks.studio import bare_s
 
 _TIMEOUT_MS = 60_000

@@ -3,7 +3,7 @@
     python -m benchmarks.direct ADDRESS COURT SPECTATORS
 
 Each spectator has a session of its own with all the subscriptions of a spectator. Each line on
-standard input ends a count and prints it as JSON, as `benchmarks.spectators` does.
+standard input ends a count and prints it as JSON, as `crowd` does.
 """
 
 import argparse

@@ -13,8 +13,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "network"))
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "common"))
 from mirrored_pair import EVERY_BEATS, Played, Trip, play_on_pages
 
 from lacoc_shared.seat import BEAT_S

@@ -7,16 +7,13 @@ pairs both keys took effect in the same beat, and whether each late key is recor
 
 import argparse
 import statistics
-import sys
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from mirrored_pair import SEATS, Played, play
 from rich.console import Console
 from rich.table import Table
-
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "network"))
-from mirrored_pair import SEATS, Played, play
 
 
 class _Case(NamedTuple):

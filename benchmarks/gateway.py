@@ -17,8 +17,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from benchmarks.processes import LACOC, Opened, ask, read_line, started, used_s
-from benchmarks.processes import court as open_court
+from processes import LACOC, Opened, ask, read_line, started, used_s
+from processes import court as open_court
+
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.spectator import Spectator
 from lacoc_shared.network.session import Session, open_client
@@ -53,7 +54,7 @@ def gateway(
             alone, idle = _cost(court.process, web, view, seconds)
             alone_us.append(alone)
             idle_cpu.append(idle)
-            with started("benchmarks.spectators", url, str(pages), str(hz)) as crowd:
+            with started("tests.processes.crowd", url, str(pages), str(hz)) as crowd:
                 read_line(crowd)
                 time.sleep(_SETTLE_S)
                 ask(crowd, "count")

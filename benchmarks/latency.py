@@ -7,8 +7,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+from processes import court, read_line, started
+
 from benchmarks.echo import PING, PONG
-from benchmarks.processes import court, read_line, started
 from lacoc_client.play.controller import Controller
 from lacoc_shared.network.session import Mailbox, Publisher, open_client
 from lacoc_shared.seat import BEAT_S, Phase

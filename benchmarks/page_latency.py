@@ -15,11 +15,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from browser import chromium, own_page
 from playwright.sync_api import Browser, Page, TimeoutError
 from websockets.sync.server import ServerConnection
 from websockets.sync.server import serve as serve_websocket
 
-from benchmarks.own_page import chromium, own_page
 from lacoc_shared.seat import BEAT_S
 
 FRAME_BYTES = 200

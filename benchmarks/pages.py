@@ -16,12 +16,9 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from playwright.sync_api import Browser, Response, sync_playwright
-
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
-
 from chromium import FLAGS, WEB, build_pages, build_stand, find_chromium
 from match_file import match_file
+from playwright.sync_api import Browser, Response, sync_playwright
 from stand import Stand, served
 
 SIZE = {"width": 800, "height": 450}

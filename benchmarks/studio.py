@@ -14,7 +14,8 @@ import time
 from dataclasses import dataclass, field
 from statistics import median
 
-from benchmarks.processes import LACOC, read_line, started
+from processes import LACOC, read_line, started
+
 from benchmarks.trials import course_of, entry_of
 from lacoc_server.studio.answers import answer
 from lacoc_shared.codec import encode

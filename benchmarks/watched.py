@@ -20,7 +20,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
-from benchmarks.processes import LACOC, ask, read_line, started
+from processes import LACOC, ask, read_line, started
+
 from lacoc_shared.seat import BEATS_PER_S
 
 AIM = 1.2
@@ -48,7 +49,9 @@ def watched(direct: int, pages: int, courts: int, seconds: float, rounds: int) -
     slowest_hz: list[float] = []
     with ExitStack() as stack:
         names = [f"court-{number}" for number in range(1, courts + 1)]
-        processes = [stack.enter_context(started("benchmarks.measured", name)) for name in names]
+        processes = [
+            stack.enter_context(started("tests.processes.measured_court", name)) for name in names
+        ]
         opened = [read_line(process) for process in processes]
         players = stack.enter_context(started("benchmarks.players"))
         ask(players, json.dumps(opened))
@@ -124,7 +127,7 @@ def _crowd(opened: dict[str, Any], number: int) -> Iterator[list[subprocess.Pope
 @contextmanager
 def _pages(url: str, number: int, courts: Sequence[str]) -> Iterator[list[subprocess.Popen[str]]]:
     words = (url, str(number), "25", *courts)
-    with _on_last_core("benchmarks.spectators", *words, wanted=number) as crowd:
+    with _on_last_core("tests.processes.crowd", *words, wanted=number) as crowd:
         yield crowd
 
 

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,14 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from benchmarks import contest_played
+import small_contest
 from lacoc_process import started
-from ports import free_port
-from waiting import LIMIT_S, until
-
-sys.path.append(str(Path(__file__).parents[1] / "server"))
 from msgspec.structs import replace
+from ports import free_port
 from stage import QUICK, join, setup
+from waiting import LIMIT_S, until
 
 from lacoc_client.play.controller import Controller, Hold
 from lacoc_client.play.team_way import where
@@ -138,7 +135,6 @@ def test_each_seat_is_told_where_it_is() -> None:
 
 def test_games_go_before_open_matches_that_have_not_begun() -> None:
     """A court with an open match gets a game unless the match has begun."""
-    sys.path.append(str(Path(__file__).parents[1] / "league"))
     from cup import NOW_MS, Cup
 
     seen = {
@@ -191,7 +187,7 @@ def test_records_of_open_matches_are_in_nobodys_way(copied: Path) -> None:
     """A contest with their records is published without them, and follows from its facts."""
     copied.write_text(copied.read_text("utf-8") + OPEN, "utf-8")
     path = record_open_match(ContestFolder(copied).records)
-    published = contest_played.publish(copied)
+    published = small_contest.publish(copied)
     assert not [one for one in published.rglob("*") if one.name == path.name]
     done = started(
         "contest", "verify", str(published), stdout=subprocess.PIPE, stderr=subprocess.STDOUT

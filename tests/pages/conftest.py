@@ -1,13 +1,14 @@
-"""Gives tests a browser and its pages, and makes the tests' helper modules importable."""
+"""Gives tests a browser and its pages."""
 
 import re
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_chromium
+from contestant import Contestant, Sit
 from playwright.sync_api import (
     Browser,
     BrowserContext,
@@ -17,17 +18,8 @@ from playwright.sync_api import (
     expect,
     sync_playwright,
 )
-from waiting import LIMIT_MS
-
-sys.path.append(str(Path(__file__).parent))
-sys.path.append(str(Path(__file__).parents[1] / "gateway"))
-sys.path.append(str(Path(__file__).parents[1] / "classroom"))
-sys.path.append(str(Path(__file__).parents[1] / "client"))
-sys.path.append(str(Path(__file__).parents[1] / "server"))
-
-from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_chromium
-from contestant import Contestant, Sit
 from venue import Venue
+from waiting import LIMIT_MS
 
 _NAMES = "--host-resolver-rules=MAP *.test 127.0.0.1"
 """Host names of tests lead to this machine."""

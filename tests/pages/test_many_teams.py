@@ -3,12 +3,12 @@
 import itertools
 import json
 import subprocess
-import sys
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
+from chance_event import Event
 from chromium import OpenPage
 from lacoc_process import run_lacoc, started
 from playwright.sync_api import Page, expect
@@ -16,10 +16,6 @@ from ports import free_port
 from show import violations
 from stand import served
 from waiting import LIMIT_S
-
-sys.path.append(str(Path(__file__).parents[1] / "league"))
-
-from chance_event import Event
 
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.league.sheet import encode, sheet

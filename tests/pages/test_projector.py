@@ -4,7 +4,6 @@ import contextlib
 import json
 import os
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 from chromium import OpenPage
+from contest_sheets import sheets
 from lacoc_process import started
 from playwright.sync_api import Page, ViewportSize, expect
 from ports import free_port
@@ -22,10 +22,6 @@ from lacoc_server.contest.acts.organiser import enter
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Announced
 from lacoc_server.contest.league.sheet import encode, sheet
-
-sys.path.append(str(Path(__file__).parent / "core"))
-
-from contest_sheets import sheets
 
 pytestmark = [pytest.mark.slow, pytest.mark.long]
 

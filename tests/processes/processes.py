@@ -1,0 +1,118 @@
+"""Starts the processes to measure: each part of a contest runs in its own, as at a venue."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ports import free_port
+
+__all__ = ["LACOC", "Opened", "ask", "court", "free_port", "hush", "read_line", "started", "used_s"]
+
+LACOC = "lacoc_shared"
+"""The module that is the command `lacoc`."""
+_END_S = 30
+
+
+@contextmanager
+def started(module: str, *words: str, quiet: bool = False) -> Iterator[subprocess.Popen[str]]:
+    """Start a process, and ask it to end when the block has ended.
+
+    Args:
+        module: the module that `python -m` runs.
+        words: its arguments.
+        quiet: whether to throw away its error output.
+    """
+    process = subprocess.Popen(
+        [sys.executable, "-m", module, *words],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL if quiet else None,
+        env={name: value for name, value in os.environ.items() if not name.startswith("LACOC_")},
+        text=True,
+    )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.communicate(timeout=_END_S)
+
+
+def read_line(process: subprocess.Popen[str]) -> Any:
+    """Return the next line of JSON that a process prints.
+
+    Raises:
+        RuntimeError: if the process has ended.
+    """
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    if not line:
+        raise RuntimeError(f"{process.args!r} ended with {process.wait()}")
+    return json.loads(line)
+
+
+def hush(process: subprocess.Popen[str]) -> None:
+    """Throw away all further output of a process: a full pipe would stop the process."""
+    assert process.stdout is not None
+    said = process.stdout
+
+    def read() -> None:
+        with suppress(ValueError):  # closed at the end
+            deque(said, maxlen=0)
+
+    threading.Thread(target=read, daemon=True).start()
+
+
+def ask(process: subprocess.Popen[str], word: str) -> Any:
+    """Send a word to a process and wait for its answer."""
+    assert process.stdin is not None
+    process.stdin.write(f"{word}\n")
+    process.stdin.flush()
+    return read_line(process)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A court that is open."""
+
+    process: subprocess.Popen[str]
+    name: str
+    address: str
+    tokens: Mapping[str, str]
+    referee: str
+    match_id: str
+
+
+@contextmanager
+def court(arena: str, folder: Path, *words: str) -> Iterator[Opened]:
+    """Open a court with `lacoc serve` on a free port.
+
+    Args:
+        arena: the game.
+        folder: where its records go.
+        words: more options.
+    """
+    where = ("--listen", "tcp/127.0.0.1:0", "--recordings", str(folder))
+    with started(LACOC, "serve", "--json", "--fresh", "--arena", arena, *where, *words) as process:
+        said = read_line(process)
+        yield Opened(
+            process,
+            said["court"],
+            said["locators"][0],
+            said["tokens"],
+            said["referee"],
+            said["match_id"],
+        )
+
+
+def used_s(process: subprocess.Popen[str]) -> float:
+    """Return the processor time of all threads of a process, as the kernel counts it [s]."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
