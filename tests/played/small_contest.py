@@ -40,15 +40,24 @@ BOTS = {"Ann": "planner", "Bob": "straight", "Café 日本": "nearest", "=Dé": 
 
 
 def enter(
-    folder: Path, contest: str = CONTEST + SWISS + FINAL, bots: Mapping[str, str] = BOTS
+    folder: Path,
+    contest: str = CONTEST + SWISS + FINAL,
+    bots: Mapping[str, str | tuple[str, Path]] = BOTS,
 ) -> Path:
-    """Write a contest file and enter the teams; return the file."""
+    """Write a contest file and enter the teams; return the file.
+
+    Args:
+        folder: where the file goes.
+        contest: its text.
+        bots: the bot of each team, or a pair of it and a folder with its robot.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     file, idle = folder / "contest.toml", folder / "bot.py"
     file.write_text(contest, "utf-8")
     idle.write_text(IDLE)
-    for team, bot in bots.items():
-        organiser.enter(file, team, None, bot or str(idle), "")
+    for team, how in bots.items():
+        bot, robot = how if isinstance(how, tuple) else (how, None)
+        organiser.enter(file, team, robot, bot or str(idle), "")
     return file
 
 

@@ -1,4 +1,4 @@
-"""A court that times its own beats, for `tests.campaigns.flood.seat` and `benchmarks.watched`.
+"""A court that times its own beats, for `tests.campaigns.flood.seat` and `benchmarks.courts`.
 
     python -m tests.processes.measured_court [NAME]
 
@@ -26,6 +26,7 @@ from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.match.entry import Admission
+from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
@@ -59,6 +60,7 @@ class MeasuredCourt(Court):
         """Return the times of the beats since the last call, and how many of them were slow."""
         told = {
             "wall_s": self.wall_s,
+            "phase": self.phase,
             "slow_beats": self._pace.slow_beats,
             "at_s": time.monotonic(),
         }
@@ -100,8 +102,9 @@ def measured_court(name: str = NAME) -> Iterator[Measured]:
 def main() -> None:
     """Run a court until a line "stop" on standard input."""
     name = sys.argv[1] if len(sys.argv) > 1 else NAME
-    with measured_court(name) as opened:
-        where = {"name": name, "address": opened.address}
+    with measured_court(name) as opened, Exporter("127.0.0.1:0") as exporter:
+        exporter.registry.register(opened.court.metrics)
+        where = {"name": name, "address": opened.address, "metrics": exporter.url}
         print(json.dumps(where | {"tokens": opened.tokens, "referee": opened.referee}), flush=True)
         os.set_blocking(sys.stdin.fileno(), False)
 

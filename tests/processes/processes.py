@@ -12,9 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ports import free_port
-
-__all__ = ["LACOC", "Opened", "ask", "court", "free_port", "hush", "read_line", "started", "used_s"]
+import psutil
 
 LACOC = "lacoc_shared"
 """The module that is the command `lacoc`."""
@@ -110,6 +108,19 @@ def court(arena: str, folder: Path, *words: str) -> Iterator[Opened]:
             said["referee"],
             said["match_id"],
         )
+
+
+def children_s() -> float:
+    """Return the processor time of this process's descendants, such as a browser's processes [s].
+
+    One that has ended does not count.
+    """
+    used = 0.0
+    for child in psutil.Process().children(recursive=True):
+        with suppress(psutil.NoSuchProcess):
+            times = child.cpu_times()
+            used += times.user + times.system
+    return used
 
 
 def used_s(process: subprocess.Popen[str]) -> float:

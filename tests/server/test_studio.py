@@ -11,8 +11,8 @@ import msgspec
 import numpy as np
 import psutil
 import pytest
-from benchmarks.trials import entry_of
 from lacoc_process import started
+from sample_walks import entry_of
 from waiting import LIMIT_S, until
 
 from lacoc_robots.library import find_robot, sample_gait_files

@@ -28,9 +28,9 @@ from pathlib import Path
 import msgpack
 import psutil
 from arguments import arguments
+from ports import free_port
+from processes import LACOC, hush, read_line, started
 from websockets.sync.client import connect
-
-from processes import LACOC, free_port, hush, read_line, started  # isort: skip
 from workbook_bombs import with_formats, with_formulas, with_sheets, with_text
 
 from lacoc_robots.library import find_robot, robot_folder, sample_gait_files

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 import alone
 import msgspec
 from arguments import arguments
-from processes import free_port
+from ports import free_port
 
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient

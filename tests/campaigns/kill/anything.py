@@ -21,7 +21,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from arguments import arguments
-from processes import LACOC, free_port
+from ports import free_port
+from processes import LACOC
 
 from lacoc_client.play.asking import NoCourt, NotNow
 from lacoc_client.play.referee import RefereeClient

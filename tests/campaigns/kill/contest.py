@@ -26,7 +26,8 @@ from typing import Any
 
 import psutil
 from arguments import arguments
-from processes import LACOC, free_port, read_line, started
+from ports import free_port
+from processes import LACOC, read_line, started
 from tests.campaigns.kill.machines import Relay
 
 from lacoc_server.contest.acts import organiser

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from arguments import arguments
-from processes import free_port
+from ports import free_port
 
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient

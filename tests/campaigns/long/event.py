@@ -1,6 +1,6 @@
 """Plays an event of eight teams as people do: from an empty folder to standings that are verified.
 
-    python -m benchmarks.contest_event
+    python -m tests.campaigns.long.event
 
 The organiser uses only what docs/contest-day.md says: two commands, then the page /office in a
 browser. Each command and click is counted until the first game begins. The teams enter by page.
@@ -12,7 +12,6 @@ knows nothing of the event verifies what was published.
 Only times are shorter than in the file that `lacoc contest init` writes (`_SHORT`).
 """
 
-import argparse
 import random
 import subprocess
 import sys
@@ -23,9 +22,11 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
+from arguments import arguments
 from browser import SLOW_SCREEN, chromium
 from playwright.sync_api import Browser, Locator, Page, TimeoutError
-from processes import LACOC, free_port, hush, read_line, started
+from ports import free_port
+from processes import LACOC, hush, read_line, started
 
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.acts import organiser
@@ -45,10 +46,11 @@ _SHORT = "settings.match = { duration_s = %s, countdown_s = 1.0%s }"
 
 def main() -> int:
     """Play the event; print what was counted, and return 0 if everything held."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.contest_event", description=__doc__)
-    parser.add_argument("--seconds", type=float, default=20.0, help="of play, each game")
-    parser.add_argument("--pictures", type=Path, help="folder for pictures of the pages")
-    options = parser.parse_args()
+    options = arguments(
+        __doc__,
+        seconds=(20.0, "of play, each game"),
+        pictures=(Path, "folder for pictures of the pages"),
+    )
     with tempfile.TemporaryDirectory() as name, chromium() as browser, ExitStack() as stack:
         event = Event(Path(name), browser, stack, options.pictures)
         found = event.held(options.seconds)

@@ -1,14 +1,14 @@
 """Measures the coach: how fast and how well it ranks numbers, and how much faster robots become.
 
-python -m benchmarks.coached matters            # rank the sample's numbers: time, Kendall's tau
-python -m benchmarks.coached beginners --tables 50 --size table
-python -m benchmarks.coached sample             # from the sample, under both ways to advance
-python -m benchmarks.coached map                # the sample's map of gaits
-python -m benchmarks.coached variants           # six variants of the sample, and six bred from two
+python -m benchmarks.coach matters            # rank the sample's numbers: time, Kendall's tau
+python -m benchmarks.coach beginners --tables 50 --size table
+python -m benchmarks.coach sample             # from the sample, under both ways to advance
+python -m benchmarks.coach map                # the sample's map of gaits
+python -m benchmarks.coach variants           # six variants of the sample, and six bred from two
 
 A beginner's table is the sample with smaller swings, other lifts, and an error in every number.
-Half of these tables also have a fault (benchmarks/explained.py). Only tables with which the robot
-walks forward are used, because beginners ask the coach about a gait that already works.
+Half of these tables also have a fault (tests/played/faulty_tables.py). Only tables with which the
+robot walks forward are used: beginners ask the coach about a gait that already works.
 """
 
 import argparse
@@ -25,9 +25,11 @@ from statistics import median
 from typing import Any
 
 import msgspec
+from arguments import arguments
+from faulty_tables import FAULTS, WHOLE, sequence_of
+from sample_walks import entry_of
 
-from benchmarks.explained import FAULTS, WHOLE
-from benchmarks.trials import entry_of
+from benchmarks.figures import finish
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.coach.coach import Found, coach, task_of
 from lacoc_server.studio.coach.goal import Goal
@@ -50,12 +52,8 @@ _AIMS = {"matters_s": 10.0, "tau": 0.8, "table": 2.0, "three": 1.3, "reached": 8
 
 def main() -> None:
     """Measure, print, and exit with 1 if an aim is missed."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.coached", description=__doc__)
-    parser.add_argument("what", choices=("matters", "beginners", "sample", "map", "variants"))
-    parser.add_argument("--tables", type=int, default=50)
-    parser.add_argument("--size", type=Size, default=Size.TABLE)
-    parser.add_argument("--seconds", type=float, default=30.0)
-    options = parser.parse_args()
+    ways = ("matters", "beginners", "sample", "map", "variants")
+    options = arguments(__doc__, ways, tables=50, size=Size.TABLE, seconds=30.0)
     with Workers() as workers:
         match options.what:
             case "matters":
@@ -69,8 +67,7 @@ def main() -> None:
             case _:
                 found, right = _beginners(workers, options)
     found["processor_s"] = round(sum(os.times()[:4]), 1)  # also of the processes, which have ended
-    print(json.dumps(found))
-    sys.exit(not right)
+    finish(found, right)
 
 
 def _matters(workers: Workers) -> tuple[dict[str, Any], bool]:
@@ -238,13 +235,7 @@ def _beginners_sequence(
     if rng.random() < 0.5:
         name = rng.choice(sorted(FAULTS.keys() - WHOLE))
         FAULTS[name][1](table, rng.randrange(legs), robot, rng)
-    return tuple(
-        tuple(
-            math.radians(round(min(max(angle, low), high)))
-            for angle, (low, high) in zip(posture, robot.ranges_deg, strict=True)
-        )
-        for posture in table
-    )
+    return sequence_of(table, robot)
 
 
 def _searched(workers: Workers, robot: RobotSpec, gait: Gait, size: Size, seconds: float) -> Found:

@@ -1,34 +1,37 @@
-"""Puts one fault into each of many tables, and counts how often the first sentence names it.
+"""Tables into which one fault was put, and what a trial's explanation says of it."""
 
-python -m benchmarks.explained --tables 200
-"""
-
-import argparse
 import math
 import random
-import sys
-from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from typing import NamedTuple
 
-from benchmarks.trials import course_of, entry_of
+from sample_walks import course_of, entry_of
+
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.explain import explain
 from lacoc_server.trial.figures import measure
 from lacoc_server.trial.walk import Press
-from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 from lacoc_shared.words import Phrase, render
 
 KEY = 2
 _NOISE_DEG = 3
 """Each angle differs by at most this much from the sample's, so that no two tables are equal."""
-_AIM = 0.9
 
 Table = list[list[float]]
 """For each posture, its angles by joint id [deg]."""
+
+
+def sequence_of(table: Table, robot: RobotSpec) -> tuple[Posture, ...]:
+    """Return a table as postures in whole degrees, within the joints' ranges."""
+    return tuple(
+        tuple(
+            math.radians(round(min(max(angle, low), high)))
+            for angle, (low, high) in zip(posture, robot.ranges_deg, strict=True)
+        )
+        for posture in table
+    )
 
 
 class Told(NamedTuple):
@@ -39,27 +42,6 @@ class Told(NamedTuple):
     named: bool
     """Whether the first sentence names the fault, and its leg if it has one."""
     said: tuple[str, ...]
-
-
-def main() -> None:
-    """Put faults into tables, print how many were named, and exit with 1 if they are too few."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.explained", description=__doc__)
-    parser.add_argument("--tables", type=int, default=200)
-    parser.add_argument("--verbose", action="store_true", help="print each that was not named")
-    options = parser.parse_args()
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        told = list(pool.map(tell, range(options.tables), chunksize=4))
-    named = sum(one.named for one in told)
-    for fault in FAULTS:
-        of = [one for one in told if one.fault == fault]
-        print(f"{fault:10} {sum(one.named for one in of):4} of {len(of)}")
-    print(f"named by the first sentence: {named} of {len(told)}")
-    if options.verbose:
-        for one in told:
-            if not one.named:
-                print(one.fault, one.leg, *one.said, sep=" | ")
-        print(Counter(one.said[0].split()[0] for one in told if one.said and not one.named))
-    sys.exit(named < _AIM * len(told))
 
 
 def tell(seed: int) -> Told:
@@ -77,13 +59,7 @@ def tell(seed: int) -> Told:
     swinging = [leg for leg in range(len(entry.robot.legs)) if _swings(table, leg)]
     leg = rng.choice(swinging if name == "swapped" else range(len(entry.robot.legs)))
     put(table, leg, entry.robot, rng)
-    sequence = tuple(
-        tuple(
-            math.radians(round(min(max(angle, low), high)))
-            for angle, (low, high) in zip(posture, entry.robot.ranges_deg, strict=True)
-        )
-        for posture in table
-    )
+    sequence = sequence_of(table, entry.robot)
     start = (entry.robot.start_posture,)
     gait = Gait(None, LocomotionTable((*(start,) * KEY, sequence)))
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, KEY)
@@ -172,6 +148,3 @@ FAULTS: dict[
 """For each fault: the codes of the sentences that name it, and the function that puts it in."""
 WHOLE = frozenset({"belly", "none"})
 """Faults of the whole robot, not of one leg."""
-
-if __name__ == "__main__":
-    main()

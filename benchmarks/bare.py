@@ -7,8 +7,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import numpy.typing as npt
+from bot_matches import setup_of
 
-from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
@@ -16,7 +16,6 @@ from lacoc_server.world.world import STATE, SUBSTEPS, World
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import SentFile
-from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import Phase
 
 KEYS = (2, 2, 1, 2, 3, 2)
@@ -24,17 +23,9 @@ KEYS = (2, 2, 1, 2, 3, 2)
 KEY_TICKS = 97
 
 
-def setup_of(arena: str, match_id: str = "benchmark") -> Setup:
-    """Return the setup of a match in an arena."""
-    settings = arenas.load(arena).settings
-    return Setup(
-        match_id=match_id, court="benchmark", match=1, arena=arena, settings=settings, limits={}
-    )
-
-
-def started(arena: str, folder: Path | None, match_id: str = "benchmark") -> Journal:
+def started(arena: str, folder: Path | None) -> Journal:
     """Start a match of two sample hexapods; return its journal when play begins."""
-    match = Match(setup_of(arena, match_id), World)
+    match = Match(setup_of(arena), World)
     journal = Journal(match, folder)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     seats = range(len(match.seats))
