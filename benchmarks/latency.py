@@ -21,7 +21,8 @@ from typing import Any
 
 import zenoh
 from arguments import arguments
-from browser import chromium, own_page
+from chromium import chromium
+from own_page import THIS, OwnPage
 from playwright.sync_api import Browser, Page, TimeoutError
 from processes import court, read_line, started
 from websockets.sync.server import ServerConnection
@@ -103,8 +104,8 @@ def of_page(keys: int) -> dict[str, float]:
     """Press keys in a page, and echo, in turns; return what `of_program` returns."""
     keys_ms: list[float] = []
     echoes_ms: list[float] = []
-    with chromium() as browser, own_page("practice") as url, _websocket_echo() as echo:
-        page = _walking(browser, url)
+    with _practice(THIS) as command, chromium() as browser, _websocket_echo() as echo:
+        page = _walking(browser, command)
         bare = browser.new_page()
         for _ in range(TURNS):
             page.bring_to_front()
@@ -117,12 +118,8 @@ def of_page(keys: int) -> dict[str, float]:
 def of_two_pages(keys: int, other: Path) -> dict[str, dict[str, float]]:
     """Press keys in pages of this checkout and of another one, in turns."""
     keys_ms: dict[str, list[float]] = {"this": [], "other": []}
-    with (
-        chromium() as browser,
-        own_page("practice") as this_url,
-        own_page("practice", checkout=other) as other_url,
-    ):
-        pages = {"this": _walking(browser, this_url), "other": _walking(browser, other_url)}
+    with _practice(THIS) as this, _practice(other) as that, chromium() as browser:
+        pages = {"this": _walking(browser, this), "other": _walking(browser, that)}
         for _ in range(3 * TURNS):
             for side, page in pages.items():
                 page.bring_to_front()
@@ -174,10 +171,19 @@ def _echo_ms(ping: Publisher, pong: Mailbox) -> float:
     return (time.perf_counter() - begin) * 1000
 
 
-def _walking(browser: Browser, url: str) -> Page:
+@contextlib.contextmanager
+def _practice(checkout: Path) -> Iterator[OwnPage]:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        OwnPage(Path(folder), "practice", checkout=checkout) as command,
+    ):
+        yield command
+
+
+def _walking(browser: Browser, command: OwnPage) -> Page:
     """Open the page of practice; return it when its keys work."""
     page = browser.new_page(viewport={"width": 800, "height": 450})
-    page.goto(url.replace("/practice", "/practice?q=low"))
+    page.goto(command.link.replace("/practice", "/practice?q=low"))
     page.wait_for_selector('.phase[data-phase="4"]', timeout=60_000)
     page.locator("canvas").first.click()
     _press(page, 5)  # because the first keys are slow

@@ -193,7 +193,8 @@ def _tell_swings(rows: list[dict[str, Any]]) -> int:
                 found += any(a < last and first < b for a, b, _ in chosen)
     print(
         f"{len(rows)} matches: highlights contain {found} of {of} of the largest swings "
-        f"({100 * found / of:.0f} %) in {100 * sum(parts) / len(parts):.0f} % of the playing time"
+        f"({100 * found / max(1, of):.0f} %) "
+        f"in {100 * sum(parts) / len(parts):.0f} % of the playing time"
     )
     return int(found < 0.8 * of)
 

@@ -15,8 +15,7 @@ from typing import Any
 
 from arguments import arguments
 from bot_matches import ARENAS
-from browser import chromium
-from chromium import WEB, build_pages, build_stand
+from chromium import WEB, build_pages, build_stand, chromium
 from match_file import match_file
 from playwright.sync_api import Browser, Response
 from processes import children_s

@@ -15,13 +15,16 @@ Both time the same trial in this process, without page and network.
 
 import os
 import random
+import tempfile
 import time
 from dataclasses import dataclass, field
+from pathlib import Path
 from statistics import median
 from typing import Any
 
 from arguments import arguments
-from browser import chromium, own_page
+from chromium import chromium
+from own_page import THIS, OwnPage
 from playwright.sync_api import Page
 from processes import LACOC, read_line, started
 from sample_walks import course_of, entry_of
@@ -145,7 +148,12 @@ def on_page(cells: int, trials: int) -> tuple[dict[str, Any], bool]:
         cells: how many numbers are typed.
         trials: how often Try is pressed.
     """
-    with chromium() as browser, own_page("design") as url:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        OwnPage(Path(folder), "design", checkout=THIS) as command,
+        chromium() as browser,
+    ):
+        url = command.link
         page = browser.new_page(viewport={"width": 1280, "height": 800})
         _opened(page, url)
         cells_ms = _cells_ms(page, cells)

@@ -1,16 +1,13 @@
 """Tests of open matches: whoever has the token of a seat plays, at a court that has no game."""
 
-import json
 import subprocess
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 import small_contest
-from lacoc_process import started
+from lacoc_process import contest_run, started
 from msgspec.structs import replace
 from ports import free_port
 from stage import QUICK, join, setup
@@ -206,19 +203,6 @@ settings.match = {{ duration_s = 1.0, countdown_s = 0.1, start = "ready" }}
 """
 
 
-@contextmanager
-def running(file: Path) -> Iterator[tuple[dict[str, Any], "subprocess.Popen[Any]"]]:
-    """Run a contest; give what it says first, and its process."""
-    words = ("contest", "run", str(file), "--json")
-    process = started(*words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    try:
-        assert process.stdout is not None
-        yield json.loads(process.stdout.readline()), process
-    finally:
-        process.terminate()
-        process.communicate(timeout=LIMIT_S)
-
-
 @pytest.mark.slow
 def test_friends_play_match_after_match(tmp_path: Path) -> None:
     """Whoever has the link of a seat sits down with a name and files, and stays for the next one.
@@ -227,7 +211,8 @@ def test_friends_play_match_after_match(tmp_path: Path) -> None:
     """
     file = tmp_path / "contest.toml"
     file.write_text(CONTEST.format(port=free_port()))
-    with running(file) as (opened, _):
+    with contest_run(file, stderr=subprocess.DEVNULL) as run:
+        opened = run.opened
         tokens = {seat: load(file).secrets.seat("red", seat) for seat in ("left", "right")}
         links = opened["seats"]["red"]
         assert all(tokens[seat] in links[seat] for seat in tokens)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_chromium
+from chromium import SLOW_SCREEN, NoBrowser, OpenPage, build_pages, chromium
 from contestant import Contestant, Sit
 from playwright.sync_api import (
     Browser,
@@ -16,7 +16,6 @@ from playwright.sync_api import (
     Error,
     Page,
     expect,
-    sync_playwright,
 )
 from venue import Venue
 from waiting import LIMIT_MS
@@ -30,14 +29,12 @@ expect.set_options(timeout=LIMIT_MS)
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """Give Chromium, which draws in software."""
-    try:
-        program = find_chromium()
-    except NoBrowser as why:
-        pytest.fail(str(why), pytrace=False)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=[*FLAGS, _NAMES])
+    with ExitStack() as stack:
+        try:
+            browser = stack.enter_context(chromium(_NAMES))
+        except NoBrowser as why:
+            pytest.fail(str(why), pytrace=False)
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="session")

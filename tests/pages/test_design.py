@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 from chromium import OpenPage
-from contestant import Contestant, own_page
+from contestant import Contestant
 from drop import drop
 from openpyxl import load_workbook
+from own_page import OwnPage
 from playwright.sync_api import expect
 from show import violations
 
@@ -126,8 +127,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
     """Give the address and the page key of a `lacoc design` that all tests of this file share."""
-    with own_page(folder, "design") as address:
-        yield address
+    with OwnPage(folder, "design") as command:
+        yield command.url, command.key
 
 
 @pytest.fixture

@@ -1,9 +1,7 @@
 """Tests of /contest?big, the projector's page, while a contest is played at a court."""
 
 import contextlib
-import json
 import os
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,7 +10,7 @@ import msgspec
 import pytest
 from chromium import OpenPage
 from contest_sheets import sheets
-from lacoc_process import started
+from lacoc_process import contest_run
 from playwright.sync_api import Page, ViewportSize, expect
 from ports import free_port
 from stand import served
@@ -54,13 +52,8 @@ settings.match.start = "ready"
 """)
     for team in TEAMS:
         enter(file, team, None, "planner", "")
-    words = ("contest", "run", str(file), "--json", "--listen", f"127.0.0.1:{free_port()}")
-    with started(*words, stdout=subprocess.PIPE, text=True) as run:
-        try:
-            assert run.stdout is not None
-            yield json.loads(run.stdout.readline())["url"]
-        finally:
-            run.kill()
+    with contest_run(file, "--listen", f"127.0.0.1:{free_port()}") as run:
+        yield run.opened["url"]
 
 
 def expected(contest: Contest) -> dict[str, tuple[str, int]]:

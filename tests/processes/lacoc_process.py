@@ -13,8 +13,11 @@ import sys
 import tempfile
 import threading
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
+
+from waiting import LIMIT_S
 
 COMMAND = (sys.executable, "-m", "lacoc_shared")
 """The command line that starts `lacoc` in a new interpreter, as users do."""
@@ -85,11 +88,85 @@ def command_line(words: Sequence[str]) -> list[str]:
     return [*COMMAND, *words]
 
 
-def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
-    """Start a `lacoc` command; the words of `before`, if any, precede it on the command line."""
-    if before:
+def environment(**changes: str) -> dict[str, str]:
+    """Return this process's environment without LACOC_ variables (options), and with `changes`."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("LACOC_")}
+    return kept | changes
+
+
+def started(
+    *words: str, before: Sequence[str] = (), fresh: bool = False, **options: Any
+) -> subprocess.Popen[Any]:
+    """Start a `lacoc` command.
+
+    Args:
+        words: its words.
+        before: words that precede it on the command line.
+        fresh: whether it gets a new interpreter, as what is measured must have.
+        options: of `subprocess.Popen`.
+    """
+    if before or fresh:
         return subprocess.Popen([*before, *command_line(words)], **options)
     return Lacoc(*words, **options)
+
+
+class Running:
+    """A `lacoc` command that runs until it is closed; a context manager.
+
+    Args:
+        words: its words; with them it must say in a line of JSON that it is open.
+        log: file for its messages; None: they go where this process's go.
+        options: of `started`.
+    """
+
+    def __init__(self, *words: str, log: Path | None = None, **options: Any) -> None:
+        streams: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE}
+        with ExitStack() as stack:
+            if log is not None:
+                streams["stderr"] = stack.enter_context(log.open("ab"))
+            self.process = started(*words, text=True, **streams | options)
+        assert self.process.stdout is not None
+        self.said: str = self.process.stdout.readline()
+        """The standard output: its first line, and after `close` all of it."""
+        self.opened: dict[str, Any] = json.loads(self.said)
+        self._reader: threading.Thread | None = None
+
+    def kill(self) -> None:
+        """Kill the process, as a power cut does."""
+        self.process.kill()
+        self.process.wait(LIMIT_S)
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send a signal to the process."""
+        self.process.send_signal(number)
+
+    def hush(self) -> None:
+        """Throw away all further output: a full pipe would stop the process."""
+        assert self.process.stdout is not None
+        self._reader = threading.Thread(target=self.process.stdout.read, daemon=True)
+        self._reader.start()
+
+    def close(self) -> None:
+        """Ask the process to end, also if it is stopped, and wait until it has."""
+        assert self.process.stdout is not None
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGCONT)
+            self.process.terminate()
+        if self._reader is not None:
+            self.process.wait(LIMIT_S)
+        elif not self.process.stdout.closed:
+            self.said += self.process.communicate(timeout=LIMIT_S)[0]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def contest_run(file: Path, *words: str, **options: Any) -> Running:
+    """Run a contest with its office, courts and pages."""
+    return Running("contest", "run", str(file), "--json", *words, **options)
 
 
 def run_lacoc(*words: str, input: str = "", timeout_s: float = 60.0, **options: Any) -> Any:

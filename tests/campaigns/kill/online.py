@@ -22,7 +22,7 @@ import proxies
 import psutil
 import trustme
 from arguments import arguments
-from browser import SLOW_SCREEN, chromium
+from chromium import SLOW_SCREEN, chromium
 from lacoc_process import run_lacoc
 from playwright.sync_api import Page
 from ports import free_port

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from arguments import arguments
-from browser import SLOW_SCREEN, chromium
+from chromium import SLOW_SCREEN, chromium
 from playwright.sync_api import Browser, Locator, Page, TimeoutError
 from ports import free_port
 from processes import LACOC, hush, read_line, started

@@ -1,38 +1,31 @@
 """Runs a court in a process of its own, and commands that connect to this court."""
 
-import json
-import os
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
-from lacoc_process import Lacoc
+from lacoc_process import Lacoc, Running, environment
 from waiting import LIMIT_S
 
 
-def environment(**changes: str) -> dict[str, str]:
-    """Return this process's environment without LACOC_ variables (options), and with `changes`."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("LACOC_")}
-    return kept | changes
-
-
 class CourtProcess:
-    """A court that `lacoc serve` runs on a free port."""
+    """A court that `lacoc serve` runs on a free port; a context manager.
 
-    def __init__(self, folder: Path, *words: str) -> None:
+    Args:
+        folder: for records and log.
+        words: more words of `lacoc serve`.
+        fresh: whether it gets a new interpreter, as what is measured must have.
+    """
+
+    def __init__(self, folder: Path, *words: str, fresh: bool = False) -> None:
         self.folder = folder
         where = ("--listen", "tcp/127.0.0.1:0", "--recordings", str(folder / "recordings"))
-        with (folder / "court.log").open("wb") as log:
-            self.process = Lacoc(
-                *("serve", "--json", *where, *words),
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-                env=environment(),
-            )
-        assert self.process.stdout is not None
-        self.opened = opened = json.loads(self.process.stdout.readline())
+        words = ("serve", "--json", *where, *words)
+        log = folder / "court.log"
+        self._court = Running(*words, log=log, fresh=fresh, env=environment())
+        self.process = self._court.process
+        self.opened = opened = self._court.opened
         self.address: str = opened["locators"][0]
         self.tokens: dict[str, str] = opened["tokens"]
         self.referee: str = opened["referee"]
@@ -64,10 +57,17 @@ class CourtProcess:
             self.start("bot", name, *self.where(seat), stdout=subprocess.DEVNULL)
 
     def close(self) -> None:
-        for process in (*self._commands, self.process):
-            process.terminate()
-        for process in (*self._commands, self.process):
-            process.communicate(timeout=LIMIT_S)
+        for command in self._commands:
+            command.terminate()
+        for command in self._commands:
+            command.communicate(timeout=LIMIT_S)
+        self._court.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 OpenCourt = Callable[..., CourtProcess]
