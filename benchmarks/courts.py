@@ -29,7 +29,8 @@ from pathlib import Path
 from typing import Any
 
 from arguments import arguments
-from processes import LACOC, ask, read_line, started, used_s
+from lacoc_process import Running
+from processes import ask, read_line, started, used_s
 
 from benchmarks.figures import Row, finish, medians, percentile
 from lacoc_server.court.pace import Pace
@@ -59,8 +60,8 @@ class _Courts:
         file = Path(stack.enter_context(tempfile.TemporaryDirectory()), "contest.toml")
         file.write_text("".join(map(_entry, self.opened)))
         words = ("--contest", str(file), "--viewers", str(viewers + 1))
-        self.gateway = stack.enter_context(started(LACOC, "web", "--json", *words))
-        self.url = read_line(self.gateway)["url"]
+        web = stack.enter_context(Running("web", "--json", *words, fresh=True))
+        self.gateway, self.url = web.process, web.opened["url"]
         self.sleeper = stack.enter_context(started("benchmarks.courts", "--sleep"))
         read_line(self.sleeper)
 

@@ -22,9 +22,10 @@ from typing import Any
 import zenoh
 from arguments import arguments
 from chromium import chromium
+from court_process import CourtProcess
 from own_page import THIS, OwnPage
 from playwright.sync_api import Browser, Page, TimeoutError
-from processes import court, read_line, started
+from processes import read_line, started
 from websockets.sync.server import ServerConnection
 from websockets.sync.server import serve as serve_websocket
 
@@ -76,15 +77,15 @@ def of_program(keys: int) -> dict[str, float]:
     chance = random.Random(1)  # presses must not keep in step with the beats
     with (
         tempfile.TemporaryDirectory() as folder,
-        court("practice", Path(folder)) as opened,
+        CourtProcess(Path(folder), "--arena", "practice", fresh=True) as court,
         started("benchmarks.latency", "--echo") as echo,
     ):
-        (seat, token), *_ = opened.tokens.items()
+        (seat, token), *_ = court.tokens.items()
         with (
-            open_client([opened.address]) as session,
+            open_client([court.address]) as session,
             open_client(read_line(echo)["locators"]) as echo_session,
         ):
-            controller = Controller(session, opened.name, seat, token, "Benchmark")
+            controller = Controller(session, court.name, seat, token, "Benchmark")
             controller.join()
             controller.ready()
             while (frame := controller.wait_frame(1.0)) is None or frame.phase != Phase.PLAYING:

@@ -24,9 +24,9 @@ from typing import Any
 
 from arguments import arguments
 from chromium import chromium
+from lacoc_process import Running
 from own_page import THIS, OwnPage
 from playwright.sync_api import Page
-from processes import LACOC, read_line, started
 from sample_walks import course_of, entry_of
 
 from benchmarks.figures import finish, percentile, spread
@@ -108,8 +108,8 @@ def in_class(number: int, seconds: float, jobs: int) -> tuple[dict[str, Any], bo
     """
     rng = random.Random(1)
     words = ("studio", "--json", "--jobs", str(jobs), "--listen", "tcp/127.0.0.1:0")
-    with started(LACOC, *words) as process:
-        opened = read_line(process)
+    with Running(*words, fresh=True) as studio:
+        opened = studio.opened
         key = StudioKeys(opened["studio"]).request("trial")
         with open_client(opened["locators"]) as session:
             for _ in range(2 * jobs):  # every process compiles its floor once

@@ -15,9 +15,11 @@ from lacoc_client.web.gateway.wire import Kind
 class ClassRoom:
     """A running `lacoc class`."""
 
-    def __init__(self, folder: Path, listen: str = "127.0.0.1:0", *words: str) -> None:
+    def __init__(
+        self, folder: Path, listen: str = "127.0.0.1:0", *words: str, fresh: bool = False
+    ) -> None:
         class_ = ("class", str(folder), "--no-open", "--json", "--listen", listen)
-        self._running = Running(*class_, *words, stderr=subprocess.DEVNULL)
+        self._running = Running(*class_, *words, fresh=fresh, stderr=subprocess.DEVNULL)
         self.process, opened = self._running.process, self._running.opened
         self.url, self.code = opened["url"], opened["code"]
         self.key = opened["class"].partition("#key=")[2]

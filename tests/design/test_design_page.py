@@ -200,7 +200,7 @@ def searched(page: DesignClient, do: str, **fields: Any) -> Any:
         try:
             found.append(page.ask(do, **fields))
         except Refused as refusal:
-            if not refusal.reply["again"] and str(refusal) != "studio.job-taken":
+            if not refusal.reply["again"] and refusal.why.code != "studio.job-taken":
                 raise
         return bool(found)
 

@@ -11,7 +11,7 @@ from chromium import OpenPage
 from class_room import ClassRoom, until_kept
 from own_page import OwnPage
 from playwright.sync_api import expect
-from power_cut import cut_power
+from processes import cut_power
 from show import violations
 from test_design import Designer, write_sample
 from waiting import LIMIT_S

@@ -26,6 +26,7 @@ class CourtProcess:
         self._court = Running(*words, log=log, fresh=fresh, env=environment())
         self.process = self._court.process
         self.opened = opened = self._court.opened
+        self.name: str = opened["court"]
         self.address: str = opened["locators"][0]
         self.tokens: dict[str, str] = opened["tokens"]
         self.referee: str = opened["referee"]
@@ -55,6 +56,10 @@ class CourtProcess:
         """Put a bot in each seat."""
         for seat, name in (("left", left), ("right", right)):
             self.start("bot", name, *self.where(seat), stdout=subprocess.DEVNULL)
+
+    def hush(self) -> None:
+        """Throw away all further output of the court."""
+        self._court.hush()
 
     def close(self) -> None:
         for command in self._commands:

@@ -1,4 +1,4 @@
-"""Starts the processes to measure: each part of a contest runs in its own, as at a venue."""
+"""Starts modules in processes of their own, asks and measures them, and ends them at once."""
 
 import json
 import os
@@ -6,13 +6,13 @@ import subprocess
 import sys
 import threading
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import psutil
+from waiting import LIMIT_S
 
 LACOC = "lacoc_shared"
 """The module that is the command `lacoc`."""
@@ -76,40 +76,6 @@ def ask(process: subprocess.Popen[str], word: str) -> Any:
     return read_line(process)
 
 
-@dataclass(frozen=True)
-class Opened:
-    """A court that is open."""
-
-    process: subprocess.Popen[str]
-    name: str
-    address: str
-    tokens: Mapping[str, str]
-    referee: str
-    match_id: str
-
-
-@contextmanager
-def court(arena: str, folder: Path, *words: str) -> Iterator[Opened]:
-    """Open a court with `lacoc serve` on a free port.
-
-    Args:
-        arena: the game.
-        folder: where its records go.
-        words: more options.
-    """
-    where = ("--listen", "tcp/127.0.0.1:0", "--recordings", str(folder))
-    with started(LACOC, "serve", "--json", "--fresh", "--arena", arena, *where, *words) as process:
-        said = read_line(process)
-        yield Opened(
-            process,
-            said["court"],
-            said["locators"][0],
-            said["tokens"],
-            said["referee"],
-            said["match_id"],
-        )
-
-
 def children_s() -> float:
     """Return the processor time of this process's descendants, such as a browser's processes [s].
 
@@ -127,3 +93,20 @@ def used_s(process: subprocess.Popen[str]) -> float:
     """Return the processor time of all threads of a process, as the kernel counts it [s]."""
     fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def everything_of(process: "subprocess.Popen[Any]") -> list[psutil.Process]:
+    """Return a process, and all that it started."""
+    found = psutil.Process(process.pid)
+    return [found, *found.children(recursive=True)]
+
+
+def cut_power(process: "subprocess.Popen[Any]") -> None:
+    """Kill a process and all that it started at once, and wait until they are gone."""
+    everything = everything_of(process)
+    for one in everything:
+        with suppress(psutil.NoSuchProcess):  # it has ended with its parent
+            one.kill()
+    process.communicate(timeout=LIMIT_S)
+    _, left = psutil.wait_procs(everything, LIMIT_S)
+    assert not left, left

@@ -28,8 +28,10 @@ from pathlib import Path
 import msgpack
 import psutil
 from arguments import arguments
+from court_process import CourtProcess
+from lacoc_process import contest_run
 from ports import free_port
-from processes import LACOC, hush, read_line, started
+from processes import LACOC
 from websockets.sync.client import connect
 from workbook_bombs import with_formats, with_formulas, with_sheets, with_text
 
@@ -221,36 +223,19 @@ def main() -> int:
         subprocess.run([*_COMMAND, "contest", "init", str(file)], check=True, stdout=-3)
         text = file.read_text().replace("0.0.0.0:7447", f"127.0.0.1:{free_port()}")
         file.write_text(text)
-        office = stack.enter_context(
-            started(LACOC, "contest", "run", str(file), "--entries", "--json")
-        )
-        opened = read_line(office)
-        hush(office)
+        office = stack.enter_context(contest_run(file, "--entries", fresh=True))
+        office.hush()
         seconds = str(60 * minutes + 120)
-        serve = started(
-            LACOC,
-            "serve",
-            "--json",
-            "--seconds",
-            seconds,
-            "--recordings",
-            str(folder / "r"),
-            "--listen",
-            "127.0.0.1:0",
-        )
-        court = stack.enter_context(serve)
-        place = read_line(court)
-        hush(court)
-        for seat in ("left", "right"):
-            where = ("--connect", place["locators"][0], "--token", place["tokens"][seat])
-            hush(stack.enter_context(started(LACOC, "bot", "planner", *where)))
+        place = stack.enter_context(CourtProcess(folder, "--seconds", seconds, fresh=True))
+        place.hush()
+        place.bots("planner", "planner")
         watching = threading.Thread(target=_memory, args=(peaks, ended))
         watching.start()
-        where = ("--connect", place["locators"][0], "--token", place["referee"])
+        where = ("--connect", place.address, "--token", place.referee)
         subprocess.run([*_COMMAND, "referee", "start", "--wait", "60", *where], check=True)
-        attack = Attack(opened, place["locators"][0], time.monotonic() + 60 * minutes)
+        attack = Attack(office.opened, place.address, time.monotonic() + 60 * minutes)
         attack.run()
-        asked = [*_COMMAND, "referee", "status", "--json", "--connect", place["locators"][0]]
+        asked = [*_COMMAND, "referee", "status", "--json", "--connect", place.address]
         status = json.loads(subprocess.run(asked, check=True, capture_output=True).stdout)
         ended.set()
         watching.join()

@@ -26,8 +26,8 @@ from typing import Any
 
 import psutil
 from arguments import arguments
+from lacoc_process import contest_run
 from ports import free_port
-from processes import LACOC, read_line, started
 from tests.campaigns.kill.machines import Relay
 
 from lacoc_server.contest.acts import organiser
@@ -106,9 +106,8 @@ def _play(
     """Play a contest to its end, with kills on the way; return how long it took [s]."""
     begun_s = time.monotonic()
     while True:
-        words = ("contest", "run", str(file), "--until-over", "--speed", str(speed), "--json")
-        with started(LACOC, *words) as process:
-            read_line(process)
+        with contest_run(file, "--until-over", "--speed", str(speed), fresh=True) as run:
+            process = run.process
             while process.poll() is None:
                 time.sleep(chance.uniform(0.2, 3.0))
                 wanted = killed.total() < kills and process.poll() is None

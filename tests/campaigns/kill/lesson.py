@@ -10,9 +10,7 @@ folder, and everybody comes in again with the token that the page keeps.
 
 import argparse
 import asyncio
-import os
 import random
-import signal
 import sys
 import tempfile
 import time
@@ -24,7 +22,7 @@ from typing import Any
 import msgpack
 import psutil
 from arguments import arguments
-from processes import LACOC, read_line, started
+from class_room import ClassRoom
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
@@ -225,40 +223,33 @@ class Clock:
 async def _hold(options: argparse.Namespace, folder: Path) -> tuple[Lesson, float]:
     """Hold a lesson; return it with what its pages found, and the gateway's processor time [s]."""
     rng, clock = random.Random(1), Clock()
-    words = ["class", str(folder), "--no-open", "--json", "--listen"]
     minutes_s = 60 * options.minutes / options.speed
     kills_s = sorted(rng.uniform(0.05, 0.95) * minutes_s for _ in range(options.kills))
-    process = started(LACOC, *words, "127.0.0.1:0", quiet=True)
-    running = process.__enter__()
-    opened = read_line(running)
+    room = ClassRoom(folder, fresh=True)
     began_s = time.monotonic()
-    key = opened["class"].partition("#key=")[2]
-    lesson = Lesson(opened["url"], opened["code"], key, options.speed, began_s + minutes_s)
+    lesson = Lesson(room.url, room.code, room.key, options.speed, began_s + minutes_s)
     students = [Student(f"student {number}", lesson) for number in range(options.students)]
     pages = [asyncio.ensure_future(lesson.page("/design/ws", one.work)) for one in students]
     pages.append(asyncio.ensure_future(_teach(lesson)))
     while lesson.is_on:
         await asyncio.sleep(0.5)
-        clock.look(running.pid)
+        clock.look(room.process.pid)
         if not kills_s or time.monotonic() < began_s + kills_s[0]:
             continue
         kills_s.pop(0)
-        children = psutil.Process(running.pid).children(recursive=True)
+        children = psutil.Process(room.process.pid).children(recursive=True)
         if rng.random() < 0.5:
             rng.choice(children).kill()  # the studio, or one of its processes
             continue
         lesson.killed_s.append(time.monotonic())
-        os.kill(running.pid, signal.SIGKILL)
-        process.__exit__(None, None, None)
-        where = lesson.url.removeprefix("http://")
-        process = started(LACOC, *words, where, quiet=True)
-        running = process.__enter__()
-        await asyncio.to_thread(read_line, running)
+        room.process.kill()
+        room.close()
+        room = await asyncio.to_thread(ClassRoom, folder, room.listen, fresh=True)
     for page in pages:
         page.cancel()
     await asyncio.gather(*pages, return_exceptions=True)
-    clock.look(running.pid)
-    process.__exit__(None, None, None)
+    clock.look(room.process.pid)
+    room.close()
     return lesson, clock.used_s
 
 

@@ -11,8 +11,8 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
-import psutil
-from processes import LACOC, hush, read_line, started
+from lacoc_process import Running, contest_run
+from processes import LACOC, everything_of, started
 
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
@@ -73,21 +73,19 @@ class Relay:
                     break
                 office = self._lose(stack, office, second)
                 copier.wait(_LIMIT_S)
-            hush(office)
-            office.wait()
+            office.hush()
+            office.process.wait()
         return self._file
 
-    def _office(self, stack: ExitStack, *more: str) -> subprocess.Popen[str]:
-        words = ("contest", "run", str(self._file), *more, "--until-over", "--json")
-        words += ("--speed", str(self._speed))
-        office = stack.enter_context(started(LACOC, *words, quiet=True))
-        read_line(office)
-        return office
+    def _office(self, stack: ExitStack, *more: str) -> Running:
+        words = (*more, "--until-over", "--speed", str(self._speed))
+        office = contest_run(self._file, *words, fresh=True, stderr=subprocess.DEVNULL)
+        return stack.enter_context(office)
 
-    def _wait(self, office: subprocess.Popen[str], second: Path) -> bool:
+    def _wait(self, office: Running, second: Path) -> bool:
         """Wait for a random moment in which all courts play; False: the contest is over."""
         later_s = 0.0
-        while office.poll() is None:
+        while office.process.poll() is None:
             if len(_in_play(second)) == self._courts:
                 if later_s and time.monotonic() > later_s:
                     return True
@@ -95,16 +93,12 @@ class Relay:
             time.sleep(_LOOK_S)
         return False
 
-    def _lose(
-        self, stack: ExitStack, office: subprocess.Popen[str], second: Path
-    ) -> subprocess.Popen[str]:
+    def _lose(self, stack: ExitStack, office: Running, second: Path) -> Running:
         """Lose the office's machine; return the office at the second one, when it plays on."""
-        main = psutil.Process(office.pid)
-        everything = [main, *main.children(recursive=True)]
-        for process in everything:
+        for process in everything_of(office.process):
             process.kill()
         lost_s = time.monotonic()
-        office.wait()
+        office.process.wait()
         played = _in_play(self._file)
         self._results |= _results(_facts(self._file))
         self._file.parent.rename(self._file.parent.with_suffix(".gone"))

@@ -24,9 +24,10 @@ from typing import Any
 
 from arguments import arguments
 from chromium import SLOW_SCREEN, chromium
+from lacoc_process import contest_run
 from playwright.sync_api import Browser, Locator, Page, TimeoutError
 from ports import free_port
-from processes import LACOC, hush, read_line, started
+from processes import LACOC, hush, started
 
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.acts import organiser
@@ -88,10 +89,9 @@ class Event:
         self._step("edit contest.toml")
         self._shorten(seconds)
         self._step("lacoc contest run --entries")
-        words = ("contest", "run", str(self._file), "--entries", "--json")
-        run = self._stack.enter_context(started(LACOC, *words))
-        opened = read_line(run)
-        hush(run)
+        run = self._stack.enter_context(contest_run(self._file, "--entries"))
+        opened = run.opened
+        run.hush()
         self._step("open the link of /office")
         office = self._page({"width": 1366, "height": 768})
         office.goto(opened["office"])

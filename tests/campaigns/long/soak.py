@@ -24,7 +24,9 @@ from typing import NamedTuple
 
 import psutil
 from arguments import arguments
-from processes import LACOC, Opened, ask, court, hush, read_line, started
+from court_process import CourtProcess
+from lacoc_process import Running
+from processes import LACOC, ask, started
 
 from lacoc_client.play.asking import NoCourt
 from lacoc_client.play.referee import RefereeClient
@@ -133,26 +135,25 @@ def soak(
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         words = ("--seconds", str(match_s), "--speed", str(speed))
-        opened = stack.enter_context(court("othello", folder, *words))
+        opened = stack.enter_context(CourtProcess(folder, *words, fresh=True))
         where = ("--connect", opened.address)
         processes = {"court": opened.process}
         for seat, bot in (("left", "planner"), ("right", "nearest")):
             join = ("bot", bot, "--token", opened.tokens[seat], *where)
             processes[f"bot {seat}"] = stack.enter_context(started(LACOC, *join))
-        gateway = stack.enter_context(started(LACOC, "web", "--json", *where))
-        processes["gateway"] = gateway
-        url = read_line(gateway)["url"]
-        for one in (opened.process, gateway):  # these two print all visits and events
-            hush(one)
+        gateway = stack.enter_context(Running("web", "--json", *where, fresh=True))
+        processes["gateway"] = gateway.process
+        opened.hush()  # these two print all visits and events
+        gateway.hush()
         most = ("--most", str(visitors_most))
         visitors = {
             way: stack.enter_context(
                 started("tests.campaigns.long.visitors", way, "--address", address, *most)
             )
-            for way, address in (("direct", opened.address), ("pages", url))
+            for way, address in (("direct", opened.address), ("pages", gateway.opened["url"]))
         }
         processes |= {f"{VISITORS}, {way}": process for way, process in visitors.items()}
-        return _Run(opened, processes, visitors, folder).run(60 * minutes, warm_s)
+        return _Run(opened, processes, visitors).run(60 * minutes, warm_s)
 
 
 class _Run:
@@ -160,16 +161,15 @@ class _Run:
 
     def __init__(
         self,
-        opened: Opened,
+        opened: CourtProcess,
         processes: Mapping[str, subprocess.Popen[str]],
         visitors: Mapping[str, subprocess.Popen[str]],
-        folder: Path,
     ) -> None:
         self._processes = {name: psutil.Process(one.pid) for name, one in processes.items()}
         self._processes["referee"] = psutil.Process()
         self._visitors = visitors
         self._opened = opened
-        self._folder = folder
+        self._folder = opened.folder / "recordings"
         self._looks: dict[str, list[Look]] = {name: [] for name in self._processes}
         self._matches: list[str] = []
         self._same = self._unanswered = 0
