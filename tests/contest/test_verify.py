@@ -656,7 +656,7 @@ def test_no_code_of_a_stranger_runs(copied: Path, tmp_path: Path) -> None:
     """The check runs no arena that is a folder, and no program of a bot."""
     folder = copied.parent / "published"
     evil = tmp_path / "evil"
-    shutil.copytree(Path(contest_forging.__file__).parents[1] / "arenas/lacoc_arenas/othello", evil)
+    shutil.copytree(Path(__file__).parents[2] / "arenas/lacoc_arenas/othello", evil)
     (evil / "__init__.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n")
     facts = [
         replace(fact, arena=str(evil)) if isinstance(fact, Planned) else fact

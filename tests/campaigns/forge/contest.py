@@ -24,7 +24,7 @@ import small_contest
 from arguments import arguments
 from msgspec.structs import replace
 from tests.campaigns.forge import game as game_forger
-from tests.campaigns.forge.record import Forger
+from tests.campaigns.forge.record import Forger, Harmless
 
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import outcome
@@ -67,10 +67,6 @@ from lacoc_shared.words import render
 _NAME = "Cup"
 AGAIN = "a game played again"
 """The kind of forgery after which everything is computed again."""
-
-
-class Harmless(Exception):
-    """This change means nothing, or can't be made."""
 
 
 class Forged(NamedTuple):

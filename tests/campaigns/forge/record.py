@@ -27,7 +27,7 @@ _STATE_START = 8 + 8
 
 
 class Harmless(Exception):
-    """This change can't be made to this record, or means nothing in it."""
+    """This change can't be made to this record or contest, or means nothing in it."""
 
 
 @dataclass
