@@ -85,6 +85,7 @@ def play(number: int) -> Line:
         match_id=f"{name}-{number:02d}",
         robots=[_ROBOTS[(pair + seat * pair // 6) % len(_ROBOTS)] for seat in range(2)],
         late_ticks=[(11 * number + 5 * seat) % 50 for seat in range(2)],
+        teams=("Team 0", "Team 1"),
         watch=watch,
     )
     return Line(arenas.load(name).match.duration_s, tuple(points))

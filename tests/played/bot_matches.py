@@ -54,6 +54,7 @@ def bot_match(
     *,
     match_id: str = "m",
     robots: Sequence[str] = ("hexapod", "hexapod"),
+    teams: Sequence[str | None] = (None, None),
     late_ticks: Sequence[int] = (0, 0),
     watch: Callable[[Frame], None] | None = None,
 ) -> Path:
@@ -66,6 +67,7 @@ def bot_match(
         settings: what replaces entries of the arena's file.
         match_id: name of the match.
         robots: the robot of each seat.
+        teams: the team in each seat; None: it is called as its bot.
         late_ticks: how much later each seat's keys come.
         watch: gets each frame.
 
@@ -76,7 +78,7 @@ def bot_match(
     players = []
     for seat, bot in enumerate(bots):
         known = BOTS[0] if bot == WRESTLER else bot
-        one = player(arena, seat, known, robots[seat], f"Team {seat}", late_ticks[seat])
+        one = player(arena, seat, known, robots[seat], teams[seat], late_ticks[seat])
         players.append(replace(one, bot=wrestler) if bot == WRESTLER else one)
     simulate(setup_of(name, settings, match_id), players, folder, watch)
     return Path(folder or "", f"{match_id}.mcap")
@@ -101,5 +103,6 @@ def play(folder: Path, number: int, seconds: float) -> Path:
         {"match": {"duration_s": seconds, "countdown_s": 0.1}},
         match_id=f"{name}-{number:03d}",
         robots=[_ROBOTS[(number // 2 + seat) % len(_ROBOTS)] for seat in range(2)],
+        teams=("Team 0", "Team 1"),
         late_ticks=[(7 * number + 3 * seat) % 50 for seat in range(2)],
     )

@@ -26,7 +26,9 @@ def match_file(arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "
     settings = {"match": {"duration_s": seconds, "countdown_s": 1.0}}
     bots = ("planner", "nearest")[: len(arenas.load(arena).seats)]
     with tempfile.TemporaryDirectory() as folder:
-        record = Record.read(bot_match(Path(folder), arena, bots, settings, robots=robots))
+        record = Record.read(
+            bot_match(Path(folder), arena, bots, settings, robots=robots, teams=("Ants", "Bees"))
+        )
     last = record.last_beat
     sheet, scene = record.sheet_at(last), record.scene_at(last)
     assert sheet is not None
