@@ -80,16 +80,16 @@ wheel-smoke: build ## Install wheel and source archive in clean environments and
 	$(BIN)/python tests/project/wheel_smoke.py dist
 
 bench: .venv/.test ## Measure the court against bare physics and bare Zenoh.
-	$(BIN)/python -m benchmarks $(ARGS)
+	$(RUN) benchmarks $(ARGS)
 
 fuzz: .venv/.test ## Feed a million hostile packets and 100,000 hostile files to all that reads them.
-	$(BIN)/python tests/fuzz $(ARGS)
+	$(RUN) tests.campaigns.fuzz $(ARGS)
 
 mutants: .venv/.mutation ## Change the code of rules, match, drive and codec bit by bit: do tests notice?
-	$(BIN)/python tests/mutation $(ARGS)
+	$(RUN) tests.campaigns.mutation $(ARGS)
 
 soak: .venv/.test ## Play matches end to start for an hour: nothing may grow or be left over.
-	$(BIN)/python -m benchmarks.soak $(ARGS)
+	$(RUN) tests.campaigns.long.soak $(ARGS)
 
 clean: ## Remove everything that was made.
 	rm -rf .venv build dist client/web/node_modules client/lacoc_client/pages .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

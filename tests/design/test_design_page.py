@@ -2,7 +2,6 @@
 
 import contextlib
 import re
-import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -16,9 +15,10 @@ from design_client import DesignClient, Refused
 from hypothesis import given
 from hypothesis import strategies as st
 from lacoc_process import Lacoc, run_lacoc
+from own_page import OwnPage
 from page_connection import PageConnection
 from ports import free_port
-from waiting import LIMIT_S, until
+from waiting import until
 
 from lacoc_client.web.gateway.wire import MessageKind, Unreadable
 from lacoc_client.workshop.design import requests
@@ -28,26 +28,12 @@ from lacoc_shared.studio import STUDIO_MAX_BYTES
 pytestmark = pytest.mark.slow
 
 
-class Gateway:
+class Gateway(OwnPage):
     """A running `lacoc design`."""
 
     def __init__(self, folder: Path, *words: str) -> None:
+        super().__init__(folder, "design", str(folder), *words)
         self.folder = folder
-        self.process = Lacoc(
-            *("design", str(folder), "--no-open", *words),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            stdin=subprocess.DEVNULL,
-            text=True,
-        )
-        assert self.process.stdout is not None
-        said = re.search(r"(http://[^/]+)/design#key=(\S+)", self.process.stdout.readline())
-        assert said is not None
-        self.url, self.key = said[1], said[2]
-
-    def close(self) -> None:
-        self.process.terminate()
-        self.process.communicate(timeout=LIMIT_S)
 
 
 @pytest.fixture(scope="module")
@@ -214,7 +200,7 @@ def searched(page: DesignClient, do: str, **fields: Any) -> Any:
         try:
             found.append(page.ask(do, **fields))
         except Refused as refusal:
-            if not refusal.reply["again"] and str(refusal) != "studio.job-taken":
+            if not refusal.reply["again"] and refusal.why.code != "studio.job-taken":
                 raise
         return bool(found)
 

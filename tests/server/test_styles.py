@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.trials import entry_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sample_walks import entry_of
 
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import task_of
