@@ -13,6 +13,7 @@ from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.guesses import Guesses
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_client.web.office.links import qr_code
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.state import (
     NOBODY,
@@ -372,6 +373,7 @@ class Classroom:
         body = {
             "code": self.state.code,
             "addresses": self.addresses,
+            "qr": qr_code(self.addresses[0]) if self.addresses else "",
             "rules": self.state.rules,
             "trouble": trouble,
             "studios": studios,
