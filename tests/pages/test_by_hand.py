@@ -48,6 +48,19 @@ class Keyboard:
         self._page.page.keyboard.type(text)
 
 
+HEARD = """
+window.heard = [];
+window.OscillatorNode = class extends OscillatorNode {
+  constructor(audio, options) {
+    super(audio, options);
+    window.heard.push(Math.round(options.frequency));
+  }
+};
+"""
+"""Notes the tones that a page plays [Hz]."""
+COUNT_HZ, START_HZ, END_HZ = 440, 880, 784
+
+
 def opened(venue: Venue, sit: Sit, **options: object) -> Contestant:
     """Start a court for a match of some seconds, and open the link of the left seat."""
     venue.court("--seconds", "6")
@@ -60,6 +73,8 @@ def opened(venue: Venue, sit: Sit, **options: object) -> Contestant:
 def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     """A contestant and a referee who have no mouse bring a match to its official result."""
     page = opened(venue, sit)
+    page.page.add_init_script(HEARD)
+    page.page.reload()
     keyboard = Keyboard(page)
     keyboard.write("#join-name", "Ants")
     page.press("Enter")
@@ -82,6 +97,9 @@ def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     judging.use("dialog button[type=submit]")
     page.phase(Phase.OFFICIAL)
     page.sees(".result", "Ants")
+    heard = page.page.evaluate("window.heard")
+    assert heard[0] == COUNT_HZ
+    assert {COUNT_HZ, START_HZ, END_HZ} <= {*heard}
     for shown in (page, judge):
         assert violations(shown.page) == []
         shown.press("?")

@@ -20,6 +20,7 @@ import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
+import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
 import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
@@ -93,6 +94,7 @@ export default function Watch() {
       {hud && <Hud />}
       {hud && isShown && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
+      <Sound match={court} />
       <CornerSettings />
       <KeyHelp rows={() => [...cameraRows(court.sheet.value), ...cornerRows()]} />
     </main>
