@@ -10,6 +10,12 @@ from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow
 
+MOST_SCRIPT_BYTES, MOST_SCRIPTS = 200_000, 12
+"""What a player's page loads, packed."""
+PACKED = """
+performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(".js"))
+  .map(({ encodedBodySize }) => encodedBodySize)
+"""
 PHONE = {"width": 390, "height": 844}
 BIG = ".big:not(.fresh) .act:not([aria-disabled=true])"
 """The referee's button for the next decision."""
@@ -92,6 +98,10 @@ def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     page.phase(Phase.PLAYING)
     page.steer(2)
     page.key_stands(2)
+    scripts = page.page.evaluate(PACKED)
+    assert all(scripts), "a browser does not say how large they are"
+    assert sum(scripts) <= MOST_SCRIPT_BYTES
+    assert len(scripts) <= MOST_SCRIPTS
     page.phase(Phase.FINISHED)
     judging.use(BIG)
     judging.use("dialog button[type=submit]")
