@@ -20,7 +20,7 @@ const scored = (number, beat, seat) => ({ number, beat, seat, data: { points: 2,
 function heard(frames, events = []) {
   let before = null;
   return frames.flatMap((one) => {
-    const now = heardAt(one, sheet, events);
+    const now = heardAt(one, sheet, events, before);
     const cues = cuesBetween(before, now, events);
     before = now;
     return cues.map(({ name, seat }) => (seat < 0 ? name : `${name} ${seat}`));
@@ -42,7 +42,7 @@ test("points are heard once, of whoever scored, and what came before is not", ()
 
 test("a new leader is heard", () => {
   const score = (left, right) => ({ seats: [{ score: left }, { score: right }] });
-  const frames = [score(2, 1), score(2, 3), score(2, 4)].map((one, beat) =>
+  const frames = [score(2, 1), score(2, 2), score(2, 3), score(2, 4)].map((one, beat) =>
     frame(beat, PLAYING, one),
   );
   assert.deepEqual(heard(frames), ["lead 1"]);

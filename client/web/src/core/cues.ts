@@ -27,16 +27,27 @@ export interface Heard {
 /** A longer time between two frames is a leap, as in a replay or after a break: nothing is heard. */
 const LEAP_BEATS = BEATS_PER_S;
 const LAST_TICKS = 10 * BEATS_PER_S;
+const OVER = new Set<number>([Phase.FINISHED, Phase.OFFICIAL, Phase.VOID]);
 const STARTS = new Set<number>([Phase.COUNTDOWN, Phase.HALTED, Phase.READY]);
 
-/** What of a match has been heard at a frame. */
-export function heardAt(frame: Frame, sheet: Sheet, events: readonly Event[]): Heard {
+/**
+ * What of a match has been heard at a frame.
+ *
+ * @param before What was heard at the frame before; null: nothing yet.
+ */
+export function heardAt(
+  frame: Frame,
+  sheet: Sheet,
+  events: readonly Event[],
+  before: Heard | null,
+): Heard {
+  const leader = leaderOf(frame);
   return {
     match: frame.match,
     beat: frame.beat,
     phase: frame.phase,
     second: secondOf(frame, sheet),
-    leader: leaderOf(frame),
+    leader: leader < 0 && before?.match === frame.match ? before.leader : leader,
     event: events.findLast(({ beat }) => beat <= frame.beat)?.number ?? 0,
   };
 }
@@ -64,7 +75,9 @@ export function cuesBetween(before: Heard | null, now: Heard, events: readonly E
     if (now.phase === Phase.PLAYING && STARTS.has(before.phase)) {
       cues.push({ name: "start", seat: -1 });
     } else if (now.phase === Phase.HALTED) cues.push({ name: "halt", seat: -1 });
-    else if (now.phase === Phase.FINISHED) cues.push({ name: "end", seat: now.leader });
+    else if (OVER.has(now.phase) && !OVER.has(before.phase)) {
+      cues.push({ name: "end", seat: now.leader });
+    }
   }
   return cues;
 }
