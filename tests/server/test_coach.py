@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
-from lacoc_server.studio.coach.goal import Goal, goal_score
+from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import STEP_DEG, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
@@ -22,6 +22,7 @@ from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.coach.trials import Task, try_table
 from lacoc_server.studio.coach.undo import undo
 from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.goal import Goal
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import LocomotionTable
 from lacoc_shared.gait.text import read_gait
@@ -155,7 +156,7 @@ def sample_task(key: int) -> Task:
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
     sequences = entry.gait.locomotion.sequences
-    return Task(entry.robot, sequences[0], KeyTable.of(sequences[key]), Goal.FORWARD)
+    return Task(entry.robot, sequences[0], KeyTable.of(sequences[key]), Goal.FORWARD, key)
 
 
 @pytest.mark.slow
