@@ -11,7 +11,7 @@ from lacoc_server.studio.coach.coach import task_of
 from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.harm import harm, worse
 from lacoc_server.studio.coach.trials import try_table
-from lacoc_server.trial.reasons.form import Form
+from lacoc_server.trial.reasons.form import KeyForm
 from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.reasons.likely import likely_mistake, weigh_repairs
 
@@ -65,7 +65,7 @@ def test_a_turn_is_no_mistake(key: int, goal: Goal) -> None:
     entry = entry_of("hexapod")
     sequence = entry.gait.sequence(1, key)  # type: ignore[arg-type]
     assert sequence is not None
-    assert likely_mistake(Form.of(entry.robot, sequence, goal, key)) is None
+    assert likely_mistake(KeyForm.of(entry.robot, sequence, goal, key)) is None
 
 
 def test_what_became_worse_is_known() -> None:
@@ -87,6 +87,6 @@ def test_what_became_worse_is_known() -> None:
     assert harm(turning, slower, Goal.FORWARD, everything=False) >= 5
 
 
-def form_of(robot: str, table_deg: np.ndarray) -> Form:
+def form_of(robot: str, table_deg: np.ndarray) -> KeyForm:
     """Return the form of a table that should go forward."""
-    return Form.of(entry_of(robot).robot, sequence_of(table_deg), Goal.FORWARD, KEY)
+    return KeyForm.of(entry_of(robot).robot, sequence_of(table_deg), Goal.FORWARD, KEY)

@@ -131,9 +131,10 @@ def coach_command(
     """Say which numbers of a gait matter, and search for a better gait with few changes.
 
     The coach makes each number 10 degrees larger and smaller, and lets the robot walk as in a
-    contest. With --size the coach then searches for a better gait. A change that hardly helps is
-    undone, so that you can understand the changes that are left. With --map or --variants it looks
-    for gaits that are different instead. Ctrl-C ends the search and keeps what it has found.
+    contest. With --size the coach first repairs a mistake, with its reason; if there is none, it
+    searches for a better gait (the whole table in any case). A change that hardly helps is undone,
+    so that you can understand the changes that are left. With --map or --variants it looks for
+    gaits that are different instead. Ctrl-C ends the search and keeps what it has found.
     """
     if sum((size is not None, map_, variants)) > 1:
         raise UserError(say("coach.one-wish"))

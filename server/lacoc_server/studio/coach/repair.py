@@ -9,7 +9,7 @@ from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.coach.trials import Trials
 from lacoc_server.trial.figures import Figures
-from lacoc_server.trial.reasons.form import Form
+from lacoc_server.trial.reasons.form import KeyForm
 from lacoc_server.trial.reasons.likely import weigh_repairs
 from lacoc_shared.studio import CellPlace
 from lacoc_shared.words import Phrase
@@ -54,7 +54,7 @@ def repair(trials: Trials) -> Iterator[Repaired]:
     now: Figures | None = None
     for _ in range(MOST_REPAIRS):
         sequence = task.table.sequence(angles)
-        form = Form.of(task.robot, sequence, task.goal, task.key)
+        form = KeyForm.of(task.robot, sequence, task.goal, task.key)
         found: dict[Angles, tuple[Phrase, CellPlace]] = {}
         for weighed in weigh_repairs(form):
             table = _angles(task.table, weighed.repair.form)
@@ -84,7 +84,7 @@ def _best(tables: list[Angles], scores: list[float]) -> list[Angles]:
     return [tables[index] for index in sorted([0, *ranked[: _EXACT - 1]])]
 
 
-def _angles(table: KeyTable, form: Form) -> Angles | None:
+def _angles(table: KeyTable, form: KeyForm) -> Angles | None:
     """Return the angles of a table's rows [whole deg]; None if a row would need two versions."""
     postures = np.round(form.angles_deg).astype(int).reshape(form.postures, -1)
     rows: dict[int, tuple[int, ...]] = {}

@@ -28,7 +28,7 @@ _MOST_AT_ONCE = 4
 _LOOK_S = 0.05
 
 
-class _Way(NamedTuple):
+class _Exactness(NamedTuple):
     """How exactly a table is tried."""
 
     steps: int
@@ -36,9 +36,9 @@ class _Way(NamedTuple):
     cycles: int
 
 
-_EXACT_WAY = _Way(SUBSTEPS, _CYCLES)
-_QUICK_WAY = _Way(SUBSTEPS, _QUICK_CYCLES)
-_ROUGH_WAY = _Way(_ROUGH_STEPS, _ROUGH_CYCLES)
+_EXACT_WAY = _Exactness(SUBSTEPS, _CYCLES)
+_QUICK_WAY = _Exactness(SUBSTEPS, _QUICK_CYCLES)
+_ROUGH_WAY = _Exactness(_ROUGH_STEPS, _ROUGH_CYCLES)
 
 
 class Stopped(Exception):
@@ -73,7 +73,7 @@ class Trials:
         """Called many times a second while tables are tried."""
         self.count = 0
         """Number of trials so far."""
-        self._spared: dict[_Way, Figures] = {}
+        self._spared: dict[_Exactness, Figures] = {}
         self._everything = False
         self._workers = workers
         self._stop = stop
@@ -140,7 +140,7 @@ class Trials:
         jobs = [self._workers.submit(_figures, self.task, [table], *_EXACT_WAY) for table in tables]
         return [found for job in jobs for found in job.result()]
 
-    def _scores(self, tables: Sequence[Angles], way: _Way) -> list[float]:
+    def _scores(self, tables: Sequence[Angles], way: _Exactness) -> list[float]:
         goal = self.task.goal
         walks = self._walks(tables, way)
         scores = [goal_score(figures, goal) for figures in walks]
@@ -154,7 +154,7 @@ class Trials:
             for score, cost in zip(scores, harms, strict=True)
         ]
 
-    def _walks(self, tables: Sequence[Angles], way: _Way) -> list[Figures]:
+    def _walks(self, tables: Sequence[Angles], way: _Exactness) -> list[Figures]:
         size = min(_MOST_AT_ONCE, max(1, len(tables) // (4 * self._workers.count)))
         parts = [tables[first : first + size] for first in range(0, len(tables), size)]
         jobs = [self._workers.submit(_figures, self.task, part, *way) for part in parts]

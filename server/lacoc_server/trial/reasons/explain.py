@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.figures import Figures
-from lacoc_server.trial.reasons.form import Form
+from lacoc_server.trial.reasons.form import KeyForm
 from lacoc_server.trial.reasons.goal import goal_of
 from lacoc_server.trial.reasons.legs import at_limits, odd_legs, seam
 from lacoc_server.trial.reasons.likely import likely_mistake
@@ -48,7 +48,7 @@ def explain(
     Returns:
         At most `MOST_SENTENCES` sentences, the most useful first.
     """
-    form = Form.of(robot, sequence, goal_of(press, figures), press.digit)
+    form = KeyForm.of(robot, sequence, goal_of(press, figures), press.digit)
     seen = SeenTrial(robot, walk, figures, form)
     found = [finding for rule in _RULES for finding in rule(seen)]
     found.sort(key=lambda finding: -finding.rank)

@@ -38,7 +38,7 @@ class TableCell(NamedTuple):
     leg: int
 
 
-class Form:
+class KeyForm:
     """The table of a key.
 
     Args:
@@ -55,16 +55,16 @@ class Form:
         self.digit = digit
 
     @classmethod
-    def of(cls, robot: RobotSpec, sequence: Sequence[Posture], goal: Goal, digit: int) -> "Form":
+    def of(cls, robot: RobotSpec, sequence: Sequence[Posture], goal: Goal, digit: int) -> "KeyForm":
         """Make the table of a sequence of postures [rad]."""
         angles = np.degrees(np.array(sequence, float))
         shape = (len(sequence), JOINTS_PER_LEG, len(robot.legs))
         return cls(robot, angles.reshape(shape), goal, digit)
 
-    def changed(self, angles_deg: Floats) -> "Form":
+    def changed(self, angles_deg: Floats) -> "KeyForm":
         """Return the table with other angles, kept in the ranges of their joints."""
         low, high = np.array(self.robot.ranges_deg).T.reshape(2, *self.angles_deg.shape[1:])
-        return Form(self.robot, np.clip(angles_deg, low, high), self.goal, self.digit)
+        return KeyForm(self.robot, np.clip(angles_deg, low, high), self.goal, self.digit)
 
     @property
     def postures(self) -> int:
@@ -83,7 +83,7 @@ class Form:
 
     @property
     def paired(self) -> tuple[int, ...]:
-        """The levels in which partners do the same: in a turn the roots do not."""
+        """The levels in which partners and mates do the same: in a turn the roots do not."""
         return (0, 1, 2) if self.goal is Goal.FORWARD else (1, 2)
 
     @cached_property
@@ -98,8 +98,8 @@ class Form:
         Differences of at most `SAME_DEG` count 0.
         """
         odd = np.zeros_like(self.angles_deg)
+        levels = list(self.paired)
         if self.half:
-            levels = list(self.paired)
             apart = self.angles_deg - self.partners_deg
             odd[:, levels] += _beyond(apart[:, levels]) / 2
         for first in (0, 1):
@@ -108,7 +108,8 @@ class Form:
                 others = [mate for mate in mates if mate != leg]
                 apart = self.angles_deg[:, :, others] - self.angles_deg[:, :, [leg]]
                 apart = apart - _OFFSET[:, None] * np.median(apart, axis=0)
-                odd[:, :, leg] += _MATES * _beyond(apart).sum(axis=2) / max(1, len(others))
+                apart = _MATES * _beyond(apart).sum(axis=2) / max(1, len(others))
+                odd[:, levels, leg] += apart[:, levels]
         return odd
 
     @property

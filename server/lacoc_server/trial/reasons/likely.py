@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lacoc_server.trial.reasons.form import Form
+from lacoc_server.trial.reasons.form import KeyForm
 from lacoc_server.trial.reasons.repairs import Repair, partner_repairs
 from lacoc_server.trial.reasons.shared import shared_repairs
 
 _THRUST_DEG = 60.0
-"""What the largest thrust of all repaired tables is worth, on the scale of `Form.oddness_deg`."""
+"""What the largest thrust of all repaired tables is worth, on the scale of oddness."""
 _WAY = 0.03
 """What a degree that a joint turns costs: of two rows that differ, the wilder one is wrong."""
 _CLOSE = 24
@@ -25,12 +25,12 @@ class Weighed(NamedTuple):
 
     worth: float
     """What is repaired and gained, minus how rare the mistake is; on the scale of
-    `Form.oddness_deg`."""
+    `KeyForm.oddness_deg`."""
     repair: Repair
     is_sure: bool
 
 
-def weigh_repairs(form: Form) -> list[Weighed]:
+def weigh_repairs(form: KeyForm) -> list[Weighed]:
     """Return the repairs of a table that are worth trying, the most probable first."""
     now = _strange_deg(form)
     parts = [(_strange_deg(one.form), one) for one in partner_repairs(form)]
@@ -53,12 +53,12 @@ def weigh_repairs(form: Form) -> list[Weighed]:
     return sorted(found, key=lambda one: -one.worth)
 
 
-def likely_mistake(form: Form) -> Repair | None:
+def likely_mistake(form: KeyForm) -> Repair | None:
     """Return the repair of the mistake that a table most probably has; None: none is sure."""
     return next((one.repair for one in weigh_repairs(form) if one.is_sure), None)
 
 
-def _strange_deg(form: Form) -> float:
+def _strange_deg(form: KeyForm) -> float:
     """Return how odd a table is, with a little for how far its joints turn."""
     angles = form.angles_deg
     way_deg = float(np.abs(angles - np.roll(angles, 1, axis=0)).sum())

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lacoc_server.trial.reasons.form import SAME_DEG, Form, TableCell
+from lacoc_server.trial.reasons.form import SAME_DEG, KeyForm, TableCell
 from lacoc_server.trial.walk import Floats
 from lacoc_shared.gait.tables import LEVEL_NAMES
 from lacoc_shared.words import Phrase, say
@@ -26,16 +26,16 @@ class Repair(NamedTuple):
     """What is wrong; its code is `explain.*`."""
     cell: TableCell
     """A cell that is wrong."""
-    form: Form
+    form: KeyForm
     """The repaired table."""
     rare: float
     """How improbable the mistake is before the table is seen, on the scale of
-    `Form.oddness_deg`."""
+    `KeyForm.oddness_deg`."""
     leg: int = -1
     """The leg with the mistake; -1: it is not one leg's."""
 
 
-def partner_repairs(form: Form) -> Iterator[Repair]:
+def partner_repairs(form: KeyForm) -> Iterator[Repair]:
     """List the repairs of mistakes that only a part of the table has."""
     yield from _cells(form)
     yield from _legs(form)
@@ -46,7 +46,7 @@ def partner_repairs(form: Form) -> Iterator[Repair]:
         yield from _halves(form)
 
 
-def _cells(form: Form) -> Iterator[Repair]:
+def _cells(form: KeyForm) -> Iterator[Repair]:
     """Give one number the other sign, or the number of its partner or of a mate."""
     angles = form.angles_deg
     for at in np.ndindex(angles.shape):
@@ -64,7 +64,7 @@ def _cells(form: Form) -> Iterator[Repair]:
                 yield Repair(said, cell, _with(form, at, angles[partner]), 8, cell.leg)
 
 
-def _legs(form: Form) -> Iterator[Repair]:
+def _legs(form: KeyForm) -> Iterator[Repair]:
     """Give a joint of a leg, or a whole leg, its partner's numbers, a sign or a time."""
     angles, odd = form.angles_deg, form.odd_deg
     for leg in range(form.legs):
@@ -101,7 +101,7 @@ def _legs(form: Form) -> Iterator[Repair]:
             yield Repair(said, cell, _with(form, whole, form.partners_deg[whole]), 18, leg)
 
 
-def _rows(form: Form) -> Iterator[Repair]:
+def _rows(form: KeyForm) -> Iterator[Repair]:
     """Let two rows change places, or make a row again from its partner's."""
     angles = form.angles_deg
     for row in range(form.postures):
@@ -136,7 +136,7 @@ def _rows(form: Form) -> Iterator[Repair]:
             yield Repair(said, cell, _with(form, at, form.partners_deg[at]), rare)
 
 
-def _sides(form: Form) -> Iterator[Repair]:
+def _sides(form: KeyForm) -> Iterator[Repair]:
     """Give a side the other side's numbers, or all roots of a side the other sign."""
     for side, name in ((1, "right"), (-1, "left")):
         legs = [leg for leg, spec in enumerate(form.robot.legs) if spec.side == side]
@@ -162,7 +162,7 @@ def _sides(form: Form) -> Iterator[Repair]:
             yield Repair(said, cell, _with(form, ix, form.partners_deg[ix]), 30)
 
 
-def _halves(form: Form) -> Iterator[Repair]:
+def _halves(form: KeyForm) -> Iterator[Repair]:
     """Make a half of the cycle the mirror of the other."""
     half = form.half
     for rows in (range(half, form.postures), range(half)):
@@ -182,7 +182,7 @@ def _halves(form: Form) -> Iterator[Repair]:
             yield Repair(said, cell, _with(form, ix, form.partners_deg[ix]), 34 + 2 * len(level))
 
 
-def _odd(form: Form, cell: TableCell, partner: TableCell | None = None) -> Phrase:
+def _odd(form: KeyForm, cell: TableCell, partner: TableCell | None = None) -> Phrase:
     """Make the part of a sentence that holds a number against its partner's."""
     held = form.partner(cell) if partner is None else partner
     return say(
@@ -194,7 +194,7 @@ def _odd(form: Form, cell: TableCell, partner: TableCell | None = None) -> Phras
     )
 
 
-def _partners(form: Form, cell: TableCell) -> Iterator[TableCell]:
+def _partners(form: KeyForm, cell: TableCell) -> Iterator[TableCell]:
     """List the cells that should have the same number: the partner, then mates except of roots."""
     if form.half and cell.level in form.paired:
         yield form.partner(cell)
@@ -204,7 +204,7 @@ def _partners(form: Form, cell: TableCell) -> Iterator[TableCell]:
                 yield TableCell(cell.posture, cell.level, leg)
 
 
-def _alike(form: Form, cell: TableCell, angle_deg: float) -> TableCell | None:
+def _alike(form: KeyForm, cell: TableCell, angle_deg: float) -> TableCell | None:
     """Find the partner that has an angle, about; None: no partner has it."""
     near = (
         one
@@ -214,14 +214,14 @@ def _alike(form: Form, cell: TableCell, angle_deg: float) -> TableCell | None:
     return next(near, None)
 
 
-def _oddest(form: Form, row: int, wanted_deg: Floats) -> TableCell:
+def _oddest(form: KeyForm, row: int, wanted_deg: Floats) -> TableCell:
     """Return the number of a row that differs most from what it should be."""
     apart = np.abs(form.angles_deg[row] - wanted_deg)
     level, leg = np.unravel_index(int(apart.argmax()), apart.shape)
     return TableCell(row, int(level), int(leg))
 
 
-def _with(form: Form, at: Any, angles_deg: Floats | float) -> Form:
+def _with(form: KeyForm, at: Any, angles_deg: Floats | float) -> KeyForm:
     """Return the table with other angles at some places."""
     angles = form.angles_deg.copy()
     angles[at] = angles_deg

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.figures import Figures
-from lacoc_server.trial.reasons.form import Form, TableCell
+from lacoc_server.trial.reasons.form import KeyForm, TableCell
 from lacoc_server.trial.walk import Walk
 from lacoc_shared.words import Phrase
 
@@ -28,5 +28,5 @@ class SeenTrial:
     robot: RobotSpec
     walk: Walk
     figures: Figures
-    form: Form
+    form: KeyForm
     """The table of the measured key."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lacoc_server.trial.reasons.form import Form, TableCell
+from lacoc_server.trial.reasons.form import KeyForm, TableCell
 from lacoc_server.trial.reasons.repairs import Repair
 from lacoc_server.trial.steps import steps_of
 from lacoc_server.trial.walk import Floats
@@ -22,7 +22,7 @@ _LIFTS_DEG = ((2, 40.0), (1, 25.0), (1, 40.0))
 _AREA_M2 = 1e-4
 
 
-def shared_repairs(form: Form) -> Iterator[Repair]:
+def shared_repairs(form: KeyForm) -> Iterator[Repair]:
     """List the repairs of a fault of all legs; only of the first fault that the table has.
 
     A table without such a fault has none.
@@ -70,7 +70,7 @@ def shared_repairs(form: Form) -> Iterator[Repair]:
         yield from _backward(form, thrust)
 
 
-def _backward(form: Form, thrust: Floats) -> Iterator[Repair]:
+def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
     """Turn the order of the rows around, or the signs of all roots."""
     leg = int(thrust.argmin())
     cell = TableCell(steps_of(form.robot, form.sequence).swings_to(leg), 0, leg)
@@ -86,7 +86,7 @@ def _backward(form: Form, thrust: Floats) -> Iterator[Repair]:
     yield Repair(order, cell, form.changed(angles[::-1]), 23)
 
 
-def _lifted(form: Form, said: Phrase, cell: TableCell, rare: float) -> Iterator[Repair]:
+def _lifted(form: KeyForm, said: Phrase, cell: TableCell, rare: float) -> Iterator[Repair]:
     """Lift half of the feet in half of the rows, the other feet in the others."""
     angles = form.angles_deg
     half = form.postures // 2
@@ -101,7 +101,7 @@ def _lifted(form: Form, said: Phrase, cell: TableCell, rare: float) -> Iterator[
             yield Repair(said, cell, form.changed(lifted), rare)
 
 
-def _swung(form: Form, said: Phrase, cell: TableCell) -> Iterator[Repair]:
+def _swung(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
     """Let the roots of each half of the feet swing back and forth, half a cycle apart."""
     half = form.postures // 2
     for begin in range(form.postures):
@@ -113,9 +113,9 @@ def _swung(form: Form, said: Phrase, cell: TableCell) -> Iterator[Repair]:
         yield Repair(said, cell, form.changed(swung), 20)
 
 
-def _steps(form: Form, said: Phrase, cell: TableCell) -> Iterator[Repair]:
+def _steps(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
     """Make a first walk: from the robot's own stand, swing and lift half of the feet at a time."""
     stand = np.degrees(np.array(form.robot.start_posture)).reshape(form.angles_deg.shape[1:])
-    flat = Form(form.robot, np.repeat(stand[None], form.postures, axis=0), form.goal, form.digit)
+    flat = KeyForm(form.robot, np.repeat(stand[None], form.postures, axis=0), form.goal, form.digit)
     for one in _swung(flat, said, cell):
         yield from _lifted(one.form, said, cell, 5)
