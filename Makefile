@@ -23,7 +23,7 @@ PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test test-all test-long format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
+.PHONY: help demo test test-all test-long format lint type walls core check build bench fuzz mutants soak wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -67,7 +67,10 @@ type: .venv/.lint .venv/.web ## Check types.
 walls: .venv/.lint ## Check who imports whom (docs/architecture.md).
 	$(BIN)/lint-imports
 
-check: lint type walls test ## Everything that must be right before a commit.
+core: .venv/.test ## Delete all satellites in a copy, and run the core's tests there.
+	$(BIN)/python tests/project/core_alone.py -n 2
+
+check: lint type walls core test ## Everything that must be right before a commit.
 
 build: .venv/.build ## Make the wheel and the source archive in dist/.
 	rm -rf dist
@@ -77,16 +80,16 @@ wheel-smoke: build ## Install wheel and source archive in clean environments and
 	$(BIN)/python tests/project/wheel_smoke.py dist
 
 bench: .venv/.test ## Measure the court against bare physics and bare Zenoh.
-	$(BIN)/python -m benchmarks $(ARGS)
+	$(RUN) benchmarks $(ARGS)
 
 fuzz: .venv/.test ## Feed a million hostile packets and 100,000 hostile files to all that reads them.
-	$(BIN)/python tests/fuzz $(ARGS)
+	$(RUN) tests.campaigns.fuzz $(ARGS)
 
 mutants: .venv/.mutation ## Change the code of rules, match, drive and codec bit by bit: do tests notice?
-	$(BIN)/python tests/mutation $(ARGS)
+	$(RUN) tests.campaigns.mutation $(ARGS)
 
 soak: .venv/.test ## Play matches end to start for an hour: nothing may grow or be left over.
-	$(BIN)/python -m benchmarks.soak $(ARGS)
+	$(RUN) tests.campaigns.long.soak $(ARGS)
 
 clean: ## Remove everything that was made.
 	rm -rf .venv build dist client/web/node_modules client/lacoc_client/pages .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,1 +1,3 @@
-"""Benchmarks: what the software costs, mostly as ratios to a bare baseline in the same run."""
+"""Benchmarks of speed; each is a command, `python -m benchmarks.courts` and so on."""
+
+import tests  # noqa: F401 - makes the helper modules of tests importable

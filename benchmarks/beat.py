@@ -1,4 +1,7 @@
-"""Times the court's whole beat, and a whole headless match, against bare `mj_step`."""
+"""Times the court's whole beat, and a whole headless match, against bare `mj_step`.
+
+`make bench` prints them; `python -m benchmarks.beat --rounds 3` prints them alone.
+"""
 
 import statistics
 import tempfile
@@ -11,8 +14,11 @@ from typing import Any
 import mujoco
 import numpy as np
 import numpy.typing as npt
+from arguments import arguments
+from bot_matches import ARENAS, setup_of
 
-from benchmarks.paths import BarePath, keys_at, setup_of, started
+from benchmarks.bare import BarePath, keys_at, started
+from benchmarks.figures import Row, finish
 from lacoc_arenas import arena as arenas
 from lacoc_server.match.match import Match
 from lacoc_server.simulate import player, simulate
@@ -90,9 +96,8 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
         for each second of the match.
     """
     match_s, bare_s, shares, sizes = [], [], [], []
-    loaded = arenas.load(arena)
-    for number in range(rounds):
-        setup = setup_of(arena, f"benchmark-{number}")
+    loaded, setup = arenas.load(arena), setup_of(arena)
+    for _ in range(rounds):
         players = [player(loaded, seat, "straight") for seat in (0, 1)]
         with tempfile.TemporaryDirectory() as folder:
             begin = time.perf_counter()
@@ -131,3 +136,44 @@ def _bare_path_s(record: Record) -> float:
     took_s = bare.run(controls)
     assert bare.is_where(match.physics), "bare physics took another path"
     return took_s
+
+
+def beats(rounds: int) -> dict[str, dict[str, Any]]:
+    """Return for each arena the figures of `beat` and of `whole_match`, and the size of a frame."""
+    return {
+        arena: {
+            **beat(arena, rounds),
+            **whole_match(arena, max(1, rounds // 4)),
+            "frame_bytes": len(started(arena, None).beat()[1]),
+        }
+        for arena in ARENAS
+    }
+
+
+def rows(found: dict[str, dict[str, Any]]) -> Iterator[Row]:
+    """Yield the rows for the table of `make bench`."""
+    for arena, one in found.items():
+        yield Row(
+            f"court's whole beat, {arena}",
+            f"{one['beat_us']:.0f} us",
+            f"bare mj_step {one['bare_us']:.0f} us",
+            f"{one['ratio']:.3f}",
+            "at most 1.10",
+        )
+        yield Row(f"its own part, {arena}", f"{one['own_us']:.1f} us")
+        yield Row(
+            f"headless match with record, {arena}",
+            f"{one['match_s']:.2f} s, {one['times_real_time']:.0f} x real time",
+            f"bare mj_step {one['bare_s']:.2f} s",
+            f"{one['share']:.3f} of its speed",
+            "0.88",
+        )
+        yield Row(
+            f"bytes, {arena}",
+            f"a frame {one['frame_bytes']}, a record {one['record_bytes']:,}",
+            aim="320; 1,500,000",
+        )
+
+
+if __name__ == "__main__":
+    finish(beats(arguments(__doc__, rounds=11).rounds))

@@ -8,13 +8,10 @@ workers are killed on the way. Then it is run again: once with nothing changed, 
 another entry for one team.
 """
 
-import argparse
-import json
 import multiprocessing
 import os
 import random
 import statistics
-import sys
 import tempfile
 import threading
 import time
@@ -25,8 +22,11 @@ from pathlib import Path
 from typing import Any
 
 import dask
+from arguments import arguments
 from distributed import LocalCluster
+from small_contest import enter
 
+from benchmarks.figures import finish
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import installed_robots, robot_folder
 from lacoc_server.contest.acts import organiser
@@ -61,14 +61,13 @@ Engines = AbstractContextManager[GameEngine]
 
 def main() -> None:
     """Play, print, and exit with 1 if an aim is missed."""
-    parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.contest_headless", description=__doc__
+    options = arguments(
+        __doc__,
+        teams=20,
+        seconds=5.0,
+        rounds=(3, "of pool and cluster in turns"),
+        kills=20,
     )
-    parser.add_argument("--teams", type=int, default=20)
-    parser.add_argument("--seconds", type=float, default=5.0)
-    parser.add_argument("--rounds", type=int, default=3, help="of pool and cluster in turns")
-    parser.add_argument("--kills", type=int, default=20)
-    options = parser.parse_args()
     cores = os.cpu_count() or 1
     with tempfile.TemporaryDirectory() as root, _cluster(cores) as address:
         folder = Path(root)
@@ -92,7 +91,6 @@ def main() -> None:
         found |= {f"{way}_s": took for way, took in took_s.items()}
         ratios = [there / here for there, here in zip(took_s["dask"], took_s["pool"], strict=True)]
         found["dask"] = round(statistics.median(ratios), 3)
-        print(json.dumps(found), flush=True)
         # A LocalCluster removes a worker that is not there 15 s after it was killed, even if it was
         # there in between and was killed again. 'dask worker' does not do that.
         dask.config.set({"distributed.deploy.lost-worker-timeout": "1h"})
@@ -117,25 +115,24 @@ def main() -> None:
         )
         found["played_changed"], _, _ = _play(other, Pool(cores))
     found["same"] = len({repr(one) for one in tables.values()}) == 1
-    print(json.dumps(found))
     right = found["same"] and found["played_again"] == 0 and found["again_s"] < _AGAIN_MOST_S
     right = right and found["played_changed"] == 2 * (options.teams - 1)
-    sys.exit(not (right and found["dask"] < _DASK_MOST and found["played_with_kills"] == games))
+    finish(found, right and found["dask"] < _DASK_MOST and found["played_with_kills"] == games)
 
 
 def _contest(
     folder: Path, teams: int, seconds: float, records: Path, changed: bool = False
 ) -> Path:
     """Make a contest of bots; with `changed`, the first team has another bot."""
-    folder.mkdir()
-    file = folder / "contest.toml"
-    file.write_text(_STAGE.format(records=records, seconds=seconds))
     bots, robots = [*arenas.load("othello").bots], installed_robots()
-    for number in range(teams):
-        bot = bots[(number + (changed and number == 0)) % len(bots)]
-        robot = robots[number // len(bots) % len(robots)]
-        organiser.enter(file, f"Team {number + 1:02d}", robot_folder(robot), bot, "")
-    return file
+    entries = {
+        f"Team {number + 1:02d}": (
+            bots[(number + (changed and number == 0)) % len(bots)],
+            robot_folder(robots[number // len(bots) % len(robots)]),
+        )
+        for number in range(teams)
+    }
+    return enter(folder, _STAGE.format(records=records, seconds=seconds), entries)
 
 
 def _play(file: Path, engine: Engines) -> tuple[int, float, object]:

@@ -7,29 +7,19 @@ have them: in `spread` each begins within the first three minutes, by chance, an
 begin together. The director looks at all courts ten times a second, as the gateway does. In
 `ahead` everything is shown later than it is played, as on the pages; in `not_ahead` it is not.
 
-A swing is a change of the difference in points. What counts as a moment of the event:
+A swing is a change of the difference in points at a court. Only the largest 10 % count. A swing is
+on air if its court is in one of the two pictures at the swing, or at most 0.5 s later; `first`
+counts the first picture only. The director has two rules for the first picture: at most four cuts a
+minute, and no cut away from a match that is close in its last 30 s. `best` is what the first
+picture could reach with a director that knows the future and keeps these rules, by dynamic
+programming over all ways to cut.
 
-- `windows`: each quarter of a minute, the time that a picture has at four cuts a minute;
-- `seconds`: each second;
-- `changes`: each swing at each court.
-
-The swing of a window or a second is the largest one at any court in it, and of equal ones the
-first. Of each kind only those 10 % count whose swings are the largest. A moment is on air if its
-court is in one of the two pictures at the swing, or at most 0.5 s later; `_first` counts the first
-picture only. The director has two rules for the first picture: at most four cuts a minute, and no
-cut away from a match that is close in its last 30 s. `best` is what the first picture could reach
-with a director that knows the future and keeps these rules, by dynamic programming over all ways to
-cut.
-
-It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of the changes on air, in
-`spread` or `at_once`.
+It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of them on air, in `spread` or
+`at_once`.
 """
 
-import argparse
-import json
 import os
 import random
-import sys
 from bisect import bisect_right
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -39,24 +29,22 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
+from arguments import arguments
+from bot_matches import ARENAS, BOTS, bot_match
 
+from benchmarks.figures import finish
 from lacoc_arenas import arena as arenas
 from lacoc_client.web.director.courts import LAST_S, CourtNow
 from lacoc_client.web.director.director import AHEAD_S, Director
 from lacoc_client.web.director.plan import CUTS_MOST, MINUTE_S
-from lacoc_server.simulate import player, simulate
 from lacoc_shared.messages import Frame
-from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
 
 COURTS = 24
 LOOK_S = 0.1
 LATE_S = 0.5
 """A moment counts as shown if its court is on air at most this long after it."""
-WINDOW_S = 15.0
 AIM = 0.9
-KINDS = ("windows", "seconds", "changes")
-_BOTS = ("straight", "nearest", "planner")
 _ROBOTS = ("hexapod", "quadruped", "long-legs", "octopod")
 _SPREAD_S = 180.0
 _NEVER = float("-inf")
@@ -80,21 +68,8 @@ class Line(msgspec.Struct, frozen=True):
 
 def play(number: int) -> Line:
     """Play a match, and return its line of scores; the same number gives the same match."""
-    name = ("othello", "flag-strike")[number % 2]
-    arena = arenas.load(name)
+    name = ARENAS[number % 2]
     pair = number // 2
-    bots = (_BOTS[pair % 3], _BOTS[pair // 3 % 3])
-    players = [
-        player(
-            arena,
-            seat,
-            bot,
-            robot=_ROBOTS[(pair + seat * pair // 6) % len(_ROBOTS)],
-            team=f"Team {seat}",
-            late_ticks=(11 * number + 5 * seat) % 50,
-        )
-        for seat, bot in enumerate(bots)
-    ]
     points: list[Point] = []
 
     def watch(frame: Frame) -> None:
@@ -103,16 +78,17 @@ def play(number: int) -> Line:
         if not points or (points[-1].phase, points[-1].scores) != (now.phase, now.scores):
             points.append(now)
 
-    made = Setup(
+    bot_match(
+        None,
+        name,
+        (BOTS[pair % 3], BOTS[pair // 3 % 3]),
         match_id=f"{name}-{number:02d}",
-        court="main",
-        match=1,
-        arena=name,
-        settings=arena.settings,
-        limits={},
+        robots=[_ROBOTS[(pair + seat * pair // 6) % len(_ROBOTS)] for seat in range(2)],
+        late_ticks=[(11 * number + 5 * seat) % 50 for seat in range(2)],
+        teams=("Team 0", "Team 1"),
+        watch=watch,
     )
-    simulate(made, players, None, watch)
-    return Line(arena.match.duration_s, tuple(points))
+    return Line(arenas.load(name).match.duration_s, tuple(points))
 
 
 class Moment(NamedTuple):
@@ -298,7 +274,7 @@ def measure(courts: list[Placed], ahead_s: float) -> dict[str, Any]:
     cuts, aside = direct(courts, ahead_s)
     times = [one.at_s for one in cuts[1:]]
     by_name = {one.name: one for one in courts}
-    wanted_by_kind = largest(courts)
+    wanted = largest(courts)
     return {
         "cuts": len(times),
         "asides": sum(one.court != "" for one in aside),
@@ -309,25 +285,14 @@ def measure(courts: list[Placed], ahead_s: float) -> dict[str, Any]:
         "left_closing": sum(
             by_name[before.court].now(after.at_s).is_closing for before, after in pairwise(cuts)
         ),
-        **{
-            kind: sum(on_air(cuts, one) or on_air(aside, one) for one in wanted)
-            for kind, wanted in wanted_by_kind.items()
-        },
-        **{
-            f"{kind}_first": sum(on_air(cuts, one) for one in wanted)
-            for kind, wanted in wanted_by_kind.items()
-        },
+        "shown": sum(on_air(cuts, one) or on_air(aside, one) for one in wanted),
+        "first": sum(on_air(cuts, one) for one in wanted),
     }
 
 
-def largest(courts: list[Placed]) -> dict[str, list[Moment]]:
-    """Return the moments that count, by kind."""
-    moments = sorted(moment for one in courts for moment in one.moments())
-    return {
-        "windows": of_windows(moments, WINDOW_S),
-        "seconds": of_windows(moments, 1.0),
-        "changes": tenth(moments),
-    }
+def largest(courts: list[Placed]) -> list[Moment]:
+    """Return the swings that count."""
+    return tenth(sorted(moment for one in courts for moment in one.moments()))
 
 
 def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
@@ -335,39 +300,27 @@ def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
 
     Returns:
         The cuts in a minute, and how often the second picture showed a court; the most cuts in any
-        minute; the number of cuts away from a close end; and for each kind of moment, the share
-        that was on air in either picture, and in the first one (`_first`).
+        minute; the number of cuts away from a close end; and the share of swings that was on air in
+        either picture, and in the first one.
     """
     found = [measure(one, ahead_s) for one in events]
-    wanted = [largest(one) for one in events]
+    swings = sum(len(largest(one)) for one in events)
     minutes = sum(map(_length_s, events)) / 60
     return {
         "cuts_a_minute": round(sum(one["cuts"] for one in found) / minutes, 2),
         "asides_a_minute": round(sum(one["asides"] for one in found) / minutes, 2),
         "most_a_minute": max(one["most_a_minute"] for one in found),
         "left_closing": sum(one["left_closing"] for one in found),
-        **{
-            f"{kind}{part}": round(
-                sum(one[f"{kind}{part}"] for one in found) / sum(len(one[kind]) for one in wanted),
-                3,
-            )
-            for kind in KINDS
-            for part in ("", "_first")
-        },
+        "shown": round(sum(one["shown"] for one in found) / swings, 3),
+        "first": round(sum(one["first"] for one in found) / swings, 3),
     }
 
 
-def best(events: list[list[Placed]]) -> dict[str, float]:
-    """Return the shares that a director who knows the future could have on air."""
+def best(events: list[list[Placed]]) -> float:
+    """Return the share that a director who knows the future could show in the first picture."""
     wanted = [largest(one) for one in events]
-    return {
-        kind: round(
-            sum(best_possible(one[kind], event) for one, event in zip(wanted, events, strict=True))
-            / sum(len(one[kind]) for one in wanted),
-            3,
-        )
-        for kind in KINDS
-    }
+    shown = sum(best_possible(one, event) for one, event in zip(wanted, events, strict=True))
+    return round(shown / sum(map(len, wanted)), 3)
 
 
 def _length_s(courts: list[Placed]) -> float:
@@ -398,24 +351,22 @@ def arranged(played: list[Line], number: int) -> list[Placed]:
 
 def main() -> None:
     """Run the benchmark, print its results, and exit with 1 if an aim is missed."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.director", description=__doc__)
-    parser.add_argument("--events", type=int, default=100, help="arrangements by chance")
-    parser.add_argument("--lines", type=Path, help="file that keeps the matches")
-    options = parser.parse_args()
+    options = arguments(
+        __doc__, events=(100, "arrangements by chance"), lines=(Path, "file that keeps the matches")
+    )
     played = lines(options.lines)
     spread = [arranged(played, number + 1) for number in range(options.events)]
     found: dict[str, Any] = {}
     for name, events in (("spread", spread), ("at_once", [arranged(played, 0)])):
         found[name] = {
-            "moments": {kind: sum(len(largest(one)[kind]) for one in events) for kind in KINDS},
+            "swings": sum(len(largest(one)) for one in events),
             "ahead": told(events, AHEAD_S),
             "not_ahead": told(events, 0.0),
             "best": best(events),
         }
-    print(json.dumps(found, indent=1))
     runs = [found[name][way] for name in found for way in ("ahead", "not_ahead")]
     kept = all(one["most_a_minute"] <= CUTS_MOST and not one["left_closing"] for one in runs)
-    sys.exit(not (kept and all(one["ahead"]["changes"] >= AIM for one in found.values())))
+    finish(found, kept and all(one["ahead"]["shown"] >= AIM for one in found.values()))
 
 
 if __name__ == "__main__":

@@ -6,11 +6,11 @@ python -m benchmarks.environments loads      # episodes that go on from a save, 
 python -m benchmarks.environments records    # random episodes written as records and proven
 """
 
-import argparse
 import os
 import statistics
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -18,14 +18,16 @@ from typing import Any
 
 import mujoco
 import numpy as np
+from arguments import arguments
+from bot_matches import ARENAS
+from verdicts import verdict
 
-from lacoc_server.journal.replay import verify
-from lacoc_server.journal.verdict import Verdict, VerdictKind
+from benchmarks.figures import finish
+from lacoc_server.journal.verdict import VerdictKind
 from lacoc_server.simulate.environments import LacocParallelEnv, LacocVectorEnv
 from lacoc_server.world.world import STATE, SUBSTEPS
 from lacoc_shared.record.reader import Record
 
-GAMES = ("othello", "flag-strike")
 BEATS = (1, 10, 50)
 """Beats in a step."""
 _BLOCK = 200
@@ -36,13 +38,9 @@ _KEPT = 50
 
 def main() -> None:
     """Run one benchmark and print its figures."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=_Raw)
-    parser.add_argument("what", choices=list(_ALL))
-    parser.add_argument("--count", type=int, help="rounds, forks or episodes")
-    options = parser.parse_args()
+    options = arguments(__doc__, _ALL, count=(int, "rounds, forks or episodes"))
     run, count = _ALL[options.what]
-    for game in GAMES:
-        print(game, run(game, options.count or count), flush=True)
+    finish({game: run(game, options.count or count) for game in ARENAS})
 
 
 def steps(game: str, rounds: int) -> dict[str, Any]:
@@ -192,16 +190,14 @@ def records(game: str, episodes: int) -> dict[str, Any]:
     """Write random episodes as records, and prove each of them."""
     env = LacocParallelEnv(game, settings={"match": {"duration_s": 1.0}}, restart=True)
     chance = np.random.default_rng(3)
-    kinds: dict[str, int] = {}
+    kinds: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         for number in range(episodes):
             env.reset(seed=number)
             _play(env, chance, 10_000)
             file = Path(folder) / f"episode-{number}.mcap"
             env.write_record(file)
-            *_, verdict = verify(Record.read(file), processes=1)
-            assert isinstance(verdict, Verdict)
-            kinds[verdict.kind.name] = kinds.get(verdict.kind.name, 0) + 1
+            kinds[verdict(Record.read(file), processes=1).kind.name] += 1
             file.unlink()
     return {"episodes": episodes, **kinds, "all proven": kinds == {VerdictKind.SAME.name: episodes}}
 
@@ -212,10 +208,6 @@ def _play(env: LacocParallelEnv, chance: np.random.Generator, most: int) -> None
         if not env.agents:
             return
         env.step({one: int(chance.integers(env.action_space(one).n)) for one in env.agents})
-
-
-class _Raw(argparse.RawDescriptionHelpFormatter):
-    pass
 
 
 _ALL: dict[str, tuple[Callable[[str, int], dict[str, Any]], int]] = {

@@ -1,26 +1,24 @@
-"""Measures how long a film takes for its length: `python -m benchmarks.film [SECONDS]`.
+"""Measures how long a film takes for its length: `python -m benchmarks.film --seconds 180`.
 
 It plays a match, films it twice with 1280 x 720 pixels and 30 pictures a second, and compares the
 decoded pictures. It needs Chromium and the extra "film".
 """
 
 import hashlib
-import json
 import os
-import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
 import av
+from arguments import arguments
+from bot_matches import bot_match
+from processes import children_s
 
-from benchmarks.pages import processor_s
-from lacoc_arenas import arena as arenas
+from benchmarks.figures import finish
 from lacoc_client.film import film
 from lacoc_client.film.look import Look, Quality
-from lacoc_server.simulate import player, simulate
-from lacoc_shared.record.schema import Setup
 
 FPS = 30
 BROWSERS = 2
@@ -40,22 +38,23 @@ def filming(seconds: float = 20.0, quality: Quality = Quality.SMOOTH) -> dict[st
     found: dict[str, Any] = {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        record = _played(folder, seconds)
+        settings = {"match": {"duration_s": seconds}}
+        record = bot_match(folder, "othello", ("planner", "nearest"), settings)
         hashes = []
         for number in range(2):
             out = folder / f"{number}.mp4"
             used_s, begin_s = [0.0], time.perf_counter()
-            own_s, children_s = time.process_time(), processor_s()
+            own_s, before_s = time.process_time(), children_s()
 
             def note(done: int, known: int, used_s: list[float] = used_s) -> None:
                 # Near the end: a browser that has ended has no time any more.
                 if done % FPS == 0 or done > known - BROWSERS:
-                    used_s[0] = max(used_s[0], processor_s())
+                    used_s[0] = max(used_s[0], children_s())
 
             look = Look(overlay=True, quality=quality)
             count = film.make([film.part(record)], out, look, FPS, BROWSERS, note)
             took_s, length_s = time.perf_counter() - begin_s, count / FPS
-            busy_s = used_s[0] - children_s + time.process_time() - own_s
+            busy_s = used_s[0] - before_s + time.process_time() - own_s
             hashes.append(_decoded(out, count))
             if not number:
                 found |= {
@@ -67,21 +66,6 @@ def filming(seconds: float = 20.0, quality: Quality = Quality.SMOOTH) -> dict[st
                     "bytes": out.stat().st_size,
                 }
     return found | {"same": hashes[0] == hashes[1]}
-
-
-def _played(folder: Path, seconds: float) -> Path:
-    arena = arenas.load("othello", {"match": {"duration_s": seconds}})
-    setup = Setup(
-        match_id="filmed",
-        court="hall",
-        match=1,
-        arena="othello",
-        settings=arena.settings,
-        limits={},
-    )
-    players = [player(arena, seat, bot) for seat, bot in enumerate(("planner", "nearest"))]
-    simulate(setup, players, folder)
-    return folder / "filmed.mcap"
 
 
 def _decoded(path: Path, count: int) -> str:
@@ -96,5 +80,5 @@ def _decoded(path: Path, count: int) -> str:
 
 
 if __name__ == "__main__":
-    json.dump(filming(*map(float, sys.argv[1:2])), sys.stdout, indent=2)
-    print()
+    found = filming(arguments(__doc__, seconds=20.0).seconds)
+    finish(found, found["same"])

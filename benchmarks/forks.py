@@ -9,17 +9,18 @@ which the event is taken back right after it happened, must give the same scores
 must change no path, so it falls in a beat in which nobody pressed a key.
 """
 
-import argparse
 import random
 import sys
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_arenas import arena as arenas
-from lacoc_server.journal.replay import resume, verify
-from lacoc_server.journal.verdict import Verdict, VerdictKind
-from lacoc_server.simulate import player, simulate
+from arguments import arguments
+from bot_matches import ARENAS, BOTS, bot_match
+from verdicts import verdict
+
+from lacoc_server.journal.replay import resume
+from lacoc_server.journal.verdict import VerdictKind
 from lacoc_server.simulate.forks.fork import fork
 from lacoc_server.simulate.forks.jobs import ForkJob, play_fork
 from lacoc_server.simulate.forks.line import ForkChange
@@ -29,9 +30,6 @@ from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import DecisionReply
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import Setup
-
-_BOTS = ("straight", "nearest", "planner")
 
 
 class _Same(NamedTuple):
@@ -42,12 +40,13 @@ class _Same(NamedTuple):
 
 def main() -> int:
     """Play, fork and compare; return 0 if nothing differs."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.forks", description=__doc__)
-    parser.add_argument("--records", type=int, default=20)
-    parser.add_argument("--beats", type=int, default=10, help="forks of each record")
-    parser.add_argument("--seconds", type=float, default=8.0, help="of play, each record")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
+    options = arguments(
+        __doc__,
+        records=20,
+        beats=(10, "forks of each record"),
+        seconds=(8.0, "of play, each record"),
+        seed=1,
+    )
     chance = random.Random(options.seed)
     all_same: list[_Same] = []
     agreed = asked = 0
@@ -70,23 +69,19 @@ def main() -> int:
 
 def _record(folder: Path, number: int, seconds: float, chance: random.Random) -> ForkSource:
     """Play a match; if its number is odd, fork it with a change."""
-    name = ("othello", "flag-strike")[number // 2 % 2]
-    arena = arenas.load(name, {"match": {"duration_s": seconds}})
+    name = ARENAS[number // 2 % 2]
     match_id = f"match-{number:02d}"
-    setup = Setup(
-        match_id=match_id, court="main", match=1, arena=name, settings=arena.settings, limits={}
-    )
-    bots = chance.choices(_BOTS, k=2)
+    bots = chance.choices(BOTS, k=2)
     late = [chance.randrange(50), chance.randrange(50)]
-    players = [player(arena, seat, bots[seat], late_ticks=late[seat]) for seat in range(2)]
-    simulate(setup, players, folder)
-    source = read_source(folder / f"{match_id}.mcap")
+    settings = {"match": {"duration_s": seconds}}
+    path = bot_match(folder, name, bots, settings, match_id=match_id, late_ticks=late)
+    source = read_source(path)
     if number % 2 == 0:
         return source
     first, last = _play(source)
     events = _to_take_back(source)
     change = ForkJob(
-        file=str(folder / f"{match_id}.mcap"),
+        file=str(path),
         beat=max([chance.randrange(first, last), *(beat + 1 for beat, _ in events[:1])]),
         take_back=events[0][1] if events else None,
         restart=(chance.choice(source.seats),),
@@ -130,8 +125,7 @@ def _differences(was: Record, again: Record, beat: int) -> list[str]:
     ]
     if results[0] != results[1]:
         found.append("result")
-    verdict = next(step for step in verify(again, processes=1) if isinstance(step, Verdict))
-    if again.cut or verdict.kind is not VerdictKind.SAME:
+    if again.cut or verdict(again, processes=1).kind is not VerdictKind.SAME:
         found.append("proof")
     return found
 

@@ -12,7 +12,6 @@ moments from all the others. The highlights must contain at least 80 % of these.
 Rows are appended to a file, so a benchmark that was stopped goes on where it was.
 """
 
-import argparse
 import json
 import random
 import sys
@@ -23,10 +22,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from arguments import arguments
+from bot_matches import BOTS, bot_match
 from msgspec.structs import replace
 
-from lacoc_arenas import arena as arenas
-from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks import odds
 from lacoc_server.simulate.forks.chances import (
     ChanceJob,
@@ -38,11 +37,9 @@ from lacoc_server.simulate.forks.chances import (
 )
 from lacoc_server.simulate.forks.odds import MomentOdds, Swing
 from lacoc_server.simulate.forks.origin import ForkSource, read_source
-from lacoc_server.studio.workers import Workers
-from lacoc_shared.record.schema import Setup
+from lacoc_server.simulate.workers import Workers
 from lacoc_shared.words import Phrase
 
-_BOTS = ("straight", "nearest", "planner")
 _WEIGHTS = (1, 3, 3)
 """How often each bot plays; with `straight`, most matches are decided from the start."""
 _SMALL = {"pitch_m": 0.15, "disc_radius_m": 0.0675}
@@ -62,15 +59,16 @@ _LEAST = 0.05
 
 def main() -> int:
     """Play the matches that are not in the file yet, and print how the odds came true."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.odds", description=__doc__)
-    parser.add_argument("--matches", type=int, default=200)
-    parser.add_argument("--moments", type=int, default=2, help="of each match")
-    parser.add_argument("--forks", type=int, default=5, help="at each moment")
-    parser.add_argument("--seconds", type=float, default=15.0, help="of play, each match")
-    parser.add_argument("--highlights", type=int, default=0, help="matches whose swings are sought")
-    parser.add_argument("--jobs", type=int, default=None)
-    parser.add_argument("--rows", type=Path, default=Path("odds.jsonl"), help="file of results")
-    options = parser.parse_args()
+    options = arguments(
+        __doc__,
+        matches=200,
+        moments=(2, "of each match"),
+        forks=(5, "at each moment"),
+        seconds=(15.0, "of play, each match"),
+        highlights=(0, "matches whose swings are sought"),
+        jobs=int,
+        rows=(Path("odds.jsonl"), "file of results"),
+    )
     one: Callable[..., dict[str, Any]]
     if options.highlights:
         numbers, one = range(options.highlights), partial(_swings, options.forks, options.seconds)
@@ -158,19 +156,18 @@ def _match(
     """Play a match whose game, opening, bots and delays follow from its number."""
     chance = random.Random(number)
     name, settings = chance.choice(_GAMES)
-    rules = {"match": {"duration_s": seconds, "countdown_s": 0.2}}
-    arena = arenas.load(name, {**settings, **rules})
-    match_id = f"match-{number:04d}"
-    setup = Setup(
-        match_id=match_id, court="main", match=1, arena=name, settings=arena.settings, limits={}
-    )
-    left, right = chance.choices(_BOTS, _WEIGHTS, k=2)
+    left, right = chance.choices(BOTS, _WEIGHTS, k=2)
     late = [chance.randrange(100), chance.randrange(100)]
-    players = [
-        player(arena, seat, bot, late_ticks=late[seat]) for seat, bot in enumerate((left, right))
-    ]
-    simulate(setup, players, folder)
-    return read_source(folder / f"{match_id}.mcap"), (left, right), chance
+    rules = {"match": {"duration_s": seconds, "countdown_s": 0.2}}
+    path = bot_match(
+        folder,
+        name,
+        (left, right),
+        {**settings, **rules},
+        match_id=f"match-{number:04d}",
+        late_ticks=late,
+    )
+    return read_source(path), (left, right), chance
 
 
 def _tell_odds(rows: list[dict[str, Any]]) -> int:
@@ -203,7 +200,8 @@ def _tell_swings(rows: list[dict[str, Any]]) -> int:
                 found += any(a < last and first < b for a, b, _ in chosen)
     print(
         f"{len(rows)} matches: highlights contain {found} of {of} of the largest swings "
-        f"({100 * found / of:.0f} %) in {100 * sum(parts) / len(parts):.0f} % of the playing time"
+        f"({100 * found / max(1, of):.0f} %) "
+        f"in {100 * sum(parts) / len(parts):.0f} % of the playing time"
     )
     return int(found < 0.8 * of)
 

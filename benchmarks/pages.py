@@ -1,28 +1,27 @@
 """Measures how fast the pages' scene is drawn in software, and how many bytes a player loads.
 
 `python -m benchmarks.pages`; needs what the tests of the pages need (tests/pages/chromium.py).
-`python -m benchmarks.pages CHECKOUT` compares the drawing with that of another checkout, in turns.
+`python -m benchmarks.pages --other CHECKOUT` draws in turns with another checkout's pages.
 """
 
 import contextlib
 import gzip
-import json
 import os
-import sys
 import tempfile
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from playwright.sync_api import Browser, Response, sync_playwright
-
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
-
-from chromium import FLAGS, WEB, build_pages, build_stand, find_chromium
+from arguments import arguments
+from bot_matches import ARENAS
+from chromium import WEB, build_pages, build_stand, chromium
 from match_file import match_file
+from playwright.sync_api import Browser, Response
+from processes import children_s
 from stand import Stand, served
+
+from benchmarks.figures import Row, finish, medians
 
 SIZE = {"width": 800, "height": 450}
 MEASURE_S = 8.0
@@ -42,15 +41,12 @@ def pages() -> dict[str, Any]:
     found: dict[str, Any] = {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
     with (
         tempfile.TemporaryDirectory() as name,
-        sync_playwright() as playwright,
-        contextlib.closing(
-            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
-        ) as browser,
+        chromium() as browser,
     ):
         folder = Path(name)
         build_stand(folder)
         with served(folder) as address:
-            for arena in ("othello", "flag-strike"):
+            for arena in ARENAS:
                 (folder / f"{arena}.bin").write_bytes(match_file(arena, 20.0))
                 found[arena] = _drawing(browser, address, arena)
         found |= _loading(browser)
@@ -72,10 +68,7 @@ def compare(other: Path, rounds: int = 5) -> dict[str, Any]:
     found: dict[str, Any] = {}
     with (
         tempfile.TemporaryDirectory() as name,
-        sync_playwright() as playwright,
-        contextlib.closing(
-            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
-        ) as browser,
+        chromium() as browser,
         contextlib.ExitStack() as stack,
     ):
         addresses = {}
@@ -83,7 +76,7 @@ def compare(other: Path, rounds: int = 5) -> dict[str, Any]:
             folder = Path(name) / side
             build_stand(folder, web)
             addresses[side] = stack.enter_context(served(folder))
-        for arena in ("othello", "flag-strike"):
+        for arena in ARENAS:
             match = match_file(arena, 20.0)
             for side in addresses:
                 (Path(name) / side / f"{arena}.bin").write_bytes(match)
@@ -91,46 +84,43 @@ def compare(other: Path, rounds: int = 5) -> dict[str, Any]:
                 {side: _drawing(browser, address, arena) for side, address in addresses.items()}
                 for _ in range(rounds)
             ]
-            medians = {
-                side: {what: median(one[side][what] for one in drawn) for what in drawn[0][side]}
-                for side in addresses
-            }
+            sides = {side: medians([one[side] for one in drawn]) for side in addresses}
             ratio = {
                 what: median(one["this"][what] / one["other"][what] for one in drawn)
                 for what in ("fps", "cpu_ms")
             }
-            found[arena] = medians | {"ratio": ratio}
+            found[arena] = {**sides, "ratio": ratio}
     return found | {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
 
 
-def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
+def rows(figures: dict[str, Any]) -> list[Row]:
     """Return the rows for the table of `make bench`."""
     drawn = [
-        (
+        Row(
             f"pictures at q=low, 800 x 450, software GL, {arena}",
             f"{figures[arena]['fps']:.0f} a second, p95 {figures[arena]['p95_ms']:.0f} ms",
             f"load {figures['load']} on {figures['cores']} cores",
             f"{figures[arena]['pixel_ratio']:.2f} pixels a side",
             "50 a second",
         )
-        for arena in ("othello", "flag-strike")
+        for arena in ARENAS
     ]
     size = f"{figures['js_gzip_bytes'] / 1000:.0f} kB"
-    return [*drawn, ("JavaScript that a player loads, gzipped", size, "", "", "200 kB")]
+    return [*drawn, Row("JavaScript that a player loads, gzipped", size, aim="200 kB")]
 
 
 def _drawing(browser: Browser, address: str, arena: str) -> dict[str, float]:
     page = browser.new_page(viewport=SIZE)
     stand = Stand(page, address)
     stand.open(f"{arena}.bin", frames=_STEADY, q="low", beat=60)
-    frames, cpu_s, begin_s = stand.view("drawnFrames"), processor_s(), time.perf_counter()
+    frames, cpu_s, begin_s = stand.view("drawnFrames"), children_s(), time.perf_counter()
     page.wait_for_timeout(1000 * MEASURE_S)
     drawn, passed_s = stand.view("drawnFrames") - frames, time.perf_counter() - begin_s
     figures = {
         "fps": drawn / passed_s,
         "p95_ms": stand.view("frameMsP95"),
         "pixel_ratio": stand.view("ratio"),
-        "cpu_ms": 1000 * (processor_s() - cpu_s) / drawn,
+        "cpu_ms": 1000 * (children_s() - cpu_s) / drawn,
     }
     page.close()
     return figures
@@ -171,26 +161,6 @@ def _loading(browser: Browser) -> dict[str, int]:
     return {"js_gzip_bytes": sizes["js"], "css_gzip_bytes": sizes["css"]}
 
 
-def processor_s() -> float:
-    """Return the processor time of this process's descendants: the processes of the browser [s]."""
-    return sum(_children_s(os.getpid()))
-
-
-def _children_s(parent: int) -> Iterator[float]:
-    table: dict[int, list[tuple[int, float]]] = {}
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError):
-            fields = stat.read_text().rpartition(")")[2].split()
-            used_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-            table.setdefault(int(fields[1]), []).append((int(stat.parent.name), used_s))
-    waiting = [parent]
-    while waiting:
-        for child, used_s in table.get(waiting.pop(), []):
-            waiting.append(child)
-            yield used_s
-
-
 if __name__ == "__main__":
-    figures = compare(Path(sys.argv[1])) if sys.argv[1:] else pages()
-    json.dump(figures, sys.stdout, indent=2)
-    print()
+    other = arguments(__doc__, other=(Path, "root of another checkout")).other
+    finish(compare(other) if other else pages())

@@ -1,8 +1,7 @@
 """Holds both seats of many courts in one process, to take little processor time.
 
-The first line on standard input names the courts. The process joins all of them and starts their
-matches. It answers each further line with the health of every court, and with the number of keys
-that were pressed and applied there.
+The first line on standard input names the courts. The process joins all of them, starts their
+matches, says so by a line of JSON, and plays until its input ends.
 """
 
 import json
@@ -40,11 +39,15 @@ class _Player:
         for controller in self._controllers:
             controller.join(_WAIT_S)
             controller.ready()
-        self.pressed = 0
 
     def begin(self) -> None:
         """Start the match when both seats are ready."""
-        self._wait(Phase.READY)
+        end_s = time.monotonic() + _WAIT_S
+        while (frame := self._controllers[0].view.frame) is None or frame.phase != Phase.READY:
+            if time.monotonic() > end_s:
+                raise TimeoutError(f"{self._name}: READY did not come")
+            for controller in self._controllers:
+                controller.wait_frame(_POLL_S)
         referee = RefereeClient(self._sessions[0], self._name, self._referee)
         referee.decide(Start(), "a benchmark", "benchmark")
 
@@ -55,31 +58,6 @@ class _Player:
             frame = controller.view.frame
             if frame and frame.phase == Phase.PLAYING and chance.random() < KEYS_HZ * _POLL_S:
                 controller.press(1, chance.randrange(4))
-                self.pressed += 1
-
-    def told(self) -> dict[str, Any]:
-        """Return figures of the court's newest health and frame, and the number of pressed keys."""
-        view = self._controllers[0].view
-        assert view.health is not None
-        assert view.frame is not None
-        return {
-            "beat": view.health.beat,
-            "slow_beats": view.health.slow_beats,
-            "worst_late_ms": view.health.worst_late_ms,
-            "phase": view.frame.phase,
-            "pressed": self.pressed,
-            "applied": sum(seat.applied_seq for seat in view.frame.seats),
-        }
-
-    def _wait(self, phase: Phase) -> None:
-        end_s = time.monotonic() + _WAIT_S
-        while time.monotonic() < end_s:
-            for controller in self._controllers:
-                controller.wait_frame(_POLL_S)
-            frame = self._controllers[0].view.frame
-            if frame is not None and frame.phase == phase:
-                return
-        raise TimeoutError(f"{self._name}: {phase.name} did not come")
 
 
 def main() -> None:
@@ -102,10 +80,8 @@ def main() -> None:
             for player in players:
                 player.poll(chance)
             wait_s = max(0.0, begin_s + _POLL_S - time.monotonic())
-            if select.select([sys.stdin], [], [], wait_s)[0]:
-                if not sys.stdin.readline():
-                    return
-                print(json.dumps([player.told() for player in players]), flush=True)
+            if select.select([sys.stdin], [], [], wait_s)[0] and not sys.stdin.readline():
+                return
 
 
 if __name__ == "__main__":

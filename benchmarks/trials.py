@@ -1,42 +1,44 @@
-"""Compares trials with matches on random tables, and counts how often feet go up or down.
+"""Compares trials with matches, and tries whether an explanation names what is wrong.
 
-python -m benchmarks.trials --tables 1000
+python -m benchmarks.trials matches --tables 1000
+python -m benchmarks.trials explained --tables 210
+
+- `matches`: random tables must walk in a trial as in a match of the same keys, bit for bit. It also
+  counts how often feet go up or down.
+- `explained`: one fault is put into each table. How often does the first sentence name it?
 """
 
-import argparse
 import math
 import random
 import statistics
-import sys
-import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from functools import cache
 from multiprocessing import get_context
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
-from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.match.entry import Entry, weigh_in
-from lacoc_server.match.match import Match
-from lacoc_server.trial.course import SETTLE_TICKS, Course, practice_field
+from arguments import arguments
+from faulty_tables import FAULTS, sequence_of, tell
+from sample_walks import ROBOTS, course_of, entry_of, match_digests
+
+from benchmarks.figures import finish
+from lacoc_robots.library import find_robot
+from lacoc_server.match.entry import weigh_in
+from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press, Walk
-from lacoc_server.world.sensed import make_course
-from lacoc_server.world.world import World
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait
-from lacoc_shared.inputs import Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import SentFile
-from lacoc_shared.record.schema import Setup
-from lacoc_shared.seat import Phase
 
-ROBOTS = ("hexapod", "quadruped", "octopod")
 _TURN_DEG = 60
 """Random angles are at most this far from the start posture."""
 _WALKS_MM_S = 10.0
 """A robot walks if it goes forward faster than this, on its feet."""
 _LOW_M = 0.001
+_NAMED_AIM = 0.9
+
+T = TypeVar("T")
 
 
 class Compared(NamedTuple):
@@ -57,30 +59,45 @@ class Compared(NamedTuple):
 
 
 def main() -> None:
-    """Compare trials with matches, print, and exit with 1 if a state hash differs."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.trials", description=__doc__)
-    parser.add_argument("--tables", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    begin = time.perf_counter()
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        seeds = range(options.seed, options.seed + options.tables)
-        found = list(pool.map(compared, seeds, chunksize=10))
-    differ = [one for one in found if one.differs_at is not None]
-    cycles, ticks = sum(one.cycles for one in found), sum(one.ticks for one in found)
-    robots = ", ".join(f"{count} {name}" for name, count in Counter(o.robot for o in found).items())
-    print(f"{len(found)} tables ({robots}), {cycles} cycles, {ticks} ticks: {len(differ)} differ")
+    """Try tables, print the figures, and exit with 1 if an aim is missed."""
+    options = arguments(__doc__, ("matches", "explained"), tables=1000, seed=1)
+    seeds = range(options.seed, options.seed + options.tables)
+    if options.what == "explained":
+        named = dict.fromkeys(FAULTS, 0)
+        told = _each(tell, seeds)
+        for one in told:
+            named[one.fault] += one.named
+        missed = [(one.fault, one.leg, *one.said) for one in told if not one.named]
+        finish(
+            {"named": named, "of": Counter(one.fault for one in told), "not_named": missed},
+            sum(named.values()) >= _NAMED_AIM * len(told),
+        )
+    found = _each(compared, seeds)
+    differ = sum(one.differs_at is not None for one in found)
     walking = [one for one in found if one.walks]
-    hz = sorted(one.changes_hz for one in walking) or [0.0]
-    agrees = statistics.mean([one.agrees for one in walking] or [1.0])
-    print(f"{len(walking)} of them walk. Changes of a foot: median {statistics.median(hz):.1f}/s,")
-    print(f"largest {hz[-1]:.1f}/s. Load and height agree in {100 * agrees:.1f} % of their ticks")
-    for robot in ROBOTS:
-        walk = _sample_walk(robot)
-        hz_of = statistics.mean(measure(walk).changes_hz)
-        print(f"sample {robot}: {hz_of:.1f}/s, agree in {100 * _agrees(walk):.1f} %")
-    print(f"{time.perf_counter() - begin:.0f} s")
-    sys.exit(bool(differ))
+    hz = [one.changes_hz for one in walking] or [0.0]
+    figures: dict[str, Any] = {
+        "tables": Counter(one.robot for one in found),
+        "cycles": sum(one.cycles for one in found),
+        "ticks": sum(one.ticks for one in found),
+        "differ": differ,
+        "walk": len(walking),
+        "changes_of_a_foot_hz": {"median": statistics.median(hz), "most": max(hz)},
+        "load_and_height_agree": statistics.mean([one.agrees for one in walking] or [1.0]),
+        "samples": {
+            robot: {
+                "changes_of_a_foot_hz": statistics.mean(measure(walk).changes_hz),
+                "load_and_height_agree": _agrees(walk),
+            }
+            for robot, walk in ((one, _sample_walk(one)) for one in ROBOTS)
+        },
+    }
+    finish(figures, not differ)
+
+
+def _each(function: Callable[[int], T], seeds: range) -> list[T]:
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        return list(pool.map(function, seeds, chunksize=4))
 
 
 def compared(seed: int) -> Compared:
@@ -151,53 +168,12 @@ def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
         ]
     table = LocomotionTable(
         tuple(
-            tuple(
-                tuple(
-                    math.radians(round(math.degrees(min(max(angle, low), high))))
-                    for angle, (low, high) in zip(posture, spec.ranges_rad, strict=True)
-                )
-                for posture in sequence
-            )
+            sequence_of([[*map(math.degrees, posture)] for posture in sequence], spec)
             for sequence in sequences
         )
     )
     file = SentFile("LocoTra-data.txt", write_gait(table, spec.labels))
     return weigh_in(SentFile(*find_robot(robot)), None, file).gait, file
-
-
-def match_digests(
-    robot: str, locomotion: SentFile, presses: Sequence[Press], ticks: int
-) -> list[bytes]:
-    """Play a trial's keys in a practice match; return the state hash after each tick."""
-    settings = practice_field().settings
-    setup = Setup(
-        match_id="trial", court="trial", match=1, arena="practice", settings=settings, limits={}
-    )
-    match = Match(setup, World)
-    match.beat([JoinSeat(0, "Team", SentFile(*find_robot(robot)), None, locomotion, token_hash="")])
-    due = {press.tick: press for press in presses}
-    inputs: list[Input] = [ReadySeat(0, True)]
-    found: list[bytes] = []
-    while len(found) < ticks:
-        if match.beat(inputs).ticked:
-            found.append(match.physics.digest)
-        elif match.fault is not None:
-            break
-        press = due.get(len(found)) if match.phase is Phase.PLAYING else None
-        inputs = [KeySeat(0, len(found), int(press.level), press.digit)] if press else []
-    return found
-
-
-@cache
-def entry_of(robot: str) -> Entry:
-    """Weigh in a sample robot with its sample gait."""
-    return weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
-
-
-@cache
-def course_of(robot: str) -> Course:
-    """Build the floor and the robot for trials of a sample robot."""
-    return make_course(entry_of(robot).robot)
 
 
 def _sample_walk(robot: str) -> Walk:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 _CLIENT = "client/web/src/"
+_CAMPAIGNS = "tests/campaigns/"
 
 
 def _lines(text: str) -> int:
@@ -32,6 +33,7 @@ KINDS: dict[str, tuple[Callable[[str], bool], Callable[[str], int]]] = {
     "words of the product": (lambda n: _is_product(n) and "/words/texts/" in n, _lines),
     "benchmarks": (lambda n: n.startswith("benchmarks/") and n.endswith(".py"), _lines),
     "tests": (lambda n: n.startswith("tests/") and n.endswith(".py"), _lines),
+    "of them campaigns": (lambda n: n.startswith(_CAMPAIGNS) and n.endswith(".py"), _lines),
     "documents, words": (lambda n: n.endswith(".md"), _words),
 }
 """By name: which files, and what is counted of each."""

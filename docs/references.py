@@ -1,7 +1,8 @@
 """Finds references that a reader of the repository can't follow: `python docs/references.py`.
 
-It looks at every cited file, section, decision and link in the sources and the pages of the
-repository, and prints those that do not exist. The exit code is 1 if there is any.
+It looks at all that the sources and the pages of the repository cite: files, sections, decisions,
+links, benchmarks and campaigns with their options, and targets of make. It prints what does not
+exist. The exit code is 1 if there is any.
 """
 
 import re
@@ -19,6 +20,9 @@ CITED_FILE = re.compile(r"(?<![\w/.@*{}%-])((?:[\w.-]+/)*[\w-]+\.(?:md|py|tsx?))
 SECTION = re.compile(r"(docs/[\w/-]+\.md) (\d+(?:\.\d+)?)\b(?! (?:MB|kB|lines))")
 DECISION = re.compile(r"\b[Dd]ecision (\d+)\b")
 LINK = re.compile(r"\]\(([^)#\s]*)(?:#([\w-]+))?\)")
+MODULE = re.compile(r"(?<![\w./])((?:benchmarks|tests\.campaigns)(?:\.[a-z_]+)+)((?: [\w./=-]+)*)")
+"""A module that `python -m` runs or that code imports, and the words after it."""
+TARGET = re.compile(r"`make ([a-z-]+)")
 ISSUE = re.compile(r"(?<![\w/-])[Ii]ssue #?\d+")
 RULE = re.compile(r"(?<![\w/.])[Rr]ules (\d(?:\.\d)?)\b")
 """Code and tests cite docs/rules.md in this way."""
@@ -71,6 +75,11 @@ def missing(path: str, line: str) -> Iterator[str]:
     for number in DECISION.findall(line):
         if not any(name.startswith(f"docs/decisions/{int(number):04}-") for name in tracked()):
             yield f"there is no decision {number}"
+    for module, words in MODULE.findall(line):
+        yield from missing_module(module, words)
+    for target in TARGET.findall(line):
+        if target not in targets():
+            yield f"the Makefile has no target {target}"
     for what in ISSUE.findall(line):
         yield f"{what!r} is not in the repository"
     for number in RULE.findall(line):
@@ -78,6 +87,27 @@ def missing(path: str, line: str) -> Iterator[str]:
             yield f"docs/rules.md has no section {number}"
     if path.endswith(".md"):
         yield from missing_links(path, line)
+
+
+def missing_module(name: str, words: str) -> Iterator[str]:
+    """Yield a sentence if there is no such module, or one for each option that it does not have."""
+    path = name.replace(".", "/")
+    found = next((one for one in (f"{path}.py", f"{path}/__main__.py") if one in tracked()), None)
+    if found is None:
+        if not any(one.startswith(f"{path}/") for one in tracked()):
+            yield f"there is no module {name}"
+        return
+    text = (ROOT / found).read_text(encoding="utf-8")
+    for option in re.findall(r" --([a-z-]+)", words):
+        if not re.search(rf"\b{option.replace('-', '_')}=", text):
+            yield f"{name} has no option --{option}"
+
+
+@cache
+def targets() -> frozenset[str]:
+    """Return the targets of the Makefile."""
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    return frozenset(re.findall(r"^([a-z-]+):", text, re.MULTILINE))
 
 
 def missing_links(path: str, line: str) -> Iterator[str]:

@@ -1,15 +1,13 @@
 """A running `lacoc class`, and pages of its students and teacher without a browser."""
 
-import json
 import struct
 import subprocess
 import time
 from pathlib import Path
 from typing import Any
 
-from lacoc_process import Lacoc
+from lacoc_process import Running
 from page_connection import PageConnection
-from waiting import LIMIT_S
 
 from lacoc_client.web.gateway.wire import MessageKind
 
@@ -17,16 +15,12 @@ from lacoc_client.web.gateway.wire import MessageKind
 class ClassRoom:
     """A running `lacoc class`."""
 
-    def __init__(self, folder: Path, listen: str = "127.0.0.1:0", *words: str) -> None:
-        self.process = Lacoc(
-            *("class", str(folder), "--no-open", "--json", "--listen", listen, *words),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            stdin=subprocess.DEVNULL,
-            text=True,
-        )
-        assert self.process.stdout is not None
-        opened = json.loads(self.process.stdout.readline())
+    def __init__(
+        self, folder: Path, listen: str = "127.0.0.1:0", *words: str, fresh: bool = False
+    ) -> None:
+        class_ = ("class", str(folder), "--no-open", "--json", "--listen", listen)
+        self._running = Running(*class_, *words, fresh=fresh, stderr=subprocess.DEVNULL)
+        self.process, opened = self._running.process, self._running.opened
         self.url, self.code = opened["url"], opened["code"]
         self.key = opened["class"].partition("#key=")[2]
 
@@ -49,8 +43,7 @@ class ClassRoom:
         return page
 
     def close(self) -> None:
-        self.process.terminate()
-        self.process.communicate(timeout=LIMIT_S)
+        self._running.close()
 
 
 class StudentPage(PageConnection):

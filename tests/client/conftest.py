@@ -1,14 +1,10 @@
-"""Gives courts to the tests of commands, and makes `court_process` importable."""
+"""Gives courts to the tests of commands."""
 
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-
-sys.path.append(str(Path(__file__).parent))
-
 from court_process import CourtProcess, OpenCourt
 
 

@@ -12,8 +12,9 @@ from typing import Any
 
 import pytest
 import trustme
-from court_process import OpenCourt, environment
+from court_process import OpenCourt
 from court_stub import CourtStub
+from lacoc_process import environment
 from ports import free_port
 from proxies import issue
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from court_process import CourtProcess, OpenCourt, environment
-from lacoc_process import COMMAND, run_lacoc
+from court_process import CourtProcess, OpenCourt
+from lacoc_process import COMMAND, environment, run_lacoc
 from waiting import LIMIT_S
 
 from lacoc_robots.library import sample_gait_files

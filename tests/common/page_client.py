@@ -1,45 +1,29 @@
 """A page without a browser: it keeps what the gateway sends, and sends requests."""
 
-import itertools
 import socket
 import struct
 import threading
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
 from typing import Any
 from urllib.parse import urlsplit
 
 import msgpack
-import msgspec
 import pytest
+from page_connection import PageConnection, Refused
 from waiting import LIMIT_S
 from websockets.client import ClientProtocol
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import Opcode
-from websockets.sync.client import ClientConnection, connect
 from websockets.uri import parse_uri
 
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import Phrase, render
 
 _SIGN_S = 0.09
 """With a frame every 20 ms, a page shows every fifth one in a sign of life."""
-
-
-class Refused(Exception):
-    """A request was refused by the gateway or by the court behind it."""
-
-    def __init__(self, reply: dict[str, Any]) -> None:
-        self.why = msgspec.convert(reply["error"], Phrase)
-        super().__init__(render(self.why))
-        self.mistakes: list[dict[str, Any]] = reply["mistakes"]
-        self.is_the_token: bool = reply["token_refused"]
-        self.again: bool = reply["again"]
-        self.unanswered: bool = reply["unanswered"]
 
 
 def refusal(code: str) -> pytest.RaisesExc[Refused]:
@@ -47,18 +31,14 @@ def refusal(code: str) -> pytest.RaisesExc[Refused]:
     return pytest.raises(Refused, check=lambda error: error.why.code == code)
 
 
-class PageClient:
-    """A page's connection to the gateway; a thread of its own receives the messages."""
+class PageClient(PageConnection):
+    """A page's connection to courts; a thread of its own receives the messages."""
 
     def __init__(
         self, url: str, key: str | None = None, *, watch: bool = True, **options: Any
     ) -> None:
         fields = {name: options.pop(name, None) for name in ("court", "hz", "token")}
-        self._stack = ExitStack()
-        address = f"{url.replace('http', 'ws')}/ws"
-        self.socket: ClientConnection = self._stack.enter_context(
-            connect(address, compression=None, max_size=None, **options)
-        )
+        super().__init__(url, "/ws", compression=None, **options)
         self.order: list[MessageKind] = []
         self.welcome: dict[str, Any] = {}
         self.link: dict[str, Any] = {}
@@ -80,9 +60,7 @@ class PageClient:
         self._signed_s = 0.0
         self._signed: set[int] = set()
         """Ids of the signs of life that were not answered yet."""
-        self._replies: dict[int, dict[str, Any]] = {}
         self._changed = threading.Condition()
-        self._ids = itertools.count(1)
         threading.Thread(target=self._listen, daemon=True).start()
         if watch:
             self.ask("watch", key=key, **fields)
@@ -91,10 +69,6 @@ class PageClient:
     def waits_why(self) -> str:
         """Return the code of the phrase that says why there is no court, or "" without a phrase."""
         return (self.link.get("why") or {"code": ""})["code"]
-
-    def ask(self, do: str, **fields: Any) -> Any:
-        """Send a request and return the value of its reply."""
-        return self.reply(self.send(do, **fields))
 
     def press(self, level: int, key: int) -> int:
         """Press a key upon the newest frame; return its sequence number."""
@@ -105,23 +79,13 @@ class PageClient:
         frame = self.frame
         return {"match": frame.match, "beat": frame.beat} if frame else {"match": 0, "beat": 0}
 
-    def send(self, do: str, **fields: Any) -> int:
-        """Send a request without waiting for its reply; return its id."""
-        number = next(self._ids)
-        self.socket.send(msgpack.packb({"id": number, "do": do, **fields}))
-        return number
-
-    def reply(self, number: int) -> Any:
-        """Wait for the reply to a request and return its value."""
-        self.wait(lambda: number in self._replies)
-        reply = self._replies.pop(number)
-        if not reply["ok"]:
-            raise Refused(reply)
-        return reply["value"]
-
     def waits_for(self, number: int) -> bool:
         """Return whether a request still waits for its reply; call this only before `reply`."""
         return number not in self._replies
+
+    def until(self, condition: Callable[[], Any]) -> None:
+        """Wait until a condition is true; the page's own thread takes in messages."""
+        self.wait(condition)
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = LIMIT_S) -> None:
         """Wait until a condition is true."""
@@ -145,21 +109,11 @@ class PageClient:
         assert self.frame is not None
         return self.frame.seats[self.seat["index"]]
 
-    def close(self) -> None:
-        self._stack.close()
-
-    def __enter__(self) -> "PageClient":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     def _listen(self) -> None:
         try:
             for message in self.socket:
-                assert isinstance(message, bytes)
                 with self._changed:
-                    self._take(MessageKind(message[0]), message[1:])
+                    self._receive(message)
                     self._changed.notify_all()
         except ConnectionClosed:
             pass

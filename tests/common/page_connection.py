@@ -3,14 +3,16 @@
 import itertools
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Self
 
 import msgpack
+import msgspec
 from waiting import LIMIT_S
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 
 from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_shared.words import Phrase, render
 
 _OF_COURTS = (
     MessageKind.FRAME,
@@ -23,11 +25,16 @@ _OF_COURTS = (
 
 
 class Refused(Exception):
-    """The gateway, or the studio behind it, refused a request; `reply` is its reply."""
+    """The gateway, or a court or studio behind it, refused a request; `reply` is its reply."""
 
     def __init__(self, reply: dict[str, Any]) -> None:
-        super().__init__(reply["error"]["code"])
         self.reply = reply
+        self.why = msgspec.convert(reply["error"], Phrase)
+        super().__init__(render(self.why))
+        self.mistakes: list[dict[str, Any]] = reply.get("mistakes", [])
+        self.is_the_token: bool = reply.get("token_refused", False)
+        self.again: bool = reply.get("again", False)
+        self.unanswered: bool = reply.get("unanswered", False)
 
 
 class PageConnection:
@@ -36,12 +43,15 @@ class PageConnection:
     Args:
         url: address of the gateway.
         path: path of the WebSocket.
+        options: of the WebSocket's `connect`.
     """
 
-    def __init__(self, url: str, path: str) -> None:
+    def __init__(self, url: str, path: str, **options: Any) -> None:
         address = f"{url.replace('http', 'ws', 1)}{path}"
         # Without `max_queue`, unread messages never block the answers to pings.
-        self.socket = connect(address, max_size=None, max_queue=None, legacy=True)
+        self.socket: ClientConnection = connect(
+            address, max_size=None, max_queue=None, legacy=True, **options
+        )
         self._ids = itertools.count(1)
         self._replies: dict[int, dict[str, Any]] = {}
         self.told: dict[MessageKind, list[dict[str, Any]]] = {kind: [] for kind in MessageKind}
@@ -82,25 +92,33 @@ class PageConnection:
         deadline_s = time.monotonic() + LIMIT_S
         while not condition():
             assert time.monotonic() < deadline_s, "it did not become true"
-            self._take(self.socket.recv(LIMIT_S))
+            self._receive(self.socket.recv(LIMIT_S))
 
     def code(self) -> int | None:
         """Wait until the gateway closes the connection; return its close code."""
         try:
             while True:
-                self._take(self.socket.recv(LIMIT_S))
+                self._receive(self.socket.recv(LIMIT_S))
         except ConnectionClosed:
             return self.socket.protocol.close_code
 
     def close(self) -> None:
         self.socket.close()
 
-    def _take(self, message: str | bytes) -> None:
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _receive(self, message: str | bytes) -> None:
         assert isinstance(message, bytes)
-        kind = MessageKind(message[0])
+        self._take(MessageKind(message[0]), message[1:])
+
+    def _take(self, kind: MessageKind, payload: bytes) -> None:
         if kind in _OF_COURTS:
             return
-        body = msgpack.unpackb(message[1:])
+        body = msgpack.unpackb(payload)
         if kind is MessageKind.REPLY:
             self._replies[body["id"]] = body
         else:

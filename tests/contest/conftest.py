@@ -1,4 +1,4 @@
-"""Makes `benchmarks` importable, and gives a contest that was played once for all tests."""
+"""Gives a contest that was played once for all tests."""
 
 import shutil
 import sys
@@ -6,9 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
-
-sys.path.append(str(Path(__file__).parents[2]))
-from benchmarks import contest_played
+import small_contest
 
 from lacoc_shared.command import cli
 
@@ -16,9 +14,9 @@ from lacoc_shared.command import cli
 @pytest.fixture(scope="session")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the folder of a contest that was played and published; tests must not change it."""
-    file = contest_played.enter(tmp_path_factory.mktemp("contest"))
-    contest_played.play(file)
-    contest_played.publish(file)
+    file = small_contest.enter(tmp_path_factory.mktemp("contest"))
+    small_contest.play(file)
+    small_contest.publish(file)
     return file.parent
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from benchmarks.contest_played import CONTEST, FINAL, SWISS
+from small_contest import CONTEST, FINAL, SWISS
 
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from lacoc_process import started
 from ports import free_port
-from power_cut import cut_power
+from processes import cut_power
 from waiting import LIMIT_S, until
 
 from lacoc_server.commands.contest.checking import NOT_PROVEN

@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from benchmarks.contest_played import CONTEST, SWISS, enter
 from distributed import LocalCluster
+from small_contest import CONTEST, SWISS, enter
 from waiting import until
 
 from lacoc_server.contest.acts import organiser

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from benchmarks import contest_played
-from benchmarks.contest_played import CONTEST, FINAL, IDLE, SWISS
+import small_contest
+from small_contest import CONTEST, FINAL, IDLE, SWISS
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, robot_folder
@@ -332,10 +332,10 @@ def test_a_team_leaves_once(cup: Cup) -> None:
 def test_a_contest_needs_two_teams_and_a_stage(cup: Cup) -> None:
     """Without two teams, or without a stage, the message says how to go on."""
     with pytest.raises(UserError, match=r"0 teams have entered.*lacoc contest enter"):
-        contest_played.play(cup.file)
+        small_contest.play(cup.file)
     cup.file.write_text(CONTEST, "utf-8")
     with pytest.raises(UserError, match=r"plans no stage.*\[stage.groups\]"):
-        contest_played.play(cup.file)
+        small_contest.play(cup.file)
 
 
 def test_an_own_robot_is_in_the_entry(tmp_path: Path) -> None:

@@ -10,9 +10,9 @@ from pathlib import Path
 import msgspec
 import psutil
 import pytest
-from benchmarks import contest_played
-from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS, Here
+import small_contest
 from lacoc_process import Lacoc
+from small_contest import BOTS, CONTEST, FINAL, SWISS, Here
 from waiting import LIMIT_S, until
 
 from lacoc_arenas import time_limit
@@ -41,8 +41,8 @@ def games(played: Path) -> int:
 @pytest.mark.long
 def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: Path) -> None:
     """Two worker processes give the same CSV tables, byte for byte, as this process alone."""
-    again = contest_played.enter(tmp_path / "again")
-    assert contest_played.play(again, jobs=2) == games(played)
+    again = small_contest.enter(tmp_path / "again")
+    assert small_contest.play(again, jobs=2) == games(played)
     first, second = (organiser.sheet(file) for file in (played / "contest.toml", again))
     assert tables(first) == tables(second)
     assert [*(played / "records").iterdir()] != []
@@ -58,22 +58,22 @@ def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: P
 def test_without_a_network_no_draw_waits(played: Path, tmp_path: Path) -> None:
     """Nobody is there to draw, so a stage that waits for the organiser is drawn at once."""
     waits = FINAL.replace("teams = 2", 'teams = 2\ndraw = "organiser"')
-    file = contest_played.enter(tmp_path / "waits", CONTEST + SWISS + waits)
+    file = small_contest.enter(tmp_path / "waits", CONTEST + SWISS + waits)
     shutil.copytree(played / "records", file.parent / "records")
-    assert contest_played.play(file) == 0
+    assert small_contest.play(file) == 0
     made = organiser.sheet(file)
     assert [view.plan.draw for view in made.stages] == ["at-once", "organiser"]
     assert tables(made) == tables(organiser.sheet(played / "contest.toml"))
-    folder = contest_played.publish(file)
+    folder = small_contest.publish(file)
     assert [*check_published(folder, read(folder))] == []
 
 
 def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied: Path) -> None:
     """A game whose record has a result is not played again, not even in a new contest."""
-    assert contest_played.play(copied) == 0
-    again = contest_played.enter(tmp_path / "new")
+    assert small_contest.play(copied) == 0
+    again = small_contest.enter(tmp_path / "new")
     shutil.copytree(played / "records", again.parent / "records")
-    assert contest_played.play(again) == 0
+    assert small_contest.play(again) == 0
     assert tables(organiser.sheet(again)) == tables(organiser.sheet(copied))
     shutil.rmtree(again.parent / "records")
     shutil.copytree(played / "records", again.parent / "records")
@@ -83,8 +83,8 @@ def test_what_is_known_is_not_played_again(played: Path, tmp_path: Path, copied:
     endless.unlink()
     pack.write_packed(messages, endless)
     again.with_suffix(".db").unlink()
-    contest_played.enter(again.parent)
-    assert contest_played.play(again) == 2
+    small_contest.enter(again.parent)
+    assert small_contest.play(again) == 2
 
 
 class _Damaged(Here):
@@ -101,36 +101,36 @@ class _Damaged(Here):
 
 def test_a_record_without_a_result_is_told(tmp_path: Path) -> None:
     """If no result can be read from the record of a game that was just played, an error says so."""
-    file = contest_played.enter(tmp_path, CONTEST + SWISS, dict([*BOTS.items()][:2]))
+    file = small_contest.enter(tmp_path, CONTEST + SWISS, dict([*BOTS.items()][:2]))
     with pytest.raises(UserError, match="no result can be read from its record"):
         organiser.play_headless(file, "planner", _Damaged(), lambda done, there: None)
 
 
 def test_a_game_without_an_end_is_refused(tmp_path: Path) -> None:
     """A stage whose games have no time limit is refused before anything is played."""
-    file = contest_played.enter(
+    file = small_contest.enter(
         tmp_path, CONTEST + SWISS.replace("duration_s = 4.0", "duration_s = 0")
     )
     with pytest.raises(UserError, match='stage "swiss" has no time limit'):
-        contest_played.play(file)
+        small_contest.play(file)
 
 
 def test_a_contest_that_runs_is_not_run_again(copied: Path) -> None:
     """While one program runs a contest, another one is refused; later it may."""
     with ContestFolder(copied).alone(), pytest.raises(UserError, match="another program"):
-        contest_played.play(copied)
-    assert contest_played.play(copied) == 0
+        small_contest.play(copied)
+    assert small_contest.play(copied) == 0
 
 
 def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:
     """In a new contest with the same records, only the games of a changed entry are played."""
     contest = CONTEST + SWISS.replace('"swiss"', '"round-robin"').replace("rounds = 2\n", "")
     bots = dict([*BOTS.items()][:4])
-    one = contest_played.enter(tmp_path / "one", contest, bots)
-    assert contest_played.play(one) == 6
-    two = contest_played.enter(tmp_path / "two", contest, {**bots, "Ann": "straight"})
+    one = small_contest.enter(tmp_path / "one", contest, bots)
+    assert small_contest.play(one) == 6
+    two = small_contest.enter(tmp_path / "two", contest, {**bots, "Ann": "straight"})
     shutil.copytree(one.parent / "records", two.parent / "records")
-    assert contest_played.play(two) == 3
+    assert small_contest.play(two) == 3
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: i
 
     Its tables are the same as in an undisturbed contest.
     """
-    file = contest_played.enter(tmp_path / "stopped")
+    file = small_contest.enter(tmp_path / "stopped")
     records = file.parent / "records"
     words = ["contest", "run", "contest.toml", "--headless", "--jobs", "1", "--json"]
     run = Lacoc(*words, cwd=file.parent)
@@ -150,7 +150,7 @@ def test_a_contest_that_was_stopped_goes_on(played: Path, tmp_path: Path, how: i
     run.wait(LIMIT_S)
     there = {path.name: path.stat().st_mtime_ns for path in records.glob("*.mcap")}
     assert 0 < len(there) < games(played)
-    assert contest_played.play(file) == games(played) - len(there)
+    assert small_contest.play(file) == games(played) - len(there)
     assert [name for name, at in there.items() if (records / name).stat().st_mtime_ns != at] == []
     assert tables(organiser.sheet(file)) == tables(organiser.sheet(played / "contest.toml"))
 
@@ -161,7 +161,7 @@ def test_a_killed_worker_costs_only_its_game(played: Path, tmp_path: Path) -> No
 
     The tables are the same as in an undisturbed contest.
     """
-    file = contest_played.enter(tmp_path / "killed")
+    file = small_contest.enter(tmp_path / "killed")
     where = ContestFolder(file)
     kills = 3
 
@@ -185,7 +185,7 @@ def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
 
     When the team is disqualified, the contest can be played to its end.
     """
-    file = contest_played.enter(tmp_path / "broken")
+    file = small_contest.enter(tmp_path / "broken")
     bad = tmp_path / "your_bot.py"
     bad.write_text("def bot(sheet, seat):\n    return lambda frame: 1 / 0\n")
     organiser.enter(file, "Eve", None, str(bad), "")
@@ -193,11 +193,11 @@ def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
         UserError,
         match=r"^Eve: The bot your_bot\.py stopped .*\(your_bot\.py:2\): .* by zero\.\nGames",
     ):
-        contest_played.play(file)
+        small_contest.play(file)
     decided = [match.decided for match in organiser.sheet(file).stages[0].matches]
     assert decided.count(False) == 1
     organiser.take_out(file, "Eve", "broken bot", disqualified=True)
-    contest_played.play(file)
+    small_contest.play(file)
     view = organiser.sheet(file).stages[0]
     assert all(match.decided for match in view.matches)
     assert [row.team for row in view.tables[0].rows][-1] == "Eve"
@@ -205,7 +205,7 @@ def test_a_broken_bot_stops_no_other_team(played: Path, tmp_path: Path) -> None:
 
 def test_a_team_may_leave_before_the_draw_and_in_the_middle(tmp_path: Path) -> None:
     """A team that leaves before the draw is not drawn; one that leaves later loses open matches."""
-    file = contest_played.enter(tmp_path / "left", CONTEST + SWISS)
+    file = small_contest.enter(tmp_path / "left", CONTEST + SWISS)
     organiser.take_out(file, "Eve", "ill", disqualified=False)
     where = ContestFolder(file)
 
@@ -230,7 +230,7 @@ def test_a_game_to_be_replayed_is_another_game(copied: Path) -> None:
         names = ("pairing", "game", "teams")
         what = {name: getattr(last, name) for name in names}
         store.append(new(Replay, reason="the net was down", **what))
-    assert contest_played.play(copied) == 1
+    assert small_contest.play(copied) == 1
     with FactStore(where.facts) as store:
         again = store.facts()[-1]
     assert isinstance(again, Played)
@@ -243,7 +243,7 @@ def test_void_games_are_played_again_and_at_last_drawn(
 ) -> None:
     """A void game is played again; if the fourth attempt is void too, the game is a draw."""
     one = FINAL.replace('after = "swiss"\nteams = 2\ngames = 3\n', "extra_games = 0\n")
-    file = contest_played.enter(tmp_path / "void", CONTEST + one)
+    file = small_contest.enter(tmp_path / "void", CONTEST + one)
     for team in [*BOTS][2:]:
         organiser.take_out(file, team, "ill", disqualified=False)
 
@@ -252,7 +252,7 @@ def test_void_games_are_played_again_and_at_last_drawn(
         return found and msgspec.structs.replace(found, winner="void")
 
     monkeypatch.setattr("lacoc_server.contest.headless.play.summary", void)
-    assert contest_played.play(file) == 4
+    assert small_contest.play(file) == 4
     with FactStore(ContestFolder(file).facts) as store:
         played = [fact for fact in store.facts() if isinstance(fact, Played)]
         decision = store.facts()[-1]
@@ -282,7 +282,7 @@ def test_replays_that_people_ordered_are_no_void_games(
         return found and msgspec.structs.replace(found, winner="void")
 
     monkeypatch.setattr("lacoc_server.contest.headless.play.summary", void)
-    contest_played.play(copied)
+    small_contest.play(copied)
     with FactStore(where.facts) as store:
         ends = [
             fact.outcome
@@ -306,7 +306,7 @@ BAD = {
 def enter_eight(folder: Path) -> Path:
     """Enter eight bots: one hangs, one raises an error, one presses only keys that nobody has."""
     good = {f"Good {number}": "straight" for number in range(5)}
-    file = contest_played.enter(folder, EIGHT, good)
+    file = small_contest.enter(folder, EIGHT, good)
     for team, brain in BAD.items():
         bot = folder / f"{team.lower()}_bot.py"
         bot.write_text(f"{brain}def bot(sheet, seat):\n    return brain\n")

@@ -1,23 +1,17 @@
 """Tests of open matches: whoever has the token of a seat plays, at a court that has no game."""
 
-import json
 import subprocess
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
-from benchmarks import contest_played
-from lacoc_process import started
-from ports import free_port
-from waiting import LIMIT_S, until
-
-sys.path.append(str(Path(__file__).parents[1] / "server"))
+import small_contest
+from lacoc_process import contest_run, started
 from msgspec.structs import replace
+from ports import free_port
 from stage import QUICK, join, setup
+from waiting import LIMIT_S, until
 
 from lacoc_client.play.controller import Controller, Hold
 from lacoc_client.play.team_way import where
@@ -138,7 +132,6 @@ def test_each_seat_is_told_where_it_is() -> None:
 
 def test_games_go_before_open_matches_that_have_not_begun() -> None:
     """A court with an open match gets a game unless the match has begun."""
-    sys.path.append(str(Path(__file__).parents[1] / "league"))
     from cup import NOW_MS, Cup
 
     seen = {
@@ -191,7 +184,7 @@ def test_records_of_open_matches_are_in_nobodys_way(copied: Path) -> None:
     """A contest with their records is published without them, and follows from its facts."""
     copied.write_text(copied.read_text("utf-8") + OPEN, "utf-8")
     path = record_open_match(ContestFolder(copied).records)
-    published = contest_played.publish(copied)
+    published = small_contest.publish(copied)
     assert not [one for one in published.rglob("*") if one.name == path.name]
     done = started(
         "contest", "verify", str(published), stdout=subprocess.PIPE, stderr=subprocess.STDOUT
@@ -210,19 +203,6 @@ settings.match = {{ duration_s = 1.0, countdown_s = 0.1, start = "ready" }}
 """
 
 
-@contextmanager
-def running(file: Path) -> Iterator[tuple[dict[str, Any], "subprocess.Popen[Any]"]]:
-    """Run a contest; give what it says first, and its process."""
-    words = ("contest", "run", str(file), "--json")
-    process = started(*words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    try:
-        assert process.stdout is not None
-        yield json.loads(process.stdout.readline()), process
-    finally:
-        process.terminate()
-        process.communicate(timeout=LIMIT_S)
-
-
 @pytest.mark.slow
 def test_friends_play_match_after_match(tmp_path: Path) -> None:
     """Whoever has the link of a seat sits down with a name and files, and stays for the next one.
@@ -231,7 +211,8 @@ def test_friends_play_match_after_match(tmp_path: Path) -> None:
     """
     file = tmp_path / "contest.toml"
     file.write_text(CONTEST.format(port=free_port()))
-    with running(file) as (opened, _):
+    with contest_run(file, stderr=subprocess.DEVNULL) as run:
+        opened = run.opened
         tokens = {seat: load(file).secrets.seat("red", seat) for seat in ("left", "right")}
         links = opened["seats"]["red"]
         assert all(tokens[seat] in links[seat] for seat in tokens)

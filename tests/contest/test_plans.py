@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from benchmarks.contest_played import CONTEST
+from small_contest import CONTEST
 
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans

@@ -8,10 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from benchmarks import contest_played
-from benchmarks.contest_played import BOTS, CONTEST, FINAL, SWISS
+import small_contest
+from small_contest import BOTS, CONTEST, FINAL, SWISS
 
-from lacoc_client.film import contest as film_contest
 from lacoc_server.commands.contest.checking import NOT_PROVEN
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
@@ -39,7 +38,7 @@ def test_the_folder_has_no_token(copied: Path) -> None:
     where = ContestFolder(copied)
     kept = where.contest.secrets
     secrets = [kept.office, kept.referee("main"), *map(kept.team, BOTS)]
-    published = files(contest_played.publish(copied))
+    published = files(small_contest.publish(copied))
     for name, data in published.items():
         assert [one for one in secrets if one.encode() in data or one in name] == []
     assert any(secrets[0].encode() in data for data in files(copied.parent).values())
@@ -53,15 +52,15 @@ def test_the_folder_can_be_written_again(copied: Path) -> None:
     for name in before:
         if not name.startswith("entries"):
             (folder / name).write_bytes(b"x" * len(before[name]))
-    contest_played.publish(copied)
+    small_contest.publish(copied)
     assert files(folder) == before
     record = next((copied.parent / "records").iterdir())
     record.write_bytes(record.read_bytes() + b"x")
     with pytest.raises(UserError, match="has been changed since its game"):
-        contest_played.publish(copied)
+        small_contest.publish(copied)
     record.unlink()
     with pytest.raises(UserError, match="is missing"):
-        contest_played.publish(copied)
+        small_contest.publish(copied)
     assert files(folder) == before
 
 
@@ -74,25 +73,25 @@ def test_a_record_that_is_not_packed_yet_is_published(copied: Path) -> None:
     wanted = published.read_bytes()
     published.unlink()
     record.rename(record.with_name(f"{record.stem}.0001.live.mcap"))
-    contest_played.publish(copied)
+    small_contest.publish(copied)
     assert published.read_bytes() == wanted
 
 
 def test_files_of_teams_come_with_the_end_of_entries(tmp_path: Path) -> None:
     """The files of teams are in the published folder only when entries are closed."""
-    file = contest_played.enter(tmp_path)
-    folder = contest_played.publish(file)
+    file = small_contest.enter(tmp_path)
+    folder = small_contest.publish(file)
     assert [name for name in files(folder) if name.startswith(("entries", "records"))] == []
     with FactStore(ContestFolder(file).facts) as store:
         store.append(new(Closed))
-    contest_played.publish(file)
+    small_contest.publish(file)
     entries = {name.split("/")[1] for name in files(folder) if name.startswith("entries")}
     assert len(entries) == len({*BOTS.values()})
 
 
 def test_names_of_teams_are_no_paths(tmp_path: Path) -> None:
     """Strange team names stay as they are, and nothing is written outside the published folder."""
-    file = contest_played.enter(
+    file = small_contest.enter(
         tmp_path / "in" / "side", CONTEST + SWISS, dict.fromkeys(NAMES, "planner")
     )
     where = ContestFolder(file)
@@ -178,7 +177,7 @@ def test_exit_codes_and_languages(
         assert "Ann は大会から外れました" not in said
         code, said, _ = lacoc(*withdraw, "--yes")
         assert (code, "大会から外れました" in said) == (0, True)
-    contest_played.publish(copied)
+    small_contest.publish(copied)
     code, said, note = lacoc(*verify)
     assert code == 0
     assert "Ann has withdrawn. Reason: 病気" in note
@@ -202,6 +201,7 @@ def test_a_reel_finds_the_records(played: Path) -> None:
 
     A film of the contest's own folder takes records of the same names, in the same order.
     """
+    film_contest = pytest.importorskip("lacoc_client.film.contest")
     published = film_contest.records(played / "published")
     own = film_contest.records(played)
 

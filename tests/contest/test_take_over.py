@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from lacoc_process import run_lacoc, started
 from ports import free_port
-from power_cut import cut_power, everything_of
+from processes import cut_power, everything_of
 from waiting import LIMIT_S, until
 
 from lacoc_server.commands.contest.checking import NOT_PROVEN

@@ -1,10 +1,6 @@
 """Tests of what the terminal of an organiser says of a contest."""
 
-import sys
-from pathlib import Path
 from random import Random
-
-sys.path.append(str(Path(__file__).parents[1] / "league"))
 
 from chance_event import Event
 from cup import Cup

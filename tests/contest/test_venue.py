@@ -6,7 +6,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from benchmarks.contest_played import CONTEST, SWISS
+from small_contest import CONTEST, SWISS
 from waiting import LIMIT_S, until
 
 from lacoc_server.contest.kept.folder import ContestFolder

@@ -12,10 +12,12 @@ from random import Random
 from typing import Any
 
 import pytest
-from benchmarks import contest_forging, contest_played, game_forger
+import small_contest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from tests.campaigns.forge import contest as contest_forging
+from tests.campaigns.forge import game as game_forger
 
 from lacoc_arenas.arena import load
 from lacoc_server.contest.acts import organiser
@@ -75,7 +77,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, render
 
-IDLE = contest_played.IDLE.encode()
+IDLE = small_contest.IDLE.encode()
 
 
 def findings(folder: Path, proven: bool = False) -> list[str]:
@@ -110,10 +112,10 @@ def test_no_forgery_is_missed(
     A game that is played again, with all that follows from it, passes only if it claims the honest
     result.
     """
-    bots = dict(zip(contest_played.BOTS, [*contest_played.BOTS.values()][::-1], strict=True))
-    other = contest_played.enter(tmp_path / "other", bots=bots)
-    contest_played.play(other)
-    honest, there = played / "published", contest_played.publish(other)
+    bots = dict(zip(small_contest.BOTS, [*small_contest.BOTS.values()][::-1], strict=True))
+    other = small_contest.enter(tmp_path / "other", bots=bots)
+    small_contest.play(other)
+    honest, there = played / "published", small_contest.publish(other)
     found = contest_forging.forge(honest, there, forgeries, 7, only)
     assert (found.missed, found.fitting_missed) == ([], [])
     if only:
@@ -150,15 +152,15 @@ def test_an_honest_contest_with_decisions_passes(copied: Path) -> None:
         last = next(fact for fact in reversed(store.facts()) if isinstance(fact, Played))
         what = {name: getattr(last, name) for name in ("pairing", "game", "teams")}
         store.append(new(Replay, reason="net down", **what))
-        bot = "nearest" if contest_played.BOTS[last.teams[0]] == "straight" else "straight"
+        bot = "nearest" if small_contest.BOTS[last.teams[0]] == "straight" else "straight"
         organiser.enter(copied, last.teams[0], None, bot, "broken robot")
-    contest_played.play(copied)
+    small_contest.play(copied)
     with FactStore(where.facts) as store:
         score = {"scores": (1, 0), "outcome": "left"}
         store.append(new(Replaced, reason="foul", **what, **score))
     organiser.take_out(copied, "Ann", "ill", disqualified=False)
-    contest_played.play(copied)
-    folder = contest_played.publish(copied)
+    small_contest.play(copied)
+    folder = small_contest.publish(copied)
     assert findings(folder) == []
     found = check(folder, lambda done, there: None, sampled=1, seed=3, jobs=1)
     assert found.findings == ()
@@ -472,14 +474,14 @@ def test_a_program_is_run_only_if_that_is_wanted(played: Path) -> None:
 @pytest.mark.slow
 def test_a_team_that_a_bot_steered_is_checked(tmp_path: Path) -> None:
     """A team without a bot is steered by one that the fact names; it must have pressed the keys."""
-    file = contest_played.enter(
+    file = small_contest.enter(
         tmp_path,
-        contest_played.CONTEST + contest_played.FINAL.replace('after = "swiss"\n', ""),
+        small_contest.CONTEST + small_contest.FINAL.replace('after = "swiss"\n', ""),
         bots={"Ann": "straight"},
     )
     organiser.enter(file, "Bob", None, "", "")
-    contest_played.play(file)
-    folder = contest_played.publish(file)
+    small_contest.play(file)
+    folder = small_contest.publish(file)
     facts = [*read(folder)]
     game = games_of(facts)[-1]
     assert game.played.steer == "planner"
@@ -654,7 +656,7 @@ def test_no_code_of_a_stranger_runs(copied: Path, tmp_path: Path) -> None:
     """The check runs no arena that is a folder, and no program of a bot."""
     folder = copied.parent / "published"
     evil = tmp_path / "evil"
-    shutil.copytree(Path(contest_forging.__file__).parents[1] / "arenas/lacoc_arenas/othello", evil)
+    shutil.copytree(Path(__file__).parents[2] / "arenas/lacoc_arenas/othello", evil)
     (evil / "__init__.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n")
     facts = [
         replace(fact, arena=str(evil)) if isinstance(fact, Planned) else fact

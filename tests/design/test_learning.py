@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from design_client import DesignClient
-from power_cut import cut_power
+from processes import cut_power
 from test_design_page import Gateway, sample
 
 from lacoc_client.workshop.design.designer import EVIDENCE_FILE

@@ -1,17 +1,10 @@
 """Gives a short recorded match to film."""
 
-import sys
 from pathlib import Path
 
 import pytest
-
-sys.path.append(str(Path(__file__).parents[1] / "pages"))
-
+from bot_matches import bot_match
 from chromium import NoBrowser, build_pages, find_chromium
-
-from lacoc_arenas import arena as arenas
-from lacoc_server.simulate import player, simulate
-from lacoc_shared.record.schema import Setup
 
 SETTINGS = {
     "match": {"duration_s": 7.0, "countdown_s": 0.1},
@@ -24,18 +17,7 @@ SETTINGS = {
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the record of a match of Flag-Strike, 7 s long."""
     folder = tmp_path_factory.mktemp("film")
-    arena = arenas.load("flag-strike", SETTINGS)
-    setup = Setup(
-        match_id="short",
-        court="hall",
-        match=1,
-        arena="flag-strike",
-        settings=arena.settings,
-        limits={},
-    )
-    players = [player(arena, seat, bot) for seat, bot in enumerate(("planner", "straight"))]
-    simulate(setup, players, folder)
-    return folder / "short.mcap"
+    return bot_match(folder, "flag-strike", ("planner", "straight"), SETTINGS)
 
 
 @pytest.fixture(scope="module")

@@ -1,15 +1,10 @@
-"""Gives venues to the tests of the gateway, and makes `venue` and `page_client` importable."""
+"""Gives venues to the tests of the gateway."""
 
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-
-sys.path.append(str(Path(__file__).parent))
-sys.path.append(str(Path(__file__).parents[1] / "client"))
-
 from venue import Venue
 
 

@@ -9,8 +9,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from court_process import CourtProcess, environment
-from lacoc_process import Lacoc, run_lacoc
+from court_process import CourtProcess
+from lacoc_process import Lacoc, environment, run_lacoc
+from own_page import OwnPage
 from page_client import PageClient
 from waiting import LIMIT_S
 
@@ -23,36 +24,6 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not PageFiles().built, reason=render(NOT_BUILT)),
 ]
-
-
-class Command:
-    """A command that opens a page and prints its address."""
-
-    def __init__(self, folder: Path, *words: str) -> None:
-        self.process = Lacoc(
-            *(*words, "--no-open"),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            cwd=folder,
-            env=environment(),
-        )
-        assert self.process.stdout is not None
-        self.said = ""
-        found = None
-        while found is None:
-            line = self.process.stdout.readline()
-            assert line, self.said
-            self.said += line
-            found = re.search(r"Open (http://127\.0\.0\.1:\d+)(/\w+)(?:#key=(\S+))?", line)
-        self.url, self.path, self.key = found.groups()
-
-    def ended(self) -> int:
-        self.process.send_signal(signal.SIGINT)
-        out, _ = self.process.communicate(timeout=LIMIT_S)
-        self.said += out
-        return self.process.returncode
 
 
 @pytest.fixture
@@ -68,7 +39,7 @@ def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
     gait = sample_gait_files("hexapod").locomotion
     assert gait is not None
     (tmp_path / "LocoTra-data.txt").write_bytes(gait.data)
-    play = Command(tmp_path, "play", "--name", "Ants", *court.where("left"))
+    play = OwnPage(tmp_path, "play", "--name", "Ants", *court.where("left"))
     assert play.path == "/play"
     assert "Files used from this folder: LocoTra-data.txt." in play.said
     with PageClient(play.url) as stranger:
@@ -151,7 +122,7 @@ def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
 
 def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
     """`lacoc play` opens its page without seat, name or token, even before a court runs."""
-    play = Command(tmp_path, "play", "--connect", "tcp/127.0.0.1:1")
+    play = OwnPage(tmp_path, "play", "--connect", "tcp/127.0.0.1:1")
     with PageClient(play.url, play.key) as page:
         expected = {"seat": "", "name": "", "has_token": False}
         assert page.welcome["prefill"] == expected
@@ -161,7 +132,7 @@ def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
 
 def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
     """`lacoc practice` runs a court of its own, in which a page joins and plays (workshop 4-4)."""
-    practice = Command(tmp_path, "practice", "--recordings", "kept")
+    practice = OwnPage(tmp_path, "practice", "--recordings", "kept")
     assert practice.path == "/practice"
     with PageClient(practice.url, practice.key, hz=50) as page:
         assert page.welcome["home"] == "practice"
@@ -179,8 +150,8 @@ def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
     """The address that `lacoc watch` opens has no page key, so its page can only watch."""
     court = CourtProcess(tmp_path, "--arena", "othello")
     stack.callback(court.close)
-    watch = Command(tmp_path, "watch", *court.where())
-    assert (watch.path, watch.key) == ("/watch", None)
+    watch = OwnPage(tmp_path, "watch", *court.where())
+    assert (watch.path, watch.key) == ("/watch", "")
     with PageClient(watch.url) as page:
         page.wait(lambda: page.frame and page.scene)
     assert watch.ended() == 0

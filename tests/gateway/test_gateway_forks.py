@@ -9,12 +9,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from bot_matches import bot_match
 from venue import Venue
 
-from lacoc_arenas import arena as arenas
-from lacoc_server.simulate import player, simulate
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import Setup
 
 pytestmark = pytest.mark.slow
 
@@ -37,17 +35,8 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Venue]:
     """Give a gateway with the recording of a short match of two bots."""
     with ExitStack() as stack:
         venue = Venue(tmp_path_factory.mktemp("library"), stack)
-        arena = arenas.load("othello", {"match": {"duration_s": 1.0, "countdown_s": 0.2}})
-        setup = Setup(
-            match_id=MATCH,
-            court="hall",
-            match=1,
-            arena="othello",
-            settings=arena.settings,
-            limits={},
-        )
-        players = [player(arena, seat, bot) for seat, bot in enumerate(("planner", "nearest"))]
-        simulate(setup, players, venue.folder / "recordings")
+        bots, settings = ("planner", "nearest"), {"match": {"duration_s": 1.0, "countdown_s": 0.2}}
+        bot_match(venue.folder / "recordings", "othello", bots, settings, match_id=MATCH)
         venue.web("--recordings", str(venue.folder / "recordings"))
         yield venue
 

@@ -6,7 +6,7 @@ import urllib.request
 
 import pytest
 from page_client import PageClient
-from venue import TOKENS, Process, Venue
+from venue import TOKENS, Venue
 from waiting import LIMIT_S, until
 
 pytestmark = pytest.mark.slow
@@ -18,7 +18,7 @@ def test_a_gateway_without_secrets_shows_all_courts_and_the_contest(venue: Venue
     sheet.write_text('{"stages": []}')
     venue.court()
     venue.web()
-    second = Process(venue.folder, "web", venue.url, "--json", name="second")
+    second = venue.started("web", venue.url, "--json", name="second")
     try:
         url = second.opened["url"]
 

@@ -6,8 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from court_process import environment
-from lacoc_process import Lacoc
+from lacoc_process import Lacoc, environment
 from mcap.reader import make_reader
 from page_client import PageClient, Refused
 from venue import REFEREE, TOKENS, Venue

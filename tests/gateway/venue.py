@@ -1,57 +1,15 @@
 """Runs a court and a gateway, each in a process of its own."""
 
-import json
-import os
-import signal
-import subprocess
 from contextlib import ExitStack
 from pathlib import Path
 
 from contest_tokens import keep_tokens
-from court_process import environment
-from lacoc_process import ALONE, Lacoc
+from lacoc_process import ALONE, Running, environment
 from page_client import PageClient
 from ports import free_port
-from waiting import LIMIT_S
 
 TOKENS = {"left": "l" * 26, "right": "r" * 26}
 REFEREE = "w" * 26
-
-
-class Process:
-    """A process that prints one line of JSON when it is ready."""
-
-    def __init__(self, folder: Path, *words: str, name: str = "process") -> None:
-        with (folder / f"{name}.log").open("ab") as log:
-            self.process = Lacoc(
-                *words,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                stdin=subprocess.DEVNULL,
-                text=True,
-                env=environment(),
-                cwd=folder,
-            )
-        assert self.process.stdout is not None
-        self.said = self.process.stdout.readline()
-        """The standard output: its first line, and after `close` all of it."""
-        self.opened = json.loads(self.said)
-
-    def kill(self) -> None:
-        """Kill the process, as a power cut does."""
-        self.process.kill()
-        self.process.wait(LIMIT_S)
-
-    def signal(self, number: signal.Signals) -> None:
-        os.kill(self.process.pid, number)
-
-    def close(self) -> None:
-        assert self.process.stdout is not None
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGCONT)
-            self.process.terminate()
-        if not self.process.stdout.closed:
-            self.said += self.process.communicate(timeout=LIMIT_S)[0]
 
 
 class Venue:
@@ -69,11 +27,11 @@ class Venue:
         )
         keep_tokens(self.contest, TOKENS, REFEREE)
 
-    def court(self, *words: str) -> Process:
+    def court(self, *words: str) -> Running:
         """Start the court."""
         return self.started(ALONE, str(self.contest), "--json", *words, name="court")
 
-    def web(self, *words: str) -> Process:
+    def web(self, *words: str) -> Running:
         """Start the gateway."""
         where = ("--contest", str(self.contest), "--listen", f"127.0.0.1:{self.web_port}")
         web = self.started("web", "--json", *where, *words, name="web")
@@ -101,8 +59,8 @@ class Venue:
         page.ask("enter", token=REFEREE, by=by)
         return page
 
-    def started(self, *words: str, name: str) -> Process:
-        """Start a process; it ends with the test."""
-        process = Process(self.folder, *words, name=name)
-        self._stack.callback(process.close)
-        return process
+    def started(self, *words: str, name: str) -> Running:
+        """Start a process with a log; it ends with the test."""
+        log = self.folder / f"{name}.log"
+        running = Running(*words, log=log, env=environment(), cwd=self.folder)
+        return self._stack.enter_context(running)

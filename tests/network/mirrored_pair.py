@@ -3,8 +3,6 @@
 They are programs at the court, or pages (without a browser) at a gateway next to the court.
 """
 
-import json
-import subprocess
 import threading
 import time
 from collections.abc import Sequence
@@ -13,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from contest_tokens import keep_tokens
-from lacoc_process import ALONE, Lacoc
+from lacoc_process import ALONE, Running
 from page_client import PageClient
 from slow_link import SlowLink
 from waiting import LIMIT_S, until
@@ -247,12 +245,9 @@ def _court(folder: Path, arena: str, input_delay: str, most_ms: int, stack: Exit
 
 def _started(stack: ExitStack, *words: str) -> dict[str, Any]:
     """Start a command that is stopped with the stack; return what it says first."""
-    process = stack.enter_context(Lacoc(*words, stdout=subprocess.PIPE, text=True))
-    stack.callback(process.terminate)
-    assert process.stdout is not None
-    said: dict[str, Any] = json.loads(process.stdout.readline())
-    threading.Thread(target=process.stdout.read, daemon=True).start()  # so the pipe never fills
-    return said
+    running = stack.enter_context(Running(*words))
+    running.hush()
+    return running.opened
 
 
 def _match(address: str, warm_s: float, seconds: float) -> tuple[Health, int]:

@@ -4,18 +4,17 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from debian import install, locked
-from playwright.sync_api import Page
+from playwright.sync_api import Browser, Page, sync_playwright
 
 from lacoc_client.film.chromium import FLAGS, SHELL, on_path
 
 WEB = Path(__file__).parents[2] / "client" / "web"
 PAGES = WEB.parent / "lacoc_client" / "pages"
-
-__all__ = ["FLAGS", "SLOW_SCREEN", "NoBrowser", "OpenPage", "build_pages", "find_chromium"]
 
 SLOW_SCREEN = """(() => {
   const next = window.requestAnimationFrame.bind(window);
@@ -66,6 +65,23 @@ def find_chromium() -> str:
     if found is None:
         raise NoBrowser(_HOW)
     return found
+
+
+@contextmanager
+def chromium(*flags: str) -> Iterator[Browser]:
+    """Run a browser that draws without a graphics card.
+
+    Args:
+        flags: further flags of Chromium.
+
+    Raises:
+        NoBrowser: as `find_chromium`.
+    """
+    program = find_chromium()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=[*FLAGS, *flags])
+        yield browser
+        browser.close()
 
 
 def build_pages() -> Path:

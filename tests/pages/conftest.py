@@ -1,13 +1,14 @@
-"""Gives tests a browser and its pages, and makes the tests' helper modules importable."""
+"""Gives tests a browser and its pages."""
 
 import re
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import SLOW_SCREEN, NoBrowser, OpenPage, build_pages, chromium
+from contestant import Contestant, Sit
 from playwright.sync_api import (
     Browser,
     BrowserContext,
@@ -15,19 +16,9 @@ from playwright.sync_api import (
     Error,
     Page,
     expect,
-    sync_playwright,
 )
-from waiting import LIMIT_MS
-
-sys.path.append(str(Path(__file__).parent))
-sys.path.append(str(Path(__file__).parents[1] / "gateway"))
-sys.path.append(str(Path(__file__).parents[1] / "classroom"))
-sys.path.append(str(Path(__file__).parents[1] / "client"))
-sys.path.append(str(Path(__file__).parents[1] / "server"))
-
-from chromium import FLAGS, SLOW_SCREEN, NoBrowser, OpenPage, build_pages, find_chromium
-from contestant import Contestant, Sit
 from venue import Venue
+from waiting import LIMIT_MS
 
 _NAMES = "--host-resolver-rules=MAP *.test 127.0.0.1"
 """Host names of tests lead to this machine."""
@@ -38,14 +29,12 @@ expect.set_options(timeout=LIMIT_MS)
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """Give Chromium, which draws in software."""
-    try:
-        program = find_chromium()
-    except NoBrowser as why:
-        pytest.fail(str(why), pytrace=False)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=[*FLAGS, _NAMES])
+    with ExitStack() as stack:
+        try:
+            browser = stack.enter_context(chromium(_NAMES))
+        except NoBrowser as why:
+            pytest.fail(str(why), pytrace=False)
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="session")

@@ -1,17 +1,12 @@
 """A contestant's page in a browser: what a person does with the page and sees on it."""
 
 import re
-import subprocess
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
 from chromium import OpenPage
-from court_process import environment
-from lacoc_process import Lacoc
 from playwright.sync_api import Locator, Page, expect
 from waiting import LIMIT_S
 
@@ -127,39 +122,6 @@ class Contestant:
         found = re.search(r"-?\d+(\.\d+)?", text)
         assert found is not None, text
         return float(found[0])
-
-
-@contextmanager
-def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
-    """Run a command that opens a page for one person; give the gateway's address and page key."""
-    process, url, key = start_own_page(folder, *words)
-    try:
-        yield url, key
-    finally:
-        process.terminate()
-        process.communicate(timeout=LIMIT_S)
-
-
-def start_own_page(folder: Path, *words: str) -> tuple[Lacoc, str, str]:
-    """Start a command that opens a page for one person.
-
-    Returns:
-        The process, the gateway's address, and the page key.
-    """
-    process = Lacoc(
-        *(*words, "--no-open"),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        stdin=subprocess.DEVNULL,
-        text=True,
-        cwd=folder,
-        env=environment(),
-    )
-    assert process.stdout is not None
-    said = re.search(r"http://\S+", process.stdout.readline())
-    assert said is not None
-    parts = urlsplit(said[0])
-    return process, f"http://{parts.netloc}", parts.fragment.removeprefix("key=")
 
 
 Sit = Callable[..., Contestant]

@@ -1,15 +1,12 @@
 """A contest at two courts with its office and pages, whose entries are open."""
 
-import json
-import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_process import run_lacoc, started
+from lacoc_process import contest_run, run_lacoc
 from ports import free_port
-from waiting import LIMIT_S
 
 from lacoc_robots.library import robot_folder, sample_gait_files
 
@@ -54,20 +51,14 @@ def running(folder: Path, *teams: str, waits: bool = False) -> Iterator[Event]:
     wrong.write_bytes(given[1].data.replace(b"0", b"x", 3))
     cut = folder / "Loco-data.xlsx"
     cut.write_bytes((robot_folder("hexapod") / "Loco-data.xlsx").read_bytes()[:4000])
-    words = ("contest", "run", str(file), "--entries", "--json")
-    with started(*words, stdout=subprocess.PIPE, text=True) as run:
-        try:
-            assert run.stdout is not None
-            opened = json.loads(run.stdout.readline())
-            yield Event(
-                opened["url"],
-                opened["office"],
-                opened["code"],
-                folder / "contest.db",
-                (paths[0], paths[1]),
-                wrong,
-                cut,
-            )
-        finally:
-            run.terminate()
-            run.wait(LIMIT_S)
+    with contest_run(file, "--entries") as run:
+        opened = run.opened
+        yield Event(
+            opened["url"],
+            opened["office"],
+            opened["code"],
+            folder / "contest.db",
+            (paths[0], paths[1]),
+            wrong,
+            cut,
+        )

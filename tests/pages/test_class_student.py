@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from chromium import OpenPage
 from class_room import ClassRoom, until_kept
-from contestant import start_own_page
+from own_page import OwnPage
 from playwright.sync_api import expect
-from power_cut import cut_power
+from processes import cut_power
 from show import violations
 from test_design import Designer, write_sample
 from waiting import LIMIT_S
@@ -185,7 +185,8 @@ def test_alone_changes_come_back_after_a_kill(
     """After kill -9 of `lacoc design` the unsaved table is back; undo gives the file's table."""
     console.expect("ERR_CONNECTION|WebSocket")
     write_sample(tmp_path)
-    process, url, key = start_own_page(tmp_path, "design")
+    command = OwnPage(tmp_path, "design")
+    process, url, key = command.process, command.url, command.key
     page = Designer(open_page, url)
     page.begin(key)
     page.go(0, 0)
@@ -195,7 +196,8 @@ def test_alone_changes_come_back_after_a_kill(
     cut_power(process)
     page.page.close()
 
-    process, url, key = start_own_page(tmp_path, "design")
+    command = OwnPage(tmp_path, "design")
+    process, url, key = command.process, command.url, command.key
     try:
         page = Designer(open_page, url)
         page.begin(key)

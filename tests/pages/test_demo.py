@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 from chromium import OpenPage
-from court_process import environment
-from lacoc_process import COMMAND
+from lacoc_process import COMMAND, environment
 from show import Show
 from waiting import LIMIT_S
 

@@ -10,12 +10,12 @@ from typing import Any
 import psutil
 import pytest
 from chromium import OpenPage
-from contestant import Contestant, own_page, start_own_page
+from contestant import Contestant
 from drop import drop
 from openpyxl import load_workbook
+from own_page import OwnPage
 from playwright.sync_api import expect
 from show import violations
-from waiting import LIMIT_S
 
 from lacoc_robots.library import find_robot, sample_gait_files
 
@@ -128,8 +128,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
     """Give the address and the page key of a `lacoc design` that all tests of this file share."""
-    with own_page(folder, "design") as address:
-        yield address
+    with OwnPage(folder, "design") as command:
+        yield command.url, command.key
 
 
 @pytest.fixture
@@ -494,27 +494,44 @@ def test_a_page_that_comes_while_the_studio_stands_still_opens_by_itself(
 ) -> None:
     """The page says that there is no studio, asks again by itself, and then opens."""
     console.expect("WebSocket")  # at the end
-    process, url, key = start_own_page(tmp_path, "design")
-    studios = [
-        child
-        for child in psutil.Process(process.pid).children(recursive=True)
-        if "studio" in child.cmdline()
-    ]
-    try:
-        Designer(open_page, url).begin(key)
-        for studio in studios:
-            studio.suspend()
+    with OwnPage(tmp_path, "design") as own:
+        children = psutil.Process(own.process.pid).children(recursive=True)
+        (studio,) = (child for child in children if "studio" in child.cmdline())
+        Designer(open_page, own.url).begin(own.key)
+        studio.suspend()
         other = find_robot("hexapod")[1].replace(b"Hexapod", b"Another")  # not known yet
         (tmp_path / "robot.toml").write_bytes(other)
-        page = Designer(open_page, url)
-        page.open("/design", key)
-        page.sees(".banner", "no studio")
-        for studio in studios:
+        try:
+            page = Designer(open_page, own.url)
+            page.open("/design", own.key)
+            page.sees(".banner", "no studio")
+        finally:
             studio.resume()
         page.sees("#gait-grid td")
         page.misses(".banner")
-    finally:
-        for studio in studios:
-            studio.resume()
-        process.terminate()
-        process.communicate(timeout=LIMIT_S)
+
+
+def test_trials_outlive_a_reload_and_an_outage(
+    open_page: OpenPage, tmp_path: Path, console: Any
+) -> None:
+    """Trials are there after a reload; one that is asked for in an outage is made after it."""
+    console.expect("WebSocket")
+    with OwnPage(tmp_path, "design") as own:
+        page = Designer(open_page, own.url)
+        page.begin(own.key)
+        page.tries()
+        speed = page.figure("speed_mm_s")
+        page.page.reload()
+        expect(page.find(".trials > li")).to_have_count(1)
+        page.page.click(".trials > li button >> nth=0")
+        assert page.figure("speed_mm_s") == speed
+
+        gateway = psutil.Process(own.process.pid)
+        gateway.suspend()
+        try:
+            page.sees(".banner", "connection")
+            page.press("Control+Enter")
+            page.is_toasted("as soon as it is back")
+        finally:
+            gateway.resume()
+        expect(page.find(".trials > li")).to_have_count(2)

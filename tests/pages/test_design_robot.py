@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from chromium import OpenPage
-from contestant import own_page
+from own_page import OwnPage
 from playwright.sync_api import expect
 from show import violations
 from test_design import Designer, write_sample
@@ -27,8 +27,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
     """Give the address and the page key of a `lacoc design` on the folder."""
-    with own_page(folder, "design") as address:
-        yield address
+    with OwnPage(folder, "design") as command:
+        yield command.url, command.key
 
 
 @pytest.mark.long

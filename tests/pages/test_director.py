@@ -8,12 +8,11 @@ from typing import Any
 import pytest
 from chromium import OpenPage
 from contest_tokens import keep_tokens
-from lacoc_process import ALONE
+from lacoc_process import ALONE, Running, environment
 from page_client import PageClient
 from playwright.sync_api import expect
 from ports import free_port
 from show import Show, decide, violations
-from venue import Process
 from waiting import until
 
 from lacoc_shared.seat import Phase
@@ -45,15 +44,15 @@ def write_contest(folder: Path, **settings: str) -> Path:
 @contextmanager
 def running(
     folder: Path, **settings: str
-) -> Iterator[tuple[dict[str, Process], Process, ExitStack]]:
+) -> Iterator[tuple[dict[str, Running], Running, ExitStack]]:
     """Run both courts and a gateway; yield the courts, the gateway, and what closes more."""
     file = write_contest(folder, **settings)
     with ExitStack() as stack:
 
-        def run(*words: str, name: str) -> Process:
-            process = Process(folder, *words, "--json", name=name)
-            stack.callback(process.close)
-            return process
+        def run(*words: str, name: str) -> Running:
+            log = folder / f"{name}.log"
+            running = Running(*words, "--json", log=log, env=environment(), cwd=folder)
+            return stack.enter_context(running)
 
         courts = {one: run(ALONE, str(file), "--court", one, name=one) for one in COURTS}
         yield (

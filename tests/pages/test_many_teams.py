@@ -2,24 +2,18 @@
 
 import itertools
 import json
-import subprocess
-import sys
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
+from chance_event import Event
 from chromium import OpenPage
-from lacoc_process import run_lacoc, started
+from lacoc_process import contest_run, run_lacoc
 from playwright.sync_api import Page, expect
 from ports import free_port
 from show import violations
 from stand import served
-from waiting import LIMIT_S
-
-sys.path.append(str(Path(__file__).parents[1] / "league"))
-
-from chance_event import Event
 
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.league.sheet import encode, sheet
@@ -104,22 +98,16 @@ def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, console:
     file.write_text(text)
     for team in names(MANY):
         organiser.enter(file, team, None, "planner", "")
-    words = ("contest", "run", str(file), "--entries", "--json")
     console.expect("ERR_CONNECTION|WebSocket")  # the office ends before the pages are closed
-    with started(*words, stdout=subprocess.PIPE, text=True) as run:
-        try:
-            assert run.stdout is not None
-            url = json.loads(run.stdout.readline())["office"]
-            phone, laptop = open_page(**PHONE, locale="ja-JP"), open_page(**LAPTOP)
-            for page in (phone, laptop):
-                page.goto(url)
-                expect(page.locator(".entries li")).to_have_count(MANY)
-            laptop.get_by_role("button", name="Close entries and draw").click()
-            laptop.get_by_role("button", name=f"Close and draw with {MANY} teams").click()
-            for page in (laptop, phone):
-                expect(page.locator(".slot").first).to_be_visible()
-                assert is_narrow(page)
-                assert violations(page) == []
-        finally:
-            run.terminate()
-            run.wait(LIMIT_S)
+    with contest_run(file, "--entries") as run:
+        url = run.opened["office"]
+        phone, laptop = open_page(**PHONE, locale="ja-JP"), open_page(**LAPTOP)
+        for page in (phone, laptop):
+            page.goto(url)
+            expect(page.locator(".entries li")).to_have_count(MANY)
+        laptop.get_by_role("button", name="Close entries and draw").click()
+        laptop.get_by_role("button", name=f"Close and draw with {MANY} teams").click()
+        for page in (laptop, phone):
+            expect(page.locator(".slot").first).to_be_visible()
+            assert is_narrow(page)
+            assert violations(page) == []

@@ -2,7 +2,6 @@
 
 import json
 import re
-import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -13,11 +12,10 @@ import pytest
 import trustme
 from chromium import OpenPage
 from contestant import Contestant
-from lacoc_process import run_lacoc, started
+from lacoc_process import contest_run, run_lacoc
 from playwright.sync_api import Page, expect
 from ports import free_port
 from show import Show
-from waiting import LIMIT_S
 
 from lacoc_server.contest.acts.organiser import enter
 from lacoc_shared.seat import Phase
@@ -79,12 +77,7 @@ settings.match.countdown_s = 0.5
     with ExitStack() as stack:
         if how != "own":
             stack.enter_context(PROXIES[how](place, pair, NAME, port, inner))
-        words = ("contest", "run", str(file), "--listen", inner, "--json")
-        run = stack.enter_context(started(*words, stdout=subprocess.PIPE, text=True))
-        stack.callback(run.wait, LIMIT_S)
-        stack.callback(run.terminate)
-        assert run.stdout is not None
-        opened = json.loads(run.stdout.readline())
+        opened = stack.enter_context(contest_run(file, "--listen", inner)).opened
         links = json.loads(run_lacoc("contest", "invite", "--contest", str(file), "--json").stdout)
         assert opened["url"] == pages
         yield Place(pages, opened["office"], links, inner)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from chromium import OpenPage
-from contestant import own_page
+from own_page import OwnPage
 from playwright.sync_api import expect
 from show import violations
 from test_design import Designer, write_sample
@@ -78,7 +78,8 @@ def test_six_phases_are_done_by_keyboard(
 ) -> None:
     """A student completes all phases with the keyboard alone, and types with an input method."""
     write_sample(tmp_path)
-    with own_page(tmp_path, "design") as (url, key):
+    with OwnPage(tmp_path, "design") as command:
+        url, key = command.url, command.key
         page = Student(open_page, url, viewport={"width": 1280, "height": 800})
         page.begin(key)
         page.goes_to(1)

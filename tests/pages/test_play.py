@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from contestant import Contestant, Sit, own_page
+from contestant import Contestant, Sit
 from drop import drag_in, drop
+from own_page import OwnPage
 from page_client import PageClient
 from show import violations
 from venue import TOKENS, Venue
@@ -253,8 +254,8 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
     assert sample is not None
     (tmp_path / "LocoTra-data.txt").write_bytes(sample.data)
     words = ("--connect", court.opened["locators"][0], "--name", "Bees")
-    with own_page(tmp_path, "play", *words, "--token", TOKENS["right"]) as address:
-        yield address
+    with OwnPage(tmp_path, "play", *words, "--token", TOKENS["right"]) as command:
+        yield command.url, command.key
 
 
 @pytest.mark.long

@@ -5,7 +5,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from contestant import Contestant, Sit, own_page
+from contestant import Contestant, Sit
+from own_page import OwnPage
 from show import violations
 
 from lacoc_robots.library import sample_gait_files
@@ -23,8 +24,8 @@ Practise = Callable[..., Contestant]
 @pytest.fixture
 def address(tmp_path: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
     """Give the address and page key of `lacoc practice`, which runs during the test."""
-    with own_page(tmp_path, "practice") as address:
-        yield address
+    with OwnPage(tmp_path, "practice") as command:
+        yield command.url, command.key
 
 
 @pytest.fixture
@@ -46,7 +47,8 @@ def practise_in(tmp_path: Path, built_pages: Path, sit: Sit) -> Iterator[Practis
     with ExitStack() as stack:
 
         def begin(**options: object) -> Contestant:
-            url, key = stack.enter_context(own_page(tmp_path, "practice"))
+            command = stack.enter_context(OwnPage(tmp_path, "practice"))
+            url, key = command.url, command.key
             page = sit(url, **options)
             page.open("/practice", key)
             stack.callback(page.page.context.close)  # before its gateway ends

@@ -1,10 +1,7 @@
 """Tests of /contest?big, the projector's page, while a contest is played at a court."""
 
 import contextlib
-import json
 import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,7 +9,8 @@ from typing import Any
 import msgspec
 import pytest
 from chromium import OpenPage
-from lacoc_process import started
+from contest_sheets import sheets
+from lacoc_process import contest_run
 from playwright.sync_api import Page, ViewportSize, expect
 from ports import free_port
 from stand import served
@@ -22,10 +20,6 @@ from lacoc_server.contest.acts.organiser import enter
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Announced
 from lacoc_server.contest.league.sheet import encode, sheet
-
-sys.path.append(str(Path(__file__).parent / "core"))
-
-from contest_sheets import sheets
 
 pytestmark = [pytest.mark.slow, pytest.mark.long]
 
@@ -58,13 +52,8 @@ settings.match.start = "ready"
 """)
     for team in TEAMS:
         enter(file, team, None, "planner", "")
-    words = ("contest", "run", str(file), "--json", "--listen", f"127.0.0.1:{free_port()}")
-    with started(*words, stdout=subprocess.PIPE, text=True) as run:
-        try:
-            assert run.stdout is not None
-            yield json.loads(run.stdout.readline())["url"]
-        finally:
-            run.kill()
+    with contest_run(file, "--listen", f"127.0.0.1:{free_port()}") as run:
+        yield run.opened["url"]
 
 
 def expected(contest: Contest) -> dict[str, tuple[str, int]]:

@@ -3,7 +3,6 @@
 import contextlib
 import json
 import re
-import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 
 import pytest
 from contestant import Contestant, Sit
-from lacoc_process import run_lacoc, started
+from lacoc_process import contest_run, run_lacoc
 from playwright.sync_api import Error, expect
 from ports import free_port
 from show import violations
@@ -55,18 +54,11 @@ settings.match.start = "ready"
 """)
     for team in TEAMS:
         enter(file, team, None, "" if team == PERSON else "straight", "")
-    words = ("contest", "run", str(file), "--until-over", "--speed", "2", "--json")
-    words += ("--listen", where)
-    with started(*words, stdout=subprocess.PIPE, text=True) as run:
-        try:
-            assert run.stdout is not None
-            opened = json.loads(run.stdout.readline())
-            invite = ("contest", "invite", "--contest", str(file))
-            lines = json.loads(run_lacoc(*invite, "--json").stdout)
-            yield opened | {"link": lines[PERSON]}
-            assert run.wait(LIMIT_S) == 0
-        finally:
-            run.kill()
+    with contest_run(file, "--until-over", "--speed", "2", "--listen", where) as run:
+        invite = ("contest", "invite", "--contest", str(file))
+        lines = json.loads(run_lacoc(*invite, "--json").stdout)
+        yield run.opened | {"link": lines[PERSON]}
+        assert run.process.wait(LIMIT_S) == 0
 
 
 PLAYING = int(Phase.PLAYING)

@@ -5,14 +5,13 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from bot_matches import bot_match
 from chromium import OpenPage
 from msgspec.structs import replace
 from playwright.sync_api import expect
 from show import Show, violations
 from venue import Venue
 
-from lacoc_arenas import arena as arenas
-from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.chances import Odds
 from lacoc_server.simulate.forks.fork import fork
 from lacoc_server.simulate.forks.kept import write_odds
@@ -20,7 +19,6 @@ from lacoc_server.simulate.forks.line import ForkChange
 from lacoc_server.simulate.forks.odds import MomentOdds
 from lacoc_server.simulate.forks.origin import read_source
 from lacoc_shared.record.files import odds_path
-from lacoc_shared.record.schema import Setup
 
 pytestmark = pytest.mark.slow
 
@@ -33,17 +31,8 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
     with ExitStack() as stack:
         venue = Venue(tmp_path_factory.mktemp("library"), stack)
         folder = venue.folder / "recordings"
-        arena = arenas.load("othello", {"match": {"duration_s": 2.0, "countdown_s": 0.2}})
-        setup = Setup(
-            match_id=MATCH,
-            court="hall",
-            match=1,
-            arena="othello",
-            settings=arena.settings,
-            limits={},
-        )
-        players = [player(arena, seat, bot) for seat, bot in enumerate(("planner", "nearest"))]
-        simulate(setup, players, folder)
+        bots, settings = ("planner", "nearest"), {"match": {"duration_s": 2.0, "countdown_s": 0.2}}
+        bot_match(folder, "othello", bots, settings, match_id=MATCH)
         file = folder / f"{MATCH}.mcap"
         fork(read_source(file), 120, ForkChange(restart=("left",)), match_id=FORK, folder=folder)
         moments = tuple(

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from benchmarks.class_kills import OLDEST_S, kill_once
+from tests.campaigns.kill.class_file import OLDEST_S, kill_once
 
 from lacoc_client.workshop.phases.class_file import ClassFile, Document, forget
 from lacoc_client.workshop.phases.evidence import (

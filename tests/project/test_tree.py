@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from benchmarks import measured
 
 import lacoc_shared
 
@@ -107,6 +108,11 @@ def test_no_library_is_copied_in() -> None:
         if folders & set(path.parts) or path.suffix in suffixes or path.name.endswith(".min.js")
     ]
     assert found == []
+
+
+def test_the_page_of_figures_is_made_from_the_data() -> None:
+    """docs/measured.md is what `python -m benchmarks.measured` writes."""
+    assert measured.PAGE.read_text(encoding="utf-8") == measured.page()
 
 
 def test_links_in_the_documents_lead_somewhere() -> None:

@@ -1,17 +1,12 @@
-"""Makes the helper modules of these tests and `benchmarks` importable, and gives fixtures."""
+"""Gives fixtures to the tests of courts."""
 
-import json
 import logging
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import structlog
-
-sys.path.append(str(Path(__file__).parent))
-sys.path.append(str(Path(__file__).parents[2]))
-from benchmarks.played import elsewhere
+from other_arithmetic import elsewhere
+from verdicts import fingerprint
 
 from lacoc_server.world import arithmetic
 
@@ -28,6 +23,6 @@ def loud() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def has_other_arithmetic() -> None:
     """Skip the test if this machine has no second arithmetic (glibc for older processors)."""
-    there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
+    there = elsewhere(fingerprint)
     if arithmetic.same(arithmetic.here(), there):
         pytest.skip("the second arithmetic of this machine is the first")

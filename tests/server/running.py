@@ -1,13 +1,12 @@
 """A court in a process of its own, and clients that wait for what it does."""
 
-import json
 import subprocess
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from lacoc_process import ALONE, started
+from lacoc_process import ALONE, Running
 from ports import free_port
 from waiting import LIMIT_S
 
@@ -51,16 +50,11 @@ def served(
         office: whether the court waits for an office; else it is started alone, with the tokens and
             entries of the contest file.
     """
-    court = ["serve", "--contest", str(contest)] if office else [ALONE, str(contest)]
-    serve = [*court, "--json", "--recordings", str(folder), *words]
-    process = started(*serve, before=before, stdout=subprocess.PIPE, text=True)
-    try:
-        assert process.stdout is not None
-        assert json.loads(process.stdout.readline())["kind"] == "open"
-        yield process
-    finally:
-        process.terminate()
-        process.communicate(timeout=LIMIT_S)
+    how = ["serve", "--contest", str(contest)] if office else [ALONE, str(contest)]
+    serve = [*how, "--json", "--recordings", str(folder), *words]
+    with Running(*serve, before=before) as court:
+        assert court.opened["kind"] == "open"
+        yield court.process
 
 
 def until(clients: Iterable[Controller | Spectator], true: Callable[[], bool]) -> None:

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from benchmarks.trials import entry_of
 from hypothesis import given
 from hypothesis import strategies as st
+from sample_walks import entry_of
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot

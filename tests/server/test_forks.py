@@ -6,19 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from bot_matches import bot_match
 from mcap.reader import make_reader
 from msgspec.structs import replace
-from stage import setup
 from typer.testing import CliRunner
 
-from lacoc_arenas import arena as arenas
 from lacoc_server.commands.replay.fork import app as fork_app
 from lacoc_server.commands.replay.verify import app as verify_app
 from lacoc_server.contest.league.facts import Planned, Played, new
 from lacoc_server.contest.verify.games import GameToCheck, check_game
 from lacoc_server.journal.replay import resume, verify
 from lacoc_server.journal.verdict import Verdict, VerdictKind
-from lacoc_server.simulate import player, simulate
 from lacoc_server.simulate.forks.fork import Forked, fork
 from lacoc_server.simulate.forks.jobs import ForkJob, bots_of, play_fork
 from lacoc_server.simulate.forks.line import ForkChange, of_bot
@@ -48,9 +46,7 @@ MATCH = "20260501-100000-main-001"
 def source(tmp_path_factory: pytest.TempPathFactory) -> ForkSource:
     """Give a whole match's record, to fork from it."""
     folder = tmp_path_factory.mktemp("record")
-    arena = arenas.load("othello", QUICK)
-    players = [player(arena, 0, "planner"), player(arena, 1, "nearest", late_ticks=7)]
-    simulate(replace(setup("othello", QUICK), match_id=MATCH), players, folder)
+    bot_match(folder, "othello", ("planner", "nearest"), QUICK, match_id=MATCH, late_ticks=(0, 7))
     return read_source(folder / f"{MATCH}.mcap")
 
 

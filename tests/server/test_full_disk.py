@@ -269,7 +269,7 @@ def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:
             "sh",
             sys.executable,
             "-m",
-            "benchmarks.alone",
+            "tests.processes.alone",
             *words,
         ],
         capture_output=True,

@@ -6,7 +6,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
-from benchmarks.trials import ROBOTS
+from sample_walks import ROBOTS
 from stage import entry, join
 
 from lacoc_server.court.key_trials import KeyTrials

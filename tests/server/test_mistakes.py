@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.mistakes import GOOD, KEY, KINDS, beginners, mistaken, sequence_of, told
-from benchmarks.trials import entry_of
+from mistaken_tables import GOOD, KEY, KINDS, beginners, mistaken, sequence_of, told
+from sample_walks import entry_of
 
 from lacoc_server.studio.coach.coach import task_of
 from lacoc_server.studio.coach.goal import goal_score

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from _pytest.monkeypatch import MonkeyPatch
+from bot_matches import bot_match
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
@@ -161,9 +162,7 @@ def test_the_odds_of_a_record(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_the_command_lists_highlights(tmp_path: Path) -> None:
     """`highlights` computes the odds in processes, keeps them, and prints moments for a film."""
-    arena = arenas.load("othello", QUICK)
-    players = [player(arena, 0, "planner"), player(arena, 1, "straight")]
-    simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
+    bot_match(tmp_path, "othello", ("planner", "straight"), QUICK, match_id=MATCH)
     file = tmp_path / f"{MATCH}.mcap"
     said = CliRunner().invoke(
         highlights_app,
@@ -190,9 +189,7 @@ def test_the_key_has_what_decides_the_forks(tmp_path: Path, monkeypatch: MonkeyP
 
     This can be a bot's file, a ghost's record, the folder of the game, or the software.
     """
-    arena = arenas.load("othello", QUICK)
-    players = [player(arena, 0, "straight"), player(arena, 1, "straight")]
-    simulate(replace(setup("othello", QUICK), match_id=MATCH), players, tmp_path)
+    bot_match(tmp_path, "othello", ("straight", "straight"), QUICK, match_id=MATCH)
     source = read_source(tmp_path / f"{MATCH}.mcap")
     bot, ghost, folder = (tmp_path / name for name in ("my_bot.py", "ghost.mcap", "game"))
     folder.mkdir()

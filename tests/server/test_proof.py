@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
-from benchmarks.played import elsewhere, play
-from benchmarks.proof import Prover, forge
+from bot_matches import play
 from msgspec import structs
+from other_arithmetic import elsewhere
+from tests.campaigns.forge.proof import Prover, forge, forged
 from typer.testing import CliRunner
-from verdicts import verdict
+from verdicts import told, verdict
 
-from lacoc_server.commands.replay.fork import app as fork_app
 from lacoc_server.commands.replay.verify import app as verify_app
 from lacoc_server.journal.section import Difference, SectionFinding
 from lacoc_server.journal.verdict import Verdict, VerdictKind, conclude, other_arithmetic
@@ -143,12 +143,10 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
     """Verified with another arithmetic, honest records still pass, and no forgery does."""
-    lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
-    found = [json.loads(line) for line in lines]
+    found = [elsewhere(told, str(path)) for path in paths]
     assert [one["kind"] for one in found] == [VerdictKind.OTHER_ARITHMETIC] * len(paths), found
     assert all(0 < one["distance"] < 1e-5 for one in found)
-    words = ["forge", *map(str, paths), "--forgeries", str(FORGERIES), "--seed", "2"]
-    assert json.loads(elsewhere("benchmarks.proof", words))["passed"] == []
+    assert elsewhere(forged, [*map(str, paths)], FORGERIES, 2)["passed"] == []
 
 
 @pytest.mark.slow
@@ -169,13 +167,13 @@ def test_a_pose_is_told_beyond_the_bound_only(
     at = len(record.frames) // 2
     beat, encoded = record.frames[at]
     frame, prover = decode(encoded, Frame), Prover()
-    for change_m, told in ((1e-6, made_by == HERE), (1e-4, True)):
+    for change_m, is_told in ((1e-6, made_by == HERE), (1e-4, True)):
         x_m = struct.unpack_from("<f", frame.poses)[0] + change_m
         poses = struct.pack("<f", x_m) + frame.poses[4:]
         record.frames[at] = beat, encode(structs.replace(frame, poses=poses))
         found = prover.verdict(record)
         assert isinstance(found, Verdict)
-        assert found.differs_at == (beat if told else None)
+        assert found.differs_at == (beat if is_told else None)
 
 
 @pytest.mark.slow
@@ -271,7 +269,8 @@ def test_a_damaged_index_loses_nothing(tmp_path: Path) -> None:
     assert (told["complete"], told["cut"]) == (True, "")
     assert "has a damaged index" in told["flaw"]
     last = str(whole.last_beat)
-    done = CliRunner().invoke(fork_app, [str(path), "--beat", last, "--out", str(tmp_path)])
+    fork = pytest.importorskip("lacoc_server.commands.replay.fork")
+    done = CliRunner().invoke(fork.app, [str(path), "--beat", last, "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
     assert "has a damaged index" in done.stderr
 

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from benchmarks.played import OTHER_ARITHMETIC
+from other_arithmetic import OTHER_ARITHMETIC
 from running import party, served, write_contest
 from verdicts import verdict
 from waiting import LIMIT_S, until

@@ -1,6 +1,5 @@
 """Tests of a studio in a process of its own, over a real network connection."""
 
-import json
 import os
 import signal
 import subprocess
@@ -11,16 +10,16 @@ import msgspec
 import numpy as np
 import psutil
 import pytest
-from benchmarks.trials import entry_of
-from lacoc_process import started
+from lacoc_process import Running
+from sample_walks import entry_of
 from waiting import LIMIT_S, until
 
 from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.answers import answer, read_files, try_gait
 from lacoc_server.studio.coach.coach import coach, reply_of, task_of
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.trials import Trials
-from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.course import LONGEST_TICKS
 from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.support import margins_m
@@ -92,17 +91,15 @@ class Asker:
 def asker() -> Iterator[Asker]:
     """Give an `Asker` that is connected to a studio with two processes for trials."""
     words = ("studio", "--json", "--name", "test", "--jobs", "2", "--listen", "tcp/127.0.0.1:0")
-    process = started(*words, stdout=subprocess.PIPE, text=True)
+    studio = Running(*words)
     try:
-        assert process.stdout is not None
-        opened = json.loads(process.stdout.readline())
-        assert opened["studio"] == "test"
-        with open_client(opened["locators"]) as session:
-            yield Asker(session, process)
+        assert studio.opened["studio"] == "test"
+        with open_client(studio.opened["locators"]) as session:
+            yield Asker(session, studio.process)
     finally:
-        children = psutil.Process(process.pid).children(recursive=True)
-        process.terminate()
-        assert process.wait(LIMIT_S) == 0
+        children = psutil.Process(studio.process.pid).children(recursive=True)
+        studio.close()
+        assert studio.process.returncode == 0
         assert psutil.wait_procs(children, LIMIT_S)[1] == []
 
 
@@ -417,15 +414,9 @@ def test_a_trial_whose_physics_stops_has_a_reply() -> None:
 
 def test_no_process_is_left_when_a_studio_is_killed() -> None:
     """When a studio is killed, its processes for trials end by themselves."""
-    process = started(
-        "studio", "--json", "--jobs", "1", "--listen", "tcp/127.0.0.1:0",
-        stdout=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    assert process.stdout is not None
-    process.stdout.readline()
-    parent = psutil.Process(process.pid)
+    studio = Running("studio", "--json", "--jobs", "1", "--listen", "tcp/127.0.0.1:0")
+    parent = psutil.Process(studio.process.pid)
     until(lambda: bool(parent.children()))
     children = parent.children(recursive=True)
-    process.kill()
-    process.wait()
+    studio.kill()
     assert psutil.wait_procs(children, LIMIT_S)[1] == []

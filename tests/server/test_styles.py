@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.trials import entry_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sample_walks import entry_of
 
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import task_of
 from lacoc_server.studio.coach.trials import Task, Trials, try_table
 from lacoc_server.studio.styles.archive import (
@@ -27,7 +28,6 @@ from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import Mapped, fill
 from lacoc_server.studio.styles.style import WAYS, Styles, Way, far_apart
 from lacoc_server.studio.styles.variants import VARIANTS, vary
-from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.reasons.goal import Goal
 

@@ -1,16 +1,13 @@
 """Tests of which tokens open a seat after a court was killed and started again."""
 
-import json
-import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
-from lacoc_process import Lacoc, run_lacoc
+from lacoc_process import Running, run_lacoc
 from running import frame, phase, until
-from waiting import LIMIT_S
 
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.team_way import where
@@ -34,13 +31,11 @@ def opened(folder: Path, arena: str = "practice") -> Iterator[dict[str, Any]]:
 
     The court is killed at the end.
     """
-    process = Lacoc(*serving(folder, arena), stdout=subprocess.PIPE, text=True)
+    court = Running(*serving(folder, arena))
     try:
-        assert process.stdout is not None
-        yield json.loads(process.stdout.readline())
+        yield court.opened
     finally:
-        process.kill()
-        process.communicate(timeout=LIMIT_S)
+        court.kill()
 
 
 @contextmanager

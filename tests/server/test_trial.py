@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.explained import FAULTS, tell
-from benchmarks.trials import ROBOTS, entry_of, match_digests
+from faulty_tables import FAULTS, tell
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sample_walks import ROBOTS, entry_of, match_digests
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.reading import load_gait

@@ -11,8 +11,8 @@ import pytest
 from waiting import until
 
 from lacoc_arenas import brains, time_limit
-from lacoc_server.studio import workers as workers_module
-from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
+from lacoc_server.simulate import workers as workers_module
+from lacoc_server.simulate.workers import WorkerDied, WorkerFailed, Workers
 
 pytestmark = pytest.mark.slow
 

@@ -24,6 +24,7 @@ from lacoc_server.commands.coach_others import (
     written,
 )
 from lacoc_server.commands.trial import GaitFile, RobotName
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import Tell, cell_place, coach, coached_key, reply_of, task_of
 from lacoc_server.studio.coach.goal import goal_value
 from lacoc_server.studio.coach.harm import worse
@@ -36,7 +37,6 @@ from lacoc_server.studio.coach.trials import Task, Trials
 from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import VARIANTS, vary
-from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.reasons.form import cell_name
 from lacoc_server.trial.reasons.goal import Goal

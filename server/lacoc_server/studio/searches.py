@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.answers import Answer, Busy, refusal
 from lacoc_server.studio.wishes import SearchRequest, fulfil
-from lacoc_server.studio.workers import Workers
 from lacoc_shared.codec import encode
 from lacoc_shared.keyspace import check_name
 from lacoc_shared.messages import Refusal

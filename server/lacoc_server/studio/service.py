@@ -5,11 +5,11 @@ from concurrent.futures import CancelledError, Future
 from functools import partial
 from typing import Self
 
+from lacoc_server.simulate.workers import WorkerDied, Workers
 from lacoc_server.studio.answers import Answer, Busy, read, refusal
 from lacoc_server.studio.floors import answered
 from lacoc_server.studio.searches import Searches
 from lacoc_server.studio.wishes import REQUESTS
-from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.command import log
 from lacoc_shared.messages import PROTOCOL, Done, Refusal

@@ -4,10 +4,7 @@ import itertools
 import json
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from random import Random
-
-sys.path.append(str(Path(__file__).parents[2] / "league"))
 
 from chance_event import Event
 

@@ -2,13 +2,13 @@
 
 import asyncio
 import hmac
+from typing import TYPE_CHECKING
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.audience import Audience
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.home import ACTING_MOST, CLAIMING_MOST, Home
 from lacoc_client.web.gateway.notice import Notice
-from lacoc_client.web.gateway.programme import Programme
 from lacoc_client.web.gateway.referees import Referees
 from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Viewer
@@ -16,6 +16,9 @@ from lacoc_shared.contest.tokens import digest
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
+
+if TYPE_CHECKING:
+    from lacoc_client.web.director.programme import Programme
 
 _THREADS = 16
 _FILES_S = 0.5
@@ -37,8 +40,7 @@ class Courts:
         self.strangers = Threads(_STRANGERS)
         """Threads that try tokens that no court has accepted yet."""
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
-        self.programme = Programme(self._all)
-        """What the director puts on air."""
+        self._programme: Programme | None = None
         self.claiming: set[Viewer] = set()
         """Pages that were let in only because they have a token, which no court has accepted yet.
         """
@@ -67,6 +69,15 @@ class Courts:
             feed.start()
         return self._feeds[name]
 
+    @property
+    def programme(self) -> "Programme":
+        """What the director puts on air; it begins with the first page that follows it."""
+        if self._programme is None:
+            from lacoc_client.web.director.programme import Programme  # no court needs it
+
+            self._programme = Programme(self._all)
+        return self._programme
+
     def _all(self) -> list[CourtFeed]:
         """Return the started feeds of all courts of this gateway."""
         return [self.find(name)[0] for name in list(self.home.courts)]
@@ -78,7 +89,7 @@ class Courts:
 
     def audiences(self, feed: CourtFeed) -> list[Audience]:
         """Return all pages to which a court is shown; any thread may call it."""
-        followers = self.programme.audience(feed.court)
+        followers = None if self._programme is None else self._programme.audience(feed.court)
         return [feed.audience] if followers is None else [feed.audience, followers]
 
     def over(self) -> list[str]:
@@ -126,7 +137,9 @@ class Courts:
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
         others = sum(feed.audience.others(viewer) for feed in self.feeds)
-        if others + self.programme.others(viewer) < most:
+        if self._programme is not None:
+            others += self._programme.others(viewer)
+        if others < most:
             return None
         if acts:
             return say("gateway.full-acting", most=most)
@@ -152,7 +165,8 @@ class Courts:
 
     async def close(self) -> None:
         """Close all connections."""
-        self.programme.stop()
+        if self._programme is not None:
+            self._programme.stop()
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
         self.threads.close()
         self.strangers.close()

@@ -3,7 +3,7 @@
 import asyncio
 import time
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from starlette.websockets import WebSocket
 
@@ -16,7 +16,6 @@ from lacoc_client.web.gateway.courts import Courts
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.page_requests import serve_requests
 from lacoc_client.web.gateway.page_seat import PageSeat
-from lacoc_client.web.gateway.programme import Programme
 from lacoc_client.web.gateway.referees import Referees
 from lacoc_client.web.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.web.gateway.wire import MessageKind
@@ -27,6 +26,9 @@ from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
+
+if TYPE_CHECKING:
+    from lacoc_client.web.director.programme import Programme
 
 TRY_LATER = 1013
 """WebSocket close code: try again later."""

@@ -10,7 +10,7 @@ from lacoc_server.simulate.forks.chances import Odds, Wish, compute_odds
 from lacoc_server.simulate.forks.jobs import opened_record
 from lacoc_server.simulate.forks.kept import read_odds, write_odds
 from lacoc_server.simulate.forks.origin import ForkSource
-from lacoc_server.studio.workers import WorkerDied, Workers
+from lacoc_server.simulate.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import odds_path, record_paths

@@ -19,7 +19,7 @@ from lacoc_server.simulate.forks.jobs import (
 )
 from lacoc_server.simulate.forks.origin import ForkSource
 from lacoc_server.simulate.forks.script import Script
-from lacoc_server.studio.workers import WorkerDied, Workers
+from lacoc_server.simulate.workers import WorkerDied, Workers
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path, record_paths

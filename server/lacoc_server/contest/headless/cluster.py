@@ -7,7 +7,7 @@ from threading import Event, Thread
 from typing import Any, Self
 
 from lacoc_server.contest.headless.pool import EngineLost, Job, PlayedAlone, attempt_match
-from lacoc_server.studio.workers import WorkerDied
+from lacoc_server.simulate.workers import WorkerDied
 from lacoc_shared.command import installing
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say

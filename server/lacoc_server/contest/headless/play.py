@@ -28,7 +28,7 @@ from lacoc_server.contest.league.timetable.schedule import due, playable
 from lacoc_server.simulate import Seated
 from lacoc_server.simulate.inputs import BotFailed
 from lacoc_server.simulate.software import software
-from lacoc_server.studio.workers import WorkerDied
+from lacoc_server.simulate.workers import WorkerDied
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.record.summary import Summary, summary

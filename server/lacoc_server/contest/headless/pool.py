@@ -16,7 +16,7 @@ from lacoc_arenas.bot import BotFactory
 from lacoc_server.simulate import Player, Seated, simulate
 from lacoc_server.simulate.inputs import BotFailed, failed
 from lacoc_server.simulate.refused import RefusedKeys
-from lacoc_server.studio.workers import WorkerDied, Workers
+from lacoc_server.simulate.workers import WorkerDied, Workers
 from lacoc_shared.command import screen
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.messages import Frame

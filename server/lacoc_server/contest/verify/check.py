@@ -10,7 +10,7 @@ from lacoc_server.contest.verify.games import GameCheck, GameToCheck, check_game
 from lacoc_server.contest.verify.history import check_earlier, decisions
 from lacoc_server.contest.verify.published import check_published, other_sheet, read
 from lacoc_server.contest.verify.sampling import least_forged, sample
-from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
+from lacoc_server.simulate.workers import WorkerDied, WorkerFailed, Workers
 from lacoc_shared.words import Phrase, say
 
 _LONGEST_S = 3600.0

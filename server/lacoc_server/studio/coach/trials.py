@@ -7,11 +7,11 @@ from concurrent.futures import TimeoutError as NotDone
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
+from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.harm import harm
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.floors import course_of
-from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.reasons.goal import Goal

@@ -128,6 +128,7 @@ export class Studio {
     if (this.opening.isOpen) {
       if (student !== null && draft) this.opening.again(draft);
       this.learning.greet();
+      this.trials.goOn();
     } else void this.openFirst();
   }
 
@@ -145,6 +146,7 @@ export class Studio {
       this.handed.newest.value = body;
     } else if (kind === "elsewhere") {
       this.gateway.end();
+      if (body.forgotten) this.trials.forget();
       this.membership.elsewhere.value = body;
     } else if (kind === "folder") {
       const { folder, files, changed } = body;
@@ -158,7 +160,11 @@ export class Studio {
   private async openFirst(): Promise<void> {
     if (!this.greeting || !this.present.peek() || this.opening.isOpen) return;
     await this.opening.first(this.greeting);
-    if (this.opening.isOpen) this.learning.greet();
+    if (this.opening.isOpen) {
+      this.learning.greet();
+      const { student } = this.greeting;
+      void this.trials.comeBack(student ?? `folder ${this.files.folder.peek().folder}`);
+    }
     clearTimeout(this.asksAgain);
     if (this.opening.waitsFor.peek()) {
       this.asksAgain = window.setTimeout(() => void this.openFirst(), ASK_AGAIN_MS);

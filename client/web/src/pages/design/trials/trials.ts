@@ -13,6 +13,7 @@ import type { Learning } from "../learning/learning";
 import type { RobotInUse } from "../robot/robot";
 import type { Sheet } from "../table/sheet";
 import type { Showing } from "../walk/showing";
+import { KeptTrials } from "./kept";
 import type { Tried } from "./tried";
 
 /** What can be tried of level A: a posture, or one posture after another. */
@@ -40,6 +41,9 @@ export class Trials {
   readonly target = computed(() => this.targetRow());
   /** Whether a trial was asked for while another one ran. */
   private again = false;
+  /** Whether a trial was asked for while there was no connection. */
+  private isDue = false;
+  private readonly kept = new KeptTrials(MOST_TRIALS);
 
   constructor(
     private readonly gateway: Gateway,
@@ -98,7 +102,10 @@ export class Trials {
       const verdicts = this.judge(key, reply.figures);
       this.add({ number, name: "", version, table, key, rows, robot, trial, verdicts });
     } catch (error) {
-      gateway.refuse(error);
+      // What was asked for in an outage is done when the connection is back.
+      this.isDue = !gateway.state.peek().open;
+      if (this.isDue) toast(t("design.tryLater"));
+      else gateway.refuse(error);
     } finally {
       this.trying.value = false;
       if (this.again) {
@@ -106,6 +113,13 @@ export class Trials {
         void this.tryIt();
       }
     }
+  }
+
+  /** Make the trial that was asked for while there was no connection. */
+  goOn(): void {
+    if (!this.isDue) return;
+    this.isDue = false;
+    void this.tryIt();
   }
 
   /** Show how a table of the coach walks, beside the last trial of the key; it is no trial. */
@@ -152,10 +166,24 @@ export class Trials {
     this.sheet.put(name, tried.table, null);
   }
 
-  /** Forget all trials: they are of another robot. */
+  /**
+   * Bring the trials back that were made before the page was loaded, unless there are newer ones.
+   *
+   * @param whose Whose trials they are: a student's, or those of a folder.
+   */
+  async comeBack(whose: string): Promise<void> {
+    const before = await this.kept.open(whose);
+    const legs = this.robot.robot.peek()?.legs.length;
+    if (this.all.peek().length || !before.length) return;
+    if (before.some((tried) => tried.trial.legs !== legs)) await this.kept.clear();
+    else this.all.value = before.map((tried) => ({ ...tried, version: NO_VERSION }));
+  }
+
+  /** Forget all trials: they are of another robot, or of a student who was forgotten. */
   forget(): void {
     this.all.value = [];
     this.showing.forget();
+    void this.kept.clear();
   }
 
   private add(tried: Tried): void {
@@ -166,6 +194,7 @@ export class Trials {
       this.all.value = [...this.all.peek(), tried].slice(-MOST_TRIALS);
       this.showing.look(tried);
     });
+    void this.kept.add(tried);
   }
 
   private targetRow(): number {

@@ -1,6 +1,0 @@
-"""Makes `design_client` importable."""
-
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).parent))
