@@ -33,13 +33,13 @@ from benchmarks.figures import finish
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import CoachFound, coach, task_of
-from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.trials import Task, Trials, try_table
 from lacoc_server.studio.styles.archive import arousal_mm_s, is_sound
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import VARIANTS, vary
+from lacoc_server.trial.reasons.goal import Goal
 from lacoc_shared.gait.tables import Gait, LocomotionTable, Posture
 
 _ROBOT, _KEY = "hexapod", 2

@@ -47,7 +47,7 @@ from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.formats import format as formats
 from lacoc_server.doors.inbox import NAME_MAX
 from lacoc_server.match.referee import MAX_CLOCK_S, MAX_FREEZE_S, MAX_POINTS
-from lacoc_server.trial import explain
+from lacoc_server.trial.reasons import legs
 from lacoc_shared import decisions, messages, mistakes, studio
 from lacoc_shared.codec import message_hash
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
@@ -116,6 +116,7 @@ STRUCTS = (
     studio.Progress,
     studio.Weight,
     studio.CellChange,
+    studio.RepairTold,
     studio.CoachReply,
     studio.GaitDifference,
     studio.OtherGait,
@@ -217,8 +218,8 @@ CONSTANTS: dict[str, float | str] = {
     "SAME_MM_S": facts.SAME_MM_S,
     "SAME_SHARE": facts.SAME_SHARE,
     "STRAIGHT_DEG_S": facts.STRAIGHT_DEG_S,
-    "SEAM_DEG": explain.SEAM_DEG,
-    "SEAM_RATIO": explain.SEAM_RATIO,
+    "SEAM_DEG": legs.SEAM_DEG,
+    "SEAM_RATIO": legs.SEAM_RATIO,
 }
 LIMITS: dict[str, float] = {
     "DEEPEST": DEEPEST,

@@ -238,7 +238,7 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
     """The progress of a search; a studio sends it several times a second."""
 
     stage: str
-    """waiting (until earlier searches end), matters, search, undo, map or variants."""
+    """waiting (until earlier searches end), repair, matters, search, undo, map or variants."""
     done: float
     """Share of the stage, from 0 to 1."""
     trials: int
@@ -266,6 +266,18 @@ class CellChange(msgspec.Struct, frozen=True, kw_only=True):
     to_deg: float
 
 
+class RepairTold(msgspec.Struct, frozen=True, kw_only=True):
+    """A mistake that the coach repaired before it searched."""
+
+    said: Phrase
+    """What was wrong; its code is `explain.*`."""
+    cell: CellPlace
+    """A cell that was wrong."""
+    before: float
+    after: float
+    """The figure of the goal: forward speed [mm/s], or turning to the goal's side [deg/s]."""
+
+
 class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
     """The result of a search."""
 
@@ -278,6 +290,10 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
     """Figures of the student's own gait, by the names in docs/studio.md 2."""
     after: dict[str, Any]
     """Figures of the best gait that was found."""
+    repairs: tuple[RepairTold, ...] = ()
+    """Mistakes that were repaired, in this order. Their changes are among `changes`."""
+    worse: tuple[str, ...] = ()
+    """Names of the shown figures that became worse (docs/studio.md 4)."""
     score_before: float
     score_after: float
     trials: int

@@ -245,6 +245,24 @@ def test_the_coach_works_and_can_be_stopped(
     page.sees(".coach >> text=Which numbers matter?")
 
 
+def test_the_coach_repairs_a_wrong_sign(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """A wrong sign is named by the trial, then repaired by the coach with the same sentence."""
+    page = designer(open_page, address)
+    page.go(1, 14)
+    page.type("-40")
+    page.tries()
+    page.sees(".sentences li:first-child", "has the other sign than its partner")
+    page.page.click("#tab-coach")
+    page.page.click(".coach .sizes >> text=one number")
+    page.page.click(".coach .guess >> text=twice or more", timeout=BRED_MS)
+    page.sees(".coach .repairs", "has the other sign than its partner")
+    page.sees(".coach .better", "Your prediction is right")
+    page.page.click("text=Change these and try")
+    page.cell_is(1, 14, "40")
+
+
 @pytest.mark.long
 def test_other_gaits_are_watched_and_taken(
     open_page: OpenPage, address: tuple[str, str], sample: Path

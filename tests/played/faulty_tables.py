@@ -9,8 +9,8 @@ from sample_walks import course_of, entry_of
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.course import SETTLE_TICKS
-from lacoc_server.trial.explain import explain
 from lacoc_server.trial.figures import measure
+from lacoc_server.trial.reasons.explain import explain
 from lacoc_server.trial.walk import Press
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 from lacoc_shared.words import Phrase, render
@@ -139,10 +139,13 @@ FAULTS: dict[
 ] = {
     "dragged": (("explain.dragged",), _dragged),
     "swapped": (("explain.backward",), _swapped),
-    "late": (("explain.out-of-step",), _late),
+    "late": (
+        ("explain.out-of-step", "explain.too-late", "explain.odd-leg", "explain.odd-joint"),
+        _late,
+    ),
     "seam": (("explain.seam",), _seam),
     "limit": (("explain.limit",), _limit),
-    "belly": (("explain.belly",), _belly),
+    "belly": (("explain.belly", "explain.odd-row"), _belly),
     "none": (("explain.slides", "explain.turns", "explain.unstable", "explain.walks"), _none),
 }
 """For each fault: the codes of the sentences that name it, and the function that puts it in."""

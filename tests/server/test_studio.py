@@ -18,10 +18,10 @@ from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.answers import answer, read_files, try_gait
 from lacoc_server.studio.coach.coach import coach, reply_of, task_of
-from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.trials import Trials
 from lacoc_server.trial.course import LONGEST_TICKS
+from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.support import margins_m
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.codec import decode, encode

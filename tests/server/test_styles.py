@@ -15,7 +15,6 @@ from sample_walks import entry_of
 
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import task_of
-from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.trials import Task, Trials, try_table
 from lacoc_server.studio.styles.archive import (
     Archive,
@@ -30,6 +29,7 @@ from lacoc_server.studio.styles.gait_map import Mapped, fill
 from lacoc_server.studio.styles.style import WAYS, Styles, Way, far_apart
 from lacoc_server.studio.styles.variants import VARIANTS, vary
 from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.goal import Goal
 
 GRID = MapGrid(20.0, 6.0)
 

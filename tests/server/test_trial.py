@@ -17,10 +17,10 @@ from lacoc_robots.reading import load_gait
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import CYCLES, NO_CYCLE_S, SETTLE_TICKS, Course
-from lacoc_server.trial.explain import explain
 from lacoc_server.trial.feet import feet_down, phases
 from lacoc_server.trial.figures import measure
 from lacoc_server.trial.keys import forward_key, parse_keys
+from lacoc_server.trial.reasons.explain import explain
 from lacoc_server.trial.support import hull, margin_m
 from lacoc_server.trial.walk import Press, Span, Walk
 from lacoc_server.world.sensed import make_course
@@ -185,6 +185,15 @@ def test_margin_of_few_feet() -> None:
     assert margin_m([(3, 4)], (0, 0)) == -5
     assert margin_m([(-1, 2), (1, 2)], (0, 0)) == -2
     assert margin_m([(1, 0), (1, 0), (2, 0)], (0, 0)) == -1
+
+
+def test_the_key_for_forward_is_tried_also_if_it_does_nothing() -> None:
+    """Without a key that a person named, key 2 is tried, or else key 0, even with zeros only."""
+    start = entry_of("hexapod").robot.start_posture
+    zeros, turns = ((0.0,) * 18,) * 4, (start, (0.1,) * 18)
+    nothing = Gait(None, LocomotionTable(((start,), turns, zeros)))
+    assert forward_key(nothing) == (Level.LOCOMOTION, 2)
+    assert forward_key(Gait(None, LocomotionTable(((start,), turns)))) == (Level.LOCOMOTION, 0)
 
 
 def test_keys_as_people_type_them() -> None:

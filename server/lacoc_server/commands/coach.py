@@ -26,9 +26,11 @@ from lacoc_server.commands.coach_others import (
 from lacoc_server.commands.trial import GaitFile, RobotName
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import Tell, cell_place, coach, coached_key, reply_of, task_of
-from lacoc_server.studio.coach.goal import Goal
+from lacoc_server.studio.coach.goal import goal_value
+from lacoc_server.studio.coach.harm import worse
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import STEP_DEG, Matter
+from lacoc_server.studio.coach.repair import Repaired
 from lacoc_server.studio.coach.search import Improved
 from lacoc_server.studio.coach.table import differing
 from lacoc_server.studio.coach.trials import Task, Trials
@@ -36,9 +38,12 @@ from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import VARIANTS, vary
 from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.form import cell_name
+from lacoc_server.trial.reasons.goal import Goal
+from lacoc_server.trial.told import SHOWN_NAMES, told
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
-from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait
+from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import CoachReply, MapReply, Progress, VariantsReply
 from lacoc_shared.words import Phrase, render, say
@@ -48,6 +53,7 @@ app = typer.Typer()
 _SHOWN = 10
 """How many of the numbers that matter are printed."""
 _STAGES = {
+    "repair": say("coach.repairs"),
     "matters": say("coach.matters"),
     "search": say("coach.searches"),
     "undo": say("coach.undoes"),
@@ -125,9 +131,10 @@ def coach_command(
     """Say which numbers of a gait matter, and search for a better gait with few changes.
 
     The coach makes each number 10 degrees larger and smaller, and lets the robot walk as in a
-    contest. With --size the coach then searches for a better gait. A change that hardly helps is
-    undone, so that you can understand the changes that are left. With --map or --variants it looks
-    for gaits that are different instead. Ctrl-C ends the search and keeps what it has found.
+    contest. With --size the coach first repairs a mistake, with its reason; if there is none, it
+    searches for a better gait (the whole table in any case). A change that hardly helps is undone,
+    so that you can understand the changes that are left. With --map or --variants it looks for
+    gaits that are different instead. Ctrl-C ends the search and keeps what it has found.
     """
     if sum((size is not None, map_, variants)) > 1:
         raise UserError(say("coach.one-wish"))
@@ -155,7 +162,7 @@ def coach_command(
     with _trials(task) as (trials, tell):
         found = coach(trials, size, seconds, seed, tell)
     if found.stopped:
-        if not found.matters:
+        if not (found.matters or found.repairs):
             raise KeyboardInterrupt
         screen.warn(say("coach.stopped"))
     best = found.best
@@ -164,9 +171,17 @@ def coach_command(
     if json:
         screen.print_json(_as_json(reply_of(task, digit, found)))
         return
-    screen.show(_matters_table(task, digit, found.matters))
-    if best is not None:
+    if found.matters and not found.repairs:
+        screen.show(_matters_table(task, digit, found.matters))
+    for one in found.repairs:
+        screen.show(_repaired(one, goal))
+    if best is not None and best.angles_deg == task.table.angles_deg:
+        screen.show(say("coach.nothing"))
+    elif best is not None:
         screen.show(_improved_table(task, digit, best, found.before, found.after))
+        harmed = [SHOWN_NAMES[name] for name in worse(found.before, found.after, goal)]
+        if harmed:
+            screen.show(say("coach.worse", figures=harmed))
         if out is not None:
             screen.note(say("coach.written", file=str(out)))
 
@@ -224,16 +239,8 @@ def _stop_on_interrupt() -> Iterator[threading.Event]:
 
 def _place(task: Task, digit: int, index: int) -> Phrase:
     """Say where a number of the table stands: its key, posture, leg and joint."""
-    cell = cell_place(task.table, index)
-    legs = len(task.robot.legs)
-    return say(
-        "explain.cell",
-        key=digit,
-        posture=cell.posture + 1,
-        postures=len(task.table.order),
-        leg=task.robot.labels[cell.joint % legs],
-        level=LEVEL_NAMES[cell.joint // legs],
-    )
+    place = cell_place(task.table, index)
+    return cell_name(task.robot, digit, len(task.table.order), place)
 
 
 def _matters_table(task: Task, digit: int, matters: Sequence[Matter]) -> Table:
@@ -264,19 +271,30 @@ def _improved_table(
         place = Text(render(_place(task, digit, index)))
         table.add_row(place, f"{own[index]}", f"{best.angles_deg[index]}")
     table.add_section()
-    for what, then, now in (
-        (say("trial.figure-speed"), before.speed_mm_s, after.speed_mm_s),
-        (say("trial.figure-drift"), before.drift_deg_s, after.drift_deg_s),
-        (say("trial.figure-slip"), before.slip_mm_s, after.slip_mm_s),
-    ):
-        table.add_row(Text(render(what)), f"{then:.1f}", f"{now:.1f}")
+    shown = {render(name) for name in SHOWN_NAMES.values()}
+    for (what, then), (_, now) in zip(told(before), told(after), strict=True):
+        if render(what) in shown:
+            table.add_row(Text(render(what)), then, now)
     return table
+
+
+def _repaired(one: Repaired, goal: Goal) -> Phrase:
+    """Say which mistake was repaired, and what came of it."""
+    before, after = goal_value(one.before, goal), goal_value(one.after, goal)
+    if goal is Goal.FORWARD:
+        return say("coach.repaired", why=one.said, before_mm_s=before, after_mm_s=after)
+    return say("coach.repaired-turn", why=one.said, before_deg_s=before, after_deg_s=after)
 
 
 def _as_json(reply: CoachReply) -> dict[str, Any]:
     return {
         "key": reply.key,
         "matters": [{**asdict(one.cell), "up": one.up, "down": one.down} for one in reply.matters],
+        "repairs": [
+            {**asdict(one.cell), "said": render(one.said), "before": one.before, "after": one.after}
+            for one in reply.repairs
+        ],
+        "worse": list(reply.worse),
         "changes": [
             {**asdict(one.cell), "from_deg": one.from_deg, "to_deg": one.to_deg}
             for one in reply.changes

@@ -16,9 +16,9 @@ from lacoc_robots.robot_file import read_robot
 from lacoc_server.doors.inbox import FILE_NAME_MAX
 from lacoc_server.studio.facts import bounds, facts
 from lacoc_server.trial.course import LONGEST_TICKS, SETTLE_TICKS, Course
-from lacoc_server.trial.explain import explain
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.keys import forward_key, parse_keys
+from lacoc_server.trial.reasons.explain import explain
 from lacoc_server.trial.support import margins_m
 from lacoc_server.trial.told import told
 from lacoc_server.trial.walk import Floats, Press, Walk

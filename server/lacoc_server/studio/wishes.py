@@ -8,13 +8,13 @@ from typing import TypeVar
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.answers import read_files
 from lacoc_server.studio.coach.coach import Tell, coach, coached_key, reply_of, task_of
-from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.studio.coach.trials import Task, Trials
 from lacoc_server.studio.styles.found import map_reply, variants_reply
 from lacoc_server.studio.styles.gait_map import map_gaits
 from lacoc_server.studio.styles.variants import vary
+from lacoc_server.trial.reasons.goal import Goal
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import (
     CoachReply,

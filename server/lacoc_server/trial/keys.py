@@ -21,16 +21,13 @@ def forward_key(gait: Gait) -> tuple[Level, int]:
     """Return the level and the digit of the key to try if the person names none.
 
     A gait without level B is tried with the last key of level A. A gait with level B is tried with
-    `FORWARD` if the postures of this key differ; else with the first key of level B whose postures
-    differ; else with the last key of level B.
+    `FORWARD`, or with its first key if it has no such key. Both also if the key does nothing yet:
+    that is what its author wants to know.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]
-    sequences = gait.locomotion.sequences
-    moving = [digit for digit, postures in enumerate(sequences) if len(set(postures)) > 1]
-    if FORWARD in moving:
-        return Level.LOCOMOTION, FORWARD
-    return Level.LOCOMOTION, moving[0] if moving else len(sequences) - 1
+    has_forward = len(gait.locomotion.sequences) > FORWARD
+    return Level.LOCOMOTION, FORWARD if has_forward else 0
 
 
 def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:

@@ -12,7 +12,7 @@ _SECONDS = 5.0
 _LEAST_MM_S, _LEAST_DEG_S = 2.0, 1.5
 """A robot that is slower in both stands."""
 _TIPPED = 0.8
-"""As in `trial.explain`: it leans by more than 37 degrees."""
+"""As in `trial.reasons.explain`: it leans by more than 37 degrees."""
 _REACH_MM = 120.0
 """Feet about this far from the middle tell whether a robot rather turns or rather walks."""
 

@@ -3,6 +3,16 @@
 from lacoc_server.trial.figures import Figures
 from lacoc_shared.words import Phrase, say
 
+SHOWN_NAMES = {
+    "speed_mm_s": say("trial.figure-speed"),
+    "drift_deg_s": say("trial.figure-drift"),
+    "stable_share": say("trial.figure-stable"),
+    "margin_mm": say("trial.figure-margin"),
+    "slip_ratio": say("trial.figure-slip-ratio"),
+    "belly_share": say("trial.figure-belly"),
+}
+"""What people call the figures that a search may make worse, by their names in `Figures`."""
+
 
 def told(figures: Figures) -> tuple[tuple[Phrase, str], ...]:
     """Return the name and the value with its unit of each figure."""

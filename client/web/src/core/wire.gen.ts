@@ -454,12 +454,21 @@ export interface CellChange {
   to_deg: number;
 }
 
+export interface RepairTold {
+  said: Phrase;
+  cell: CellPlace;
+  before: number;
+  after: number;
+}
+
 export interface CoachReply {
   key: number;
   matters: Weight[];
   changes: CellChange[];
   before: Record<string, unknown>;
   after: Record<string, unknown>;
+  repairs: RepairTold[];
+  worse: string[];
   score_before: number;
   score_after: number;
   trials: number;

@@ -5,18 +5,21 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, goal_score
+from lacoc_server.studio.coach.goal import goal_score, goal_value
+from lacoc_server.studio.coach.harm import worse
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import Matter, what_matters
+from lacoc_server.studio.coach.repair import REPAIR_TRIALS, Repaired, repair
 from lacoc_server.studio.coach.search import Improved, Search
 from lacoc_server.studio.coach.table import Angles, KeyTable, differing
 from lacoc_server.studio.coach.trials import Stopped, Task, Trials
 from lacoc_server.studio.coach.undo import undo
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.keys import forward_key
+from lacoc_server.trial.reasons.goal import Goal
 from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.studio import CellChange, CellPlace, CoachReply, Progress, Weight
+from lacoc_shared.studio import CellChange, CellPlace, CoachReply, Progress, RepairTold, Weight
 from lacoc_shared.words import say
 
 _UNDO_TRIALS = 50
@@ -31,12 +34,12 @@ Tell = Callable[[Progress], None]
 class CoachFound(NamedTuple):
     """What the coach found."""
 
+    repairs: list[Repaired]
+    """Mistakes that were repaired before the search, in this order."""
     matters: list[Matter]
-    """All numbers of the key, those that matter most first; empty if they were not ranked before
-    the search was stopped."""
+    """All numbers of the key, those that matter most first; empty if they were not ranked."""
     best: Improved | None
-    """The best table; None: the numbers were only ranked, or a stop came before the search began.
-    """
+    """The best table; None: nothing was repaired or searched."""
     before: Figures
     """Figures of the student's own gait."""
     after: Figures
@@ -82,16 +85,20 @@ def task_of(
     stand = gait.sequence(Level.LOCOMOTION, 0) or (robot.start_posture,)
     digits = None if sequences is None else sequences[key]
     table = KeyTable.of(gait.sequence(Level.LOCOMOTION, key) or (), digits)
-    return Task(robot, stand, table, goal)
+    return Task(robot, stand, table, goal, key)
 
 
 def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> CoachFound:
-    """Find which numbers of a table matter, and search for a better table.
+    """Repair a table; else find which numbers matter, and search for a better table.
+
+    A repaired table is searched further only if all numbers may change: a person asks again then,
+    and understands one change after the other.
 
     Args:
         trials: tries tables for the task.
-        size: how many numbers may change; None: only rank the numbers, without a search.
-        seconds: how long to search [s]. The ranking before and the undoing after do not count.
+        size: how many numbers may change; None: only rank the numbers, without repairs and search.
+        seconds: how long to repair and to search [s]. The ranking before the search and the undoing
+            after it do not count.
         seed: seed of all random numbers.
         tell: called with the progress of the search.
 
@@ -101,21 +108,34 @@ def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Te
     task = trials.task
     own = task.table.angles_deg
     ranges_deg = task.robot.ranges_deg * len(task.table.rows)
+    repairs: list[Repaired] = []
     matters: list[Matter] = []
     best: Improved | None = None
     stopped = False
+    begin_s = time.monotonic()
     try:
-        _follow(trials, tell, "matters", 1 + 2 * len(own))
-        matters = what_matters(own, ranges_deg, trials.quick)
         if size is not None:
-            for better in _better(trials, ranges_deg, matters, size, seconds, seed, tell):
-                best = better
+            _follow(trials, tell, "repair", 2 * REPAIR_TRIALS)
+            for one in repair(trials):
+                repairs.append(one)
+                best = Improved(one.angles_deg, goal_score(one.after, task.goal))
+        seconds -= time.monotonic() - begin_s
+        if best is None or size is Size.TABLE:
+            start = own if best is None else best.angles_deg
+            _follow(trials, tell, "matters", 1 + 2 * len(own))
+            matters = what_matters(start, ranges_deg, trials.quick)
+            if size is not None:
+                trials.spare(start, everything=size is not Size.TABLE)
+                for better in _better(
+                    trials, start, ranges_deg, matters, size, seconds, seed, tell
+                ):
+                    best = better
     except Stopped:
         stopped = True
     trials.on_done = lambda: None
     tables = [own] if best is None else [own, best.angles_deg]
     figures = trials.figures(tables)
-    return CoachFound(matters, best, figures[0], figures[-1], trials.count, stopped)
+    return CoachFound(repairs, matters, best, figures[0], figures[-1], trials.count, stopped)
 
 
 def reply_of(task: Task, key: int, found: CoachFound) -> CoachReply:
@@ -131,6 +151,16 @@ def reply_of(task: Task, key: int, found: CoachFound) -> CoachReply:
         changes=cell_changes(task.table, own, best),
         before=vars(found.before),
         after=vars(found.after),
+        repairs=tuple(
+            RepairTold(
+                said=one.said,
+                cell=one.cell,
+                before=goal_value(one.before, task.goal),
+                after=goal_value(one.after, task.goal),
+            )
+            for one in found.repairs
+        ),
+        worse=worse(found.before, found.after, task.goal),
         score_before=goal_score(found.before, task.goal),
         score_after=goal_score(found.after, task.goal),
         trials=found.trials,
@@ -154,6 +184,7 @@ def cell_place(table: KeyTable, index: int) -> CellPlace:
 
 def _better(
     trials: Trials,
+    start: Angles,
     ranges_deg: tuple[tuple[float, float], ...],
     matters: list[Matter],
     size: Size,
@@ -167,7 +198,7 @@ def _better(
     def passed_s() -> float:
         return time.monotonic() - begin_s
 
-    search = Search(trials.task.table.angles_deg, ranges_deg, trials.exact)
+    search = Search(start, ranges_deg, trials.exact)
     trials.on_done = lambda: tell(
         Progress(
             stage="search",

@@ -1,8 +1,7 @@
-"""The goals that the coach can work for, and the score of a walk for a goal."""
-
-from enum import StrEnum
+"""Scores a walk for a goal."""
 
 from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.goal import Goal
 
 _BELLY, _UPRIGHT = 0.02, 0.9
 """A robot counts as fallen if parts other than feet are on the floor for more than `_BELLY` of the
@@ -12,17 +11,15 @@ _TURN_MM_S_PER_DEG_S = 3.0
 _DRIFT_FREE_DEG_S = 3.0
 
 
-class Goal(StrEnum):
-    """What the robot should do while the key is pressed."""
-
-    FORWARD = "forward"
-    RIGHT = "right"
-    """Turn to the right on the spot."""
-    LEFT = "left"
+def goal_value(figures: Figures, goal: Goal) -> float:
+    """Return the figure that a goal is about: forward speed [mm/s], or turning [deg/s]."""
+    if goal is Goal.FORWARD:
+        return figures.speed_mm_s
+    return figures.drift_deg_s if goal is Goal.LEFT else -figures.drift_deg_s
 
 
 def goal_score(figures: Figures, goal: Goal) -> float:
-    """Return the score of a walk [mm/s].
+    """Return the score of a walk, in points: one for each mm/s.
 
     The score is negative if the robot rests on its body or tips over. It is also negative if no
     cycle was completed, because physics stopped or the key's sequence never begins again.

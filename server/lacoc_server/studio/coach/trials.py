@@ -8,11 +8,13 @@ from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.simulate.workers import Workers
-from lacoc_server.studio.coach.goal import Goal, goal_score
+from lacoc_server.studio.coach.goal import goal_score
+from lacoc_server.studio.coach.harm import harm
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.floors import course_of
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures, measure
+from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.walk import Press
 from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
@@ -24,6 +26,19 @@ _ROUGH_STEPS, _ROUGH_CYCLES = 4, 1
 _MOST_AT_ONCE = 4
 """Most trials in one job of a process; fewer would cost time, more would delay a stop."""
 _LOOK_S = 0.05
+
+
+class _Exactness(NamedTuple):
+    """How exactly a table is tried."""
+
+    steps: int
+    """Physics steps of a tick."""
+    cycles: int
+
+
+_EXACT_WAY = _Exactness(SUBSTEPS, _CYCLES)
+_QUICK_WAY = _Exactness(SUBSTEPS, _QUICK_CYCLES)
+_ROUGH_WAY = _Exactness(_ROUGH_STEPS, _ROUGH_CYCLES)
 
 
 class Stopped(Exception):
@@ -39,6 +54,8 @@ class Task(NamedTuple):
     table: KeyTable
     """Table of the key that the search changes."""
     goal: Goal
+    key: int
+    """Digit of this key, to name its cells."""
 
 
 class Trials:
@@ -56,6 +73,8 @@ class Trials:
         """Called many times a second while tables are tried."""
         self.count = 0
         """Number of trials so far."""
+        self._spared: dict[_Exactness, Figures] = {}
+        self._everything = False
         self._workers = workers
         self._stop = stop
 
@@ -66,7 +85,7 @@ class Trials:
             Stopped: if the search was stopped.
             WorkerDied: if a process for trials ended.
         """
-        return self._scores(self.walks(tables))
+        return self._scores(tables, _EXACT_WAY)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
         """Score tables with the contest's physics over fewer cycles; this is enough for a ranking.
@@ -75,7 +94,7 @@ class Trials:
             Stopped: if the search was stopped.
             WorkerDied: if a process for trials ended.
         """
-        return self._scores(self._walks(tables, SUBSTEPS, _QUICK_CYCLES))
+        return self._scores(tables, _QUICK_WAY)
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
         """Score tables with larger physics steps; this is enough to find which may be better.
@@ -84,7 +103,7 @@ class Trials:
             Stopped: if the search was stopped.
             WorkerDied: if a process for trials ended.
         """
-        return self._scores(self.walks(tables, rough=True))
+        return self._scores(tables, _ROUGH_WAY)
 
     def walks(self, tables: Sequence[Angles], *, rough: bool = False) -> list[Figures]:
         """Return the figures of walks in trials as in `exact`; with `rough` true, as in `rough`.
@@ -93,9 +112,22 @@ class Trials:
             Stopped: if the search was stopped.
             WorkerDied: if a process for trials ended.
         """
-        if rough:
-            return self._walks(tables, _ROUGH_STEPS, _ROUGH_CYCLES)
-        return self._walks(tables, SUBSTEPS, _CYCLES)
+        return self._walks(tables, _ROUGH_WAY if rough else _EXACT_WAY)
+
+    def spare(self, table: Angles, *, everything: bool) -> None:
+        """Let no figure of a table become worse: what harms one has a lower score from now on.
+
+        Args:
+            table: the table.
+            everything: as in `harm`.
+
+        Raises:
+            Stopped: if the search was stopped.
+            WorkerDied: if a process for trials ended.
+        """
+        for way in (_EXACT_WAY, _ROUGH_WAY):
+            (self._spared[way],) = self._walks([table], way)
+        self._everything = everything
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
         """Return the figures of walks with the contest's physics, also after a stop.
@@ -105,19 +137,27 @@ class Trials:
         Raises:
             WorkerDied: if a process for trials ended.
         """
-        jobs = [
-            self._workers.submit(_figures, self.task, [table], SUBSTEPS, _CYCLES)
-            for table in tables
-        ]
+        jobs = [self._workers.submit(_figures, self.task, [table], *_EXACT_WAY) for table in tables]
         return [found for job in jobs for found in job.result()]
 
-    def _scores(self, walks: Sequence[Figures]) -> list[float]:
-        return [goal_score(figures, self.task.goal) for figures in walks]
+    def _scores(self, tables: Sequence[Angles], way: _Exactness) -> list[float]:
+        goal = self.task.goal
+        walks = self._walks(tables, way)
+        scores = [goal_score(figures, goal) for figures in walks]
+        spared = self._spared.get(way)
+        if spared is None:
+            return scores
+        most = goal_score(spared, goal)
+        harms = [harm(spared, figures, goal, everything=self._everything) for figures in walks]
+        return [
+            min(score, most) - cost if cost else score
+            for score, cost in zip(scores, harms, strict=True)
+        ]
 
-    def _walks(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[Figures]:
+    def _walks(self, tables: Sequence[Angles], way: _Exactness) -> list[Figures]:
         size = min(_MOST_AT_ONCE, max(1, len(tables) // (4 * self._workers.count)))
         parts = [tables[first : first + size] for first in range(0, len(tables), size)]
-        jobs = [self._workers.submit(_figures, self.task, part, steps, cycles) for part in parts]
+        jobs = [self._workers.submit(_figures, self.task, part, *way) for part in parts]
         try:
             return [found for job in jobs for found in self._result(job)]
         finally:

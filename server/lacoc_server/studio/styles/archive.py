@@ -7,9 +7,10 @@ import math
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.studio.coach.goal import Goal, goal_score
+from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.goal import Goal
 
 _SPEEDS, _AROUSALS = 6, 5
 """Cells along each axis."""

@@ -35,10 +35,11 @@ export interface Found {
   rows: readonly number[];
   /** How much the coach was allowed to change; null: it was asked which numbers matter. */
   size: Size | null;
+  goal: Goal;
 }
 
 const SECONDS = 30;
-/** A smaller change of the score [mm/s] is none. */
+/** A smaller change of the score is none. */
 const SMALL = 2.5;
 const KEY_OF: Record<Goal, number> = { forward: 2, left: 1, right: 3 };
 
@@ -77,15 +78,16 @@ export class Coach {
     this.others.looks.value = null;
     this.found.value = null;
     this.revealed.value = false;
+    const goal = this.goal.peek();
     const fields = {
       key: sheet.key.peek(),
-      goal: this.goal.peek(),
+      goal,
       size,
       seconds: SECONDS,
       seed: 0,
     };
     const reply = await this.search.ask<CoachReply>("coach", { ...gait, ...fields });
-    if (reply) this.found.value = { reply, version, rows, size };
+    if (reply) this.found.value = { reply, version, rows, size, goal };
   }
 
   /** Put the better gait into the table, in one step, and let it walk. */
@@ -115,7 +117,9 @@ export class Coach {
       marks.set(row, ofRow);
       const text = t("design.coach.mark", { up: signed(up), down: signed(down) });
       const share = Number((strength(one) / most).toFixed(3));
-      ofRow.set(cell.joint, { share, up: effectOf(up), down: effectOf(down), text });
+      const before = now.reply.score_before;
+      const effects = { up: effectOf(up, before), down: effectOf(down, before) };
+      ofRow.set(cell.joint, { share, ...effects, text });
     }
     return marks;
   }
@@ -132,8 +136,9 @@ function strength({ up, down }: Turned): number {
   return Math.max(Math.abs(up), Math.abs(down));
 }
 
-export function effectOf(by: number): Effect {
-  if (Math.abs(by) < SMALL) return "none";
+/** Whether a change of the score is good; not if the robot does not walk with it either. */
+export function effectOf(by: number, before: number): Effect {
+  if (Math.abs(by) < SMALL || (by > 0 && before + by <= 0)) return "none";
   return by > 0 ? "good" : "bad";
 }
 

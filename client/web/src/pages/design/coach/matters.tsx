@@ -73,8 +73,8 @@ export function Matters({ coach, sheet, table, found: { reply, rows } }: FoundPr
                 onPointerLeave={() => sheet.point([])}
               >
                 <span>{nameOf(place, cell.joint)}</span>
-                <small data-effect={effectOf(up)}>+10° {signed(up)}</small>
-                <small data-effect={effectOf(down)}>−10° {signed(down)}</small>
+                <small data-effect={effectOf(up, reply.score_before)}>+10° {signed(up)}</small>
+                <small data-effect={effectOf(down, reply.score_before)}>−10° {signed(down)}</small>
               </button>
             </li>
           );

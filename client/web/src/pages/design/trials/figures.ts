@@ -60,6 +60,11 @@ export const FIGURES: readonly Figure[] = [
   made("upright", 2, "", 1),
 ];
 
+/** The title of a figure by its name in a trial. */
+export function shownTitle(name: string): MessageName {
+  return TITLES[name as Figure["name"]] ?? "design.figure";
+}
+
 export function titleOf({ name }: Figure): MessageName {
   return TITLES[name];
 }

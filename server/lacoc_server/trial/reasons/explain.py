@@ -1,0 +1,140 @@
+"""Explains in at most three sentences why a robot walks as it does, the most useful first.
+
+Each rule looks for situations of docs/studio.md 3. Its sentence names the leg, the table's cell or
+the figure that shows the situation. A cause in the table usually comes before an effect.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.form import KeyForm
+from lacoc_server.trial.reasons.goal import goal_of
+from lacoc_server.trial.reasons.legs import at_limits, odd_legs, seam
+from lacoc_server.trial.reasons.likely import likely_mistake
+from lacoc_server.trial.reasons.seen import SeenTrial, TrialFinding
+from lacoc_server.trial.walk import Press, Walk
+from lacoc_shared.gait.tables import Posture
+from lacoc_shared.studio import Sentence
+from lacoc_shared.words import say
+
+MOST_SENTENCES = 3
+
+_TIPPED = 0.8
+"""A robot has tipped over if its `upright` is below this: it leans by more than 37 degrees."""
+_BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.9, 3.0, 20.0, 15.0
+_STILL_MM_S, _BACK_MM_S = 5.0, 5.0
+_SLIDES_MOST = 1.25
+"""Sliding is what a walk is about if the feet slide this many times as fast as the robot goes."""
+_WHOLE, _LEG = 95.0, 69.0
+"""Rank of the mistake in the table. What a leg does otherwise is told by its effect, if there is
+one (`legs`)."""
+_OF_LEGS = ("odd-joint", "odd-joint-sign", "odd-leg", "too-late", "too-early")
+
+
+def explain(
+    robot: RobotSpec, walk: Walk, figures: Figures, press: Press, sequence: Sequence[Posture]
+) -> list[Sentence]:
+    """Explain a walk.
+
+    Args:
+        robot: the robot.
+        walk: the trial of the robot.
+        figures: figures of the trial.
+        press: the key that was measured.
+        sequence: postures of the key [rad].
+
+    Returns:
+        At most `MOST_SENTENCES` sentences, the most useful first.
+    """
+    form = KeyForm.of(robot, sequence, goal_of(press, figures), press.digit)
+    seen = SeenTrial(robot, walk, figures, form)
+    found = [finding for rule in _RULES for finding in rule(seen)]
+    found.sort(key=lambda finding: -finding.rank)
+    told: list[TrialFinding] = []
+    for finding in found:
+        # What a leg does is told once: by its mistake, or by what came of it.
+        if finding.leg < 0 or all(finding.leg != one.leg for one in told):
+            told.append(finding)
+    return [
+        Sentence(
+            said=one.said, cell=None if one.cell is None else form.place(one.cell), leg=one.leg
+        )
+        for one in told[:MOST_SENTENCES]
+    ]
+
+
+def _mistake(seen: SeenTrial) -> Iterator[TrialFinding]:
+    """Name the mistake that the table most probably has."""
+    found = likely_mistake(seen.form)
+    if found is not None:
+        is_leg = found.said.code.removeprefix("explain.") in _OF_LEGS
+        rank = _LEG if is_leg else _WHOLE
+        yield TrialFinding(rank, found.said, found.leg, found.cell)
+
+
+def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
+    """Say that physics stopped, or that the robot tipped over."""
+    if seen.walk.fault is not None:
+        yield TrialFinding(100, say("explain.fault", why=seen.walk.fault))
+    elif seen.figures.upright < _TIPPED:
+        lean_deg = math.degrees(math.acos(max(-1.0, seen.figures.upright)))
+        yield TrialFinding(55, say("explain.tipped", lean_deg=lean_deg))
+
+
+def _balance(seen: SeenTrial) -> Iterator[TrialFinding]:
+    """Say how often parts other than feet rest on the floor, and how often balance is lost."""
+    figures = seen.figures
+    if figures.belly_share > _BELLY:
+        yield TrialFinding(58, say("explain.belly", percent=100 * figures.belly_share))
+    if figures.stable_share < _FALLS:
+        percent = 100 * (1 - figures.stable_share)
+        margin_mm = figures.margin_low_mm if figures.margin_low_mm is not None else 0.0
+        yield TrialFinding(35, say("explain.unstable", percent=percent, margin_mm=margin_mm))
+
+
+def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
+    """Say which of these are true: the robot turns, its feet slide, it goes forward."""
+    figures = seen.figures
+    if not figures.cycles:
+        return
+    speed_mm_s = abs(figures.speed_mm_s)
+    goes_mm_s = math.hypot(figures.speed_mm_s, figures.lateral_mm_s)
+    turns = abs(figures.drift_deg_s) > _TURNS_DEG_S
+    if goes_mm_s < _STILL_MM_S and not turns and seen.form.postures > 1:
+        yield TrialFinding(50, say("explain.still", speed_mm_s=goes_mm_s))
+    elif figures.speed_mm_s < -max(_BACK_MM_S, abs(figures.lateral_mm_s)):
+        yield TrialFinding(50, say("explain.goes-back", speed_mm_s=speed_mm_s))
+    if turns:
+        side = "left" if figures.drift_deg_s > 0 else "right"
+        drift_deg_s = abs(figures.drift_deg_s)
+        yield TrialFinding(40, say("explain.turns", side=side, drift_deg_s=drift_deg_s))
+    if figures.slip_mm_s > _SLIDES_MM_S:
+        legs = figures.slip_legs_mm_s
+        leg = max(range(len(legs)), key=legs.__getitem__)
+        is_story = figures.slip_mm_s > _SLIDES_MOST * speed_mm_s
+        yield TrialFinding(
+            30 if is_story else 10,
+            say(
+                "explain.slides",
+                slip_mm_s=figures.slip_mm_s,
+                speed_mm_s=speed_mm_s,
+                leg=seen.walk.legs[leg],
+                leg_mm_s=legs[leg],
+            ),
+            leg,
+        )
+    if figures.speed_mm_s > _SLOW_MM_S:
+        yield TrialFinding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))
+
+
+_RULES: tuple[Callable[[SeenTrial], Iterator[TrialFinding]], ...] = (
+    _ended,
+    _mistake,
+    at_limits,
+    seam,
+    odd_legs,
+    _balance,
+    _way,
+)

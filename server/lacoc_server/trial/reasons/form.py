@@ -1,0 +1,204 @@
+"""A key's table, and what the partners of each number do.
+
+In a gait of two halves each leg does half a cycle later what the leg opposite to it does now: that
+is its **partner**. Its **mates** are the legs that do the same at the same time: every second leg,
+such as R,F, R,B and L,C.
+"""
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.trial.reasons.goal import Goal
+from lacoc_server.trial.steps import steps_of
+from lacoc_server.trial.walk import Floats
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, LEVEL_NAMES, Posture
+from lacoc_shared.studio import CellPlace
+from lacoc_shared.words import Phrase, say
+
+SAME_DEG = 6.0
+"""Two angles that differ by at most this much are taken for the same."""
+_MATES = 0.25
+"""How much mates count that differ, if partners that differ count 1: mates often swing less."""
+_OFFSET = np.array([1.0, 0.8, 0.8])
+"""How much of a constant difference between mates is usual: legs stand at different roots."""
+_OPPOSITE_M = 0.005
+
+
+class TableCell(NamedTuple):
+    """A number of a key's table."""
+
+    posture: int
+    level: int
+    """Root 0, 1st 1, 2nd 2."""
+    leg: int
+
+
+class KeyForm:
+    """The table of a key.
+
+    Args:
+        robot: the robot.
+        angles_deg: (postures, 3, legs) the angles.
+        goal: what the key is for.
+        digit: digit of the key, to name its cells.
+    """
+
+    def __init__(self, robot: RobotSpec, angles_deg: Floats, goal: Goal, digit: int) -> None:
+        self.robot = robot
+        self.angles_deg = angles_deg
+        self.goal = goal
+        self.digit = digit
+
+    @classmethod
+    def of(cls, robot: RobotSpec, sequence: Sequence[Posture], goal: Goal, digit: int) -> "KeyForm":
+        """Make the table of a sequence of postures [rad]."""
+        angles = np.degrees(np.array(sequence, float))
+        shape = (len(sequence), JOINTS_PER_LEG, len(robot.legs))
+        return cls(robot, angles.reshape(shape), goal, digit)
+
+    def changed(self, angles_deg: Floats) -> "KeyForm":
+        """Return the table with other angles, kept in the ranges of their joints."""
+        low, high = np.array(self.robot.ranges_deg).T.reshape(2, *self.angles_deg.shape[1:])
+        return KeyForm(self.robot, np.clip(angles_deg, low, high), self.goal, self.digit)
+
+    @property
+    def postures(self) -> int:
+        """Number of postures."""
+        return len(self.angles_deg)
+
+    @property
+    def legs(self) -> int:
+        """Number of legs."""
+        return len(self.robot.legs)
+
+    @property
+    def half(self) -> int:
+        """Postures of half a cycle; 0: the table has no halves, or the robot no opposite legs."""
+        return self.postures // 2 if self.postures % 2 == 0 and is_mirrored(self.robot) else 0
+
+    @property
+    def paired(self) -> tuple[int, ...]:
+        """The levels in which partners and mates do the same: in a turn the roots do not."""
+        return (0, 1, 2) if self.goal is Goal.FORWARD else (1, 2)
+
+    @cached_property
+    def partners_deg(self) -> Floats:
+        """(postures, 3, legs) the partner of each number: opposite leg, half a cycle later."""
+        return np.roll(self.angles_deg, -self.half, axis=0)[:, :, ::-1]
+
+    @cached_property
+    def odd_deg(self) -> Floats:
+        """(postures, 3, legs) by how much each number differs from its partner, and its mates.
+
+        Differences of at most `SAME_DEG` count 0.
+        """
+        odd = np.zeros_like(self.angles_deg)
+        levels = list(self.paired)
+        if self.half:
+            apart = self.angles_deg - self.partners_deg
+            odd[:, levels] += _beyond(apart[:, levels]) / 2
+        for first in (0, 1):
+            mates = list(range(first, self.legs, 2))
+            for leg in mates:
+                others = [mate for mate in mates if mate != leg]
+                apart = self.angles_deg[:, :, others] - self.angles_deg[:, :, [leg]]
+                apart = apart - _OFFSET[:, None] * np.median(apart, axis=0)
+                apart = _MATES * _beyond(apart).sum(axis=2) / max(1, len(others))
+                odd[:, levels, leg] += apart[:, levels]
+        return odd
+
+    @property
+    def oddness_deg(self) -> float:
+        """By how much partners and mates differ, summed over the table."""
+        return float(self.odd_deg.sum())
+
+    def odd_cell(self, leg: int, level: int | None = None) -> TableCell:
+        """Return the number of a leg that differs most from what its partners do."""
+        odd = self.odd_deg[:, :, leg]
+        if level is not None:
+            odd = np.where(np.arange(JOINTS_PER_LEG) == level, odd, -1.0)
+        posture, at = np.unravel_index(int(odd.argmax()), odd.shape)
+        return TableCell(int(posture), int(at), leg)
+
+    @cached_property
+    def thrust_m2(self) -> list[float]:
+        """For each leg the area that its foot goes around; positive: it pushes towards the goal."""
+        return [
+            area * push
+            for area, push in zip(
+                steps_of(self.robot, self.sequence).swing_m2,
+                pushes(self.robot, self.goal),
+                strict=True,
+            )
+        ]
+
+    @property
+    def sequence(self) -> tuple[Posture, ...]:
+        """The postures [rad]."""
+        rows = np.radians(self.angles_deg).reshape(self.postures, -1)
+        return tuple(tuple(map(float, row)) for row in rows)
+
+    def partner(self, cell: TableCell) -> TableCell:
+        """Return the partner of a number; without halves, the first mate of its leg."""
+        if self.half:
+            posture = (cell.posture + self.half) % self.postures
+            return TableCell(posture, cell.level, self.legs - 1 - cell.leg)
+        return TableCell(cell.posture, cell.level, (cell.leg + 2) % self.legs)
+
+    def degrees(self, cell: TableCell) -> float:
+        """Return the angle in a cell."""
+        return float(self.angles_deg[cell])
+
+    def name(self, cell: TableCell) -> Phrase:
+        """Make the phrase that names a cell."""
+        return cell_name(self.robot, self.digit, self.postures, self.place(cell))
+
+    def place(self, cell: TableCell) -> CellPlace:
+        """Return the place of a cell in the key's sequence."""
+        return CellPlace(posture=cell.posture, joint=cell.leg + self.legs * cell.level)
+
+
+def cell_name(robot: RobotSpec, digit: int, postures: int, place: CellPlace) -> Phrase:
+    """Make the phrase that names a cell of a key's sequence.
+
+    Args:
+        robot: the robot.
+        digit: digit of the key.
+        postures: number of postures of the sequence.
+        place: the cell.
+    """
+    legs = len(robot.legs)
+    return say(
+        "explain.cell",
+        key=digit,
+        posture=place.posture + 1,
+        postures=postures,
+        leg=robot.labels[place.joint % legs],
+        level=LEVEL_NAMES[place.joint // legs],
+    )
+
+
+def is_mirrored(robot: RobotSpec) -> bool:
+    """Return whether each leg has an opposite one: the legs counted from the end."""
+    return len(robot.legs) % 2 == 0 and all(
+        math.dist((one.position_m.x, one.position_m.y), (-other.position_m.x, other.position_m.y))
+        < _OPPOSITE_M
+        for one, other in zip(robot.legs, reversed(robot.legs), strict=True)
+    )
+
+
+def pushes(robot: RobotSpec, goal: Goal) -> list[int]:
+    """Return for each leg whether it should push the body forward (1) or backward (-1)."""
+    if goal is Goal.FORWARD:
+        return [1] * len(robot.legs)
+    outer = 1 if goal is Goal.LEFT else -1
+    return [leg.side * outer for leg in robot.legs]
+
+
+def _beyond(apart_deg: Floats) -> Floats:
+    return np.maximum(0.0, np.abs(apart_deg) - SAME_DEG)

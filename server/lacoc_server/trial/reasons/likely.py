@@ -1,0 +1,65 @@
+"""Finds the mistake that a table probably has, from the table alone."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lacoc_server.trial.reasons.form import KeyForm
+from lacoc_server.trial.reasons.repairs import Repair, partner_repairs
+from lacoc_server.trial.reasons.shared import shared_repairs
+
+_THRUST_DEG = 60.0
+"""What the largest thrust of all repaired tables is worth, on the scale of oddness."""
+_WAY = 0.03
+"""What a degree that a joint turns costs: of two rows that differ, the wilder one is wrong."""
+_CLOSE = 24
+"""For so many repairs the thrust is computed: those whose tables are the least odd."""
+_SURE_DEG = 12.0
+"""A repair that is worth less is not sure."""
+_LEFT = 0.5
+"""A sure repair of a part leaves at most this share of what can be repaired."""
+
+
+class Weighed(NamedTuple):
+    """A repair, and how probable it is."""
+
+    worth: float
+    """What is repaired and gained, minus how rare the mistake is; on the scale of
+    `KeyForm.oddness_deg`."""
+    repair: Repair
+    is_sure: bool
+
+
+def weigh_repairs(form: KeyForm) -> list[Weighed]:
+    """Return the repairs of a table that are worth trying, the most probable first."""
+    now = _strange_deg(form)
+    parts = [(_strange_deg(one.form), one) for one in partner_repairs(form)]
+    parts.sort(key=lambda found: found[0] + found[1].rare)
+    # Mates often swing less than each other. What no repair takes away is no mistake.
+    usual = min([now, *(odd for odd, _ in parts)])
+    parts = parts[:_CLOSE]
+    # A fault of all legs need not be in a difference between them.
+    shared = [(min(now, _strange_deg(one.form)), one) for one in shared_repairs(form)]
+    repairs = [*parts, *shared]
+    thrusts = [sum(one.form.thrust_m2) for _, one in repairs]
+    own_m2 = sum(form.thrust_m2)
+    most_m2 = max([abs(own_m2), *map(abs, thrusts), 1e-9])
+    found = []
+    for index, ((odd, one), thrust) in enumerate(zip(repairs, thrusts, strict=True)):
+        worth = now - odd - one.rare + _THRUST_DEG * (thrust - own_m2) / most_m2
+        is_whole = index >= len(parts) or odd - usual <= min(_LEFT * (now - usual), now - usual - 1)
+        if worth > 0:
+            found.append(Weighed(worth, one, is_whole and worth > _SURE_DEG))
+    return sorted(found, key=lambda one: -one.worth)
+
+
+def likely_mistake(form: KeyForm) -> Repair | None:
+    """Return the repair of the mistake that a table most probably has; None: none is sure."""
+    return next((one.repair for one in weigh_repairs(form) if one.is_sure), None)
+
+
+def _strange_deg(form: KeyForm) -> float:
+    """Return how odd a table is, with a little for how far its joints turn."""
+    angles = form.angles_deg
+    way_deg = float(np.abs(angles - np.roll(angles, 1, axis=0)).sum())
+    return form.oddness_deg + _WAY * way_deg

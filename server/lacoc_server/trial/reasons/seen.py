@@ -1,0 +1,32 @@
+"""What the rules look at, and what they find."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.reasons.form import KeyForm, TableCell
+from lacoc_server.trial.walk import Walk
+from lacoc_shared.words import Phrase
+
+
+class TrialFinding(NamedTuple):
+    """A situation that a rule found."""
+
+    rank: float
+    """The finding with the highest rank is told first."""
+    said: Phrase
+    leg: int = -1
+    """Index of the leg that the finding is about; -1: the whole robot."""
+    cell: TableCell | None = None
+
+
+@dataclass(frozen=True)
+class SeenTrial:
+    """The trial that the rules look at."""
+
+    robot: RobotSpec
+    walk: Walk
+    figures: Figures
+    form: KeyForm
+    """The table of the measured key."""

@@ -1,0 +1,121 @@
+"""Finds the faults that all legs share, where no partner does it right, and their repairs."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lacoc_server.trial.reasons.form import KeyForm, TableCell
+from lacoc_server.trial.reasons.repairs import Repair
+from lacoc_server.trial.steps import steps_of
+from lacoc_server.trial.walk import Floats
+from lacoc_shared.words import Phrase, say
+
+_SAME_DEG = 2.0
+_RADIANS = 2.0
+"""Angles that are all smaller than this are probably in radians, which no table has."""
+_LIFT_M, _SWING_M = 0.004, 0.006
+"""A foot that is lifted less, or swings less, does not at all."""
+_STEP_DEG = 20.0
+"""Root of a first step, forward and back."""
+_LIFTS_DEG = ((2, 40.0), (1, 25.0), (1, 40.0))
+"""Ways to lift a foot: the joint's level, and by how much."""
+_AREA_M2 = 1e-4
+
+
+def shared_repairs(form: KeyForm) -> Iterator[Repair]:
+    """List the repairs of a fault of all legs; only of the first fault that the table has.
+
+    A table without such a fault has none.
+    """
+    angles = form.angles_deg
+    if form.postures < 2:
+        return
+    largest = TableCell(*map(int, np.unravel_index(int(np.abs(angles).argmax()), angles.shape)))
+    origin = TableCell(0, 0, 0)
+    if not np.any(angles):
+        yield from _steps(form, say("explain.zeros", cell=form.name(origin)), origin)
+        return
+    if np.abs(angles).max() < _RADIANS:
+        said = say("explain.radians", cell=form.name(largest), angle_deg=form.degrees(largest))
+        yield Repair(said, largest, form.changed(np.degrees(angles)), 5)
+        return
+    if np.ptp(angles, axis=0).max() < _SAME_DEG:
+        cell = TableCell(1, 0, 0)
+        yield from _steps(form, say("explain.equal-rows", cell=form.name(cell)), cell)
+        return
+    steps = steps_of(form.robot, form.sequence)
+    lift = np.array(steps.lift_m).T  # (postures, legs)
+    ahead = np.array(steps.ahead_m).T
+    swings = int(np.ptp(ahead, axis=0).argmax())
+    at = steps.swings_to(swings)
+    if np.ptp(ahead, axis=0).max() < _SWING_M:
+        cell = TableCell(int(lift.max(axis=1).argmax()), 0, int(lift.max(axis=0).argmax()))
+        yield from _swung(form, say("explain.no-swing", cell=form.name(cell)), cell)
+        return
+    thrust = np.array(form.thrust_m2)
+    if lift.max() < _LIFT_M:
+        folds = np.ptp(angles[:, 1:], axis=0).max() > _SAME_DEG * 3
+        row, level, leg = np.unravel_index(
+            int(np.abs(angles[:, 1:] - angles[:, 1:].min(axis=0)).argmax()), angles[:, 1:].shape
+        )
+        cell = TableCell(int(row), int(level) + 1, int(leg)) if folds else TableCell(at, 1, swings)
+        name = form.name(cell)
+        said = say("explain.all-lifted", cell=name) if folds else say("explain.no-lift", cell=name)
+        yield from _lifted(form, said, cell, 5)
+    elif np.abs(thrust).max() < _AREA_M2:
+        cell = TableCell(at, 2, swings)
+        said = say("explain.same-height", cell=form.name(cell), leg=form.robot.labels[swings])
+        yield from _lifted(form, said, cell, 45)
+    elif thrust.sum() < 0:
+        yield from _backward(form, thrust)
+
+
+def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
+    """Turn the order of the rows around, or the signs of all roots."""
+    leg = int(thrust.argmin())
+    cell = TableCell(steps_of(form.robot, form.sequence).swings_to(leg), 0, leg)
+    angles = form.angles_deg
+    flipped = angles.copy()
+    flipped[:, 0] *= -1
+    start = np.degrees(np.array(form.robot.start_posture)).reshape(angles.shape[1:])[0]
+    mean = angles[:, 0].mean(axis=0)
+    is_sign = np.abs(mean + start).sum() + 1 < np.abs(mean - start).sum()
+    order = say("explain.backward-order", cell=form.name(cell))
+    signs = say("explain.backward-signs", cell=form.name(cell))
+    yield Repair(signs, cell, form.changed(flipped), 20 if is_sign else 26)
+    yield Repair(order, cell, form.changed(angles[::-1]), 23)
+
+
+def _lifted(form: KeyForm, said: Phrase, cell: TableCell, rare: float) -> Iterator[Repair]:
+    """Lift half of the feet in half of the rows, the other feet in the others."""
+    angles = form.angles_deg
+    half = form.postures // 2
+    base = angles[:, 1:].min(axis=0)
+    for level, by_deg in _LIFTS_DEG:
+        for begin in range(form.postures):
+            lifted = angles.copy()
+            lifted[:, 1:] = base
+            for row in range(form.postures):
+                first = 0 if (row - begin) % form.postures < half else 1
+                lifted[row, level, first::2] += by_deg
+            yield Repair(said, cell, form.changed(lifted), rare)
+
+
+def _swung(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
+    """Let the roots of each half of the feet swing back and forth, half a cycle apart."""
+    half = form.postures // 2
+    for begin in range(form.postures):
+        swung = form.angles_deg.copy()
+        for row in range(form.postures):
+            ahead = 1 if (row - begin) % form.postures < half else -1
+            swung[row, 0, 0::2] += ahead * _STEP_DEG
+            swung[row, 0, 1::2] -= ahead * _STEP_DEG
+        yield Repair(said, cell, form.changed(swung), 20)
+
+
+def _steps(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
+    """Make a first walk: from the robot's own stand, swing and lift half of the feet at a time."""
+    stand = np.degrees(np.array(form.robot.start_posture)).reshape(form.angles_deg.shape[1:])
+    flat = KeyForm(form.robot, np.repeat(stand[None], form.postures, axis=0), form.goal, form.digit)
+    for one in _swung(flat, said, cell):
+        yield from _lifted(one.form, said, cell, 5)
