@@ -82,7 +82,8 @@ export function bent(leg: Leg, spot: Spot): Postures<readonly [number, number]> 
   const straight = Math.max(0, (l1 + l2) ** 2 - away ** 2);
   const folded = Math.max(0, away ** 2 - nearest ** 2);
   const turn = 2 * Math.atan2(Math.sqrt(straight), Math.sqrt(folded)) * DEGREES;
-  const turns = turn < TINY ? [0] : turn > 180 - TINY ? [180] : [turn, -turn];
+  // The knee up comes first.
+  const turns = turn < TINY ? [0] : turn > 180 - TINY ? [180] : [-turn, turn];
   // On the 1st hinge the foot may be reached in every direction: 1st may stay at 0.
   const toSpot = away < TINY ? null : Math.atan2(spot.z, out) * DEGREES;
   const found = turns.map((one): readonly [number, number] => {

@@ -6,15 +6,7 @@ import { bent, bodyWay, cos, points, type Spot, sin, spots, type Three } from ".
 import type { SampleRobot } from "./samples.gen";
 import { type Flat, margin } from "./stance";
 
-export type StepName =
-  | "joints"
-  | "knee"
-  | "foot"
-  | "swing"
-  | "back"
-  | "reach"
-  | "stand"
-  | "table";
+export type StepName = "joints" | "knee" | "foot" | "swing" | "back" | "reach" | "stand" | "table";
 
 export interface Choice {
   say: Phrase;
