@@ -22,6 +22,11 @@ export default function LegPage() {
   useEffect(() => {
     document.title = `${title} – LACOC`;
   }, [title]);
+  useEffect(() => {
+    const follow = () => lesson.follow();
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, [lesson]);
   return (
     <main class={isPrinted ? "leg printed" : "leg"}>
       <Head lesson={lesson} />

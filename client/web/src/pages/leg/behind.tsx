@@ -106,7 +106,7 @@ export function Behind(props: Props) {
           class="handle"
           transform={place(target)}
           r={13}
-          tabIndex={0}
+          tabindex={0}
           role="slider"
           aria-label={t("leg.foot")}
           aria-valuenow={target.r}

@@ -34,8 +34,18 @@ export class Lesson {
   });
 
   constructor() {
-    const first = Number(location.hash.slice(1)) - 1;
-    this.goTo(Number.isInteger(first) && this.steps.peek()[first] ? first : 0);
+    this.goTo(this.named());
+  }
+
+  /** Go to the step that the address names, if it is another one. */
+  follow(): void {
+    if (this.named() !== this.at.peek()) this.goTo(this.named());
+  }
+
+  /** The step that the address names: "#3"; the first one if it names none. */
+  private named(): number {
+    const step = Number(location.hash.slice(1)) - 1;
+    return Number.isInteger(step) && this.steps.peek()[step] ? step : 0;
   }
 
   choose(robot: string): void {
