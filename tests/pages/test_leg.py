@@ -78,7 +78,9 @@ def test_the_lesson_by_keyboard_ends_in_the_table(own: OwnPage, open_page: OpenP
 
     learner.goes_on()
     learner.guesses("two")
-    expect(page.locator(".pairs .button")).to_have_text(["1st 1.2°, 2nd 37.8°", "1st -51.0°, 2nd 142.2°"])
+    expect(page.locator(".pairs .button")).to_have_text(
+        ["1st 1.2°, 2nd 37.8°", "1st -51.0°, 2nd 142.2°"]
+    )
     foot = page.get_by_role("slider", name="Foot")
     foot.press("ArrowUp")
     learner.sees("r 129.0 mm, z -52.0 mm")

@@ -52,13 +52,14 @@ export function Behind(props: Props) {
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(inverse);
     return { r: Math.round(x), z: Math.round(-y) };
   };
+  const bring = (spot: Spot) => onDrag?.(inside(box, spot));
   const drag = onDrag && {
     onPointerDown: (event: PointerEvent) => {
       svg.current!.setPointerCapture(event.pointerId);
-      onDrag(spotOf(event));
+      bring(spotOf(event));
     },
     onPointerMove: (event: PointerEvent) => {
-      if (svg.current!.hasPointerCapture(event.pointerId)) onDrag(spotOf(event));
+      if (svg.current!.hasPointerCapture(event.pointerId)) bring(spotOf(event));
     },
   };
   const place = ({ r, z }: Spot) => `translate(${r} ${-z})`;
@@ -116,7 +117,7 @@ export function Behind(props: Props) {
             if (!way) return;
             event.preventDefault();
             const step = event.shiftKey ? 10 : 1;
-            onDrag({ r: target.r + step * way[0], z: target.z + step * way[1] });
+            bring({ r: target.r + step * way[0], z: target.z + step * way[1] });
           }}
         />
       )}
@@ -139,6 +140,14 @@ function boxOf({ lengths_mm: [l0, l1, l2] }: Leg, isWide: boolean) {
   }
   const right = l0 + far + EDGE_MM;
   return { left: -52, right, top: l1 + EDGE_MM, bottom: -(l2 + 2 * EDGE_MM) };
+}
+
+/** The spot itself, or the nearest one in the picture. */
+function inside(box: ReturnType<typeof boxOf>, { r, z }: Spot): Spot {
+  return {
+    r: Math.min(box.right, Math.max(box.left, r)),
+    z: Math.min(box.top, Math.max(box.bottom, z)),
+  };
 }
 
 interface LinksProps {
