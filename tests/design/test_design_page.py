@@ -122,22 +122,34 @@ def test_a_page_is_told_of_the_folder_and_the_studio(page: DesignClient, gateway
 
 
 @pytest.mark.parametrize("name", ["Loco-data.xlsx", "Loco-data.txt"])
-def test_two_pages_never_overwrite_each_other(opens: Opens, name: str) -> None:
-    """If two pages save one file, the second gets a conflict; it can still save with `force`."""
-    one, other = opens(), opens()
-    table = sample(one)
-    first = one.ask("save", name=name, table=table, version="")["version"]
-    other.until(lambda: name in [file["name"] for file in other.folder["files"]])
-    read = other.ask("read", name=name)
+def test_an_older_version_never_overwrites_a_newer_one(page: DesignClient, name: str) -> None:
+    """A page that saves over a newer file gets a conflict; it can still save with `force`."""
+    table = sample(page)
+    first = page.ask("save", name=name, table=table, version="")["version"]
+    page.until(lambda: name in [file["name"] for file in page.folder["files"]])
+    read = page.ask("read", name=name)
     assert (read["version"], read["table"]) == (first, table)
     table["rows"][0]["angles_deg"][0] = 12.5
-    second = one.ask("save", name=name, table=table, version=first)["version"]
-    mine = sample(other)
-    conflict = other.ask("save", name=name, table=mine, version=first)["conflict"]
+    second = page.ask("save", name=name, table=table, version=first)["version"]
+    mine = sample(page)
+    conflict = page.ask("save", name=name, table=mine, version=first)["conflict"]
     assert (conflict["table"], conflict["version"]) == (table, second)
-    assert one.ask("read", name=name)["version"] == second
-    other.ask("save", name=name, table=mine, version=first, force=True)
-    assert one.ask("read", name=name)["table"] == mine
+    assert page.ask("read", name=name)["version"] == second
+    page.ask("save", name=name, table=mine, version=first, force=True)
+    assert page.ask("read", name=name)["table"] == mine
+
+
+def test_only_the_newest_page_works(opens: Opens) -> None:
+    """A second page stops the first, and has what was changed there: no change is lost."""
+    one = opens()
+    table = sample(one)
+    for angle_deg in (1.0, 17.25):
+        table["rows"][0]["angles_deg"][0] = angle_deg
+        one.ask("edit", table=table, sequences=None, by="hand")
+    other = opens()
+    one.until(lambda: one.told[MessageKind.ELSEWHERE])
+    refused(one, "edit", table=table, sequences=None, by="hand")
+    assert other.hello["draft"]["table"] == table
 
 
 def test_a_pasted_sheet_and_a_download(page: DesignClient) -> None:
@@ -225,10 +237,11 @@ def test_other_gaits_are_found(page: DesignClient) -> None:
 
 def test_a_page_that_goes_ends_its_search(opens: Opens) -> None:
     """When a page has gone, its long search ends, and the search of another page begins."""
-    gone, other = opens(), opens()
+    gone = opens()
     gone.send("coach", job="long", table=sample(gone), size="table", seconds=120.0)
     gone.until(lambda: gone.progress)
     gone.close()
+    other = opens()
     other.send("coach", job="short", table=sample(other), size="cell", seconds=0.0)
     other.until(lambda: any(one["stage"] != "waiting" for one in other.progress))
 

@@ -114,6 +114,30 @@ def test_a_film_is_as_long_as_the_replay(
         assert stream.duration * stream.time_base == pytest.approx(len(pictures) / FPS)
 
 
+def test_its_sound_has_each_cue_at_its_picture(
+    recorded: Path, alone: tuple[Path, list[np.ndarray]]
+) -> None:
+    """The start, all points and the end are heard within a picture of their events."""
+    out, pictures = alone
+    events = film.part(recorded).record.events
+    begin = max(0, next(one.beat for one in events if one.data.get("after") == "COUNTDOWN") - 150)
+    with av.open(str(out)) as opened:
+        hz = opened.streams.audio[0].rate
+        heard = np.concatenate([one.to_ndarray() for one in opened.decode(audio=0)], axis=1)
+    assert heard.shape[1] / hz == pytest.approx(len(pictures) / FPS, abs=0.1)
+    volume = np.abs(heard).max(axis=0)
+    wanted = [
+        (one.beat - begin) / BEATS_PER_S
+        for one in events
+        if one.data.get("after") in ("PLAYING", "FINISHED") or one.data.get("points")
+    ]
+    assert len(wanted) >= 3
+    for at_s in wanted:
+        near = volume[int((at_s - 0.02) * hz) : int((at_s + 1 / FPS + 0.05) * hz)]
+        assert near.max() > 0.05, at_s
+    assert volume[: int(0.9 * hz)].max() < 0.01  # nobody counts yet
+
+
 @pytest.mark.long
 def test_views_differ_and_a_still_is_a_picture(
     recorded: Path, with_browser: str, tmp_path: Path

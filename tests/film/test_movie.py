@@ -55,6 +55,33 @@ def test_pictures_come_out_as_they_went_in(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["a.mp4"]
 
 
+def test_a_sound_is_heard_with_its_picture(tmp_path: Path) -> None:
+    """A tone of some pictures is heard within one picture of them; the rest is silent."""
+    fps, rate_hz, count = 25, 24_000, 100
+    time_s = np.arange(rate_hz // 5) / rate_hz
+    tone = (20_000 * np.sin(2 * np.pi * 880 * time_s)).astype("<i2")
+    samples = np.zeros((rate_hz * count // fps, 2), "<i2")
+    begins = (20, 75)
+    for begin in begins:
+        at = begin * rate_hz // fps
+        samples[at : at + len(tone), 0] = tone
+    with movie(tmp_path / "a.mp4", WIDTH, HEIGHT, fps, rate_hz) as film:
+        film.hear(samples.tobytes())
+        for _ in range(count):
+            film.add(png(50))
+    with av.open(str(tmp_path / "a.mp4")) as found:
+        frames = list(found.decode(audio=0))
+        hz = found.streams.audio[0].rate
+    heard = np.concatenate([frame.to_ndarray() for frame in frames], axis=1)
+    loud = np.abs(heard[0]) > 0.1
+    found_at = np.flatnonzero(loud & ~np.roll(loud, hz // 100)) / hz
+    for begin in begins:
+        assert min(abs(found_at - begin / fps)) < 1 / fps
+    assert not loud[: int(0.7 * hz)].any()
+    assert np.abs(heard[1]).max() < 0.01
+    assert heard.shape[1] / hz == pytest.approx(count / fps, abs=0.1)
+
+
 def test_most_pictures_are_no_key_pictures(tmp_path: Path) -> None:
     """Every two seconds a film has one key picture, which can be decoded without any other."""
     with movie(tmp_path / "a.mp4", WIDTH, HEIGHT, 10) as film:

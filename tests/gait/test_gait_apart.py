@@ -5,8 +5,10 @@ import signal
 import subprocess
 import sys
 import threading
+from typing import IO
 
 import pytest
+from waiting import until
 
 from lacoc_shared.gait.workbook import apart
 from lacoc_shared.gait.workbook.file import read_workbook, write_workbook
@@ -30,6 +32,16 @@ def test_the_process_that_reads_has_limits() -> None:
     assert _under_limits("while True: pass").returncode == -signal.SIGXCPU
 
 
+def waiting_bytes(pipe: IO[bytes]) -> int:
+    """Return how many bytes were written to a pipe and not read yet."""
+    import fcntl  # POSIX only
+    import termios
+
+    count = bytearray(4)
+    fcntl.ioctl(pipe.fileno(), termios.FIONREAD, count)
+    return int.from_bytes(count, sys.byteorder)
+
+
 def test_a_process_that_ends_refuses_its_own_workbook_only(workshop, legs) -> None:
     """If the system ends the process, that workbook is refused; the next one is read again."""
     data = write_workbook(workshop, legs)
@@ -47,6 +59,7 @@ def test_a_process_that_ends_refuses_its_own_workbook_only(workshop, legs) -> No
 
     reading = threading.Thread(target=read)
     reading.start()
+    until(lambda: waiting_bytes(process.stdin) > 0)
     process.kill()
     reading.join()
     assert [one.found.code for one in refused[0].mistakes] == ["gait.too-costly"]

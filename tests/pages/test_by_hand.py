@@ -10,6 +10,12 @@ from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow
 
+MOST_SCRIPT_BYTES, MOST_SCRIPTS = 200_000, 12
+"""What a player's page loads, packed."""
+PACKED = """
+performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(".js"))
+  .map(({ encodedBodySize }) => encodedBodySize)
+"""
 PHONE = {"width": 390, "height": 844}
 BIG = ".big:not(.fresh) .act:not([aria-disabled=true])"
 """The referee's button for the next decision."""
@@ -48,6 +54,19 @@ class Keyboard:
         self._page.page.keyboard.type(text)
 
 
+HEARD = """
+window.heard = [];
+window.OscillatorNode = class extends OscillatorNode {
+  constructor(audio, options) {
+    super(audio, options);
+    window.heard.push(Math.round(options.frequency));
+  }
+};
+"""
+"""Notes the tones that a page plays [Hz]."""
+COUNT_HZ, START_HZ, END_HZ = 440, 880, 784
+
+
 def opened(venue: Venue, sit: Sit, **options: object) -> Contestant:
     """Start a court for a match of some seconds, and open the link of the left seat."""
     venue.court("--seconds", "6")
@@ -60,6 +79,8 @@ def opened(venue: Venue, sit: Sit, **options: object) -> Contestant:
 def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     """A contestant and a referee who have no mouse bring a match to its official result."""
     page = opened(venue, sit)
+    page.page.add_init_script(HEARD)
+    page.page.reload()
     keyboard = Keyboard(page)
     keyboard.write("#join-name", "Ants")
     page.press("Enter")
@@ -77,11 +98,18 @@ def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     page.phase(Phase.PLAYING)
     page.steer(2)
     page.key_stands(2)
+    scripts = page.page.evaluate(PACKED)
+    assert all(scripts), "a browser does not say how large they are"
+    assert sum(scripts) <= MOST_SCRIPT_BYTES
+    assert len(scripts) <= MOST_SCRIPTS
     page.phase(Phase.FINISHED)
     judging.use(BIG)
     judging.use("dialog button[type=submit]")
     page.phase(Phase.OFFICIAL)
     page.sees(".result", "Ants")
+    heard = page.page.evaluate("window.heard")
+    assert heard[0] == COUNT_HZ
+    assert {COUNT_HZ, START_HZ, END_HZ} <= {*heard}
     for shown in (page, judge):
         assert violations(shown.page) == []
         shown.press("?")

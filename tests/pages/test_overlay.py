@@ -227,6 +227,7 @@ def test_the_document_has_every_flag() -> None:
         for name in (
             "pages/overlay.tsx",
             "pages/watch/flags.ts",
+            "ui/sound.tsx",
             "core/colours.ts",
             "core/court.ts",
             "i18n/index.ts",

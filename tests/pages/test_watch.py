@@ -214,6 +214,36 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     show.misses(STALE)
 
 
+def test_the_last_moments_are_seen_again(venue: Venue, open_page: OpenPage) -> None:
+    """A spectator goes back, stops, sees slow motion, and is live again; so does the score."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.until(lambda: (show.view("drawnBeat") or 0) > 0, "no picture")
+    first = show.view("drawnBeat")
+    show.until(lambda: show.view("drawnBeat") > first + 150, "time stands still")
+    decide(referee, "flag out of place", type="adjust", seat="right", points=4)
+    show.has_scores(18, 22)
+    live = show.view("drawnBeat")
+    show.page.keyboard.press("ArrowLeft")
+    show.sees(".again.is-back b", "s ago")
+    show.has_scores(18, 18)
+    show.misses(".panel .log li:has-text('+4 points')")
+    assert show.view("drawnBeat") < live
+    show.page.keyboard.press("k")
+    stopped = show.view("drawnBeat")
+    show.page.select_option(".again select", "0.25")
+    show.page.wait_for_timeout(500)
+    assert show.view("drawnBeat") - stopped < 10
+    show.page.keyboard.press("k")
+    show.until(lambda: show.view("drawnBeat") > stopped + 10, "it does not go on")
+    assert violations(show.page) == []
+    show.page.click(".again button:text-is('Live')")
+    show.has_scores(18, 22)
+    show.misses(".again.is-back")
+
+
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: Any) -> None:
     """While court or gateway is down, the picture is marked as old and a banner says why."""

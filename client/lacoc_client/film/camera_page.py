@@ -48,6 +48,7 @@ _OPEN = """() => {
   open().catch((error) => { window.__opened = String(error); });
 }"""
 _OPENED = "window.__opened"
+_SOUND = "({ steps, fps, rate }) => window.__film.sound(steps, fps, rate)"
 _SHOW = "(steps) => window.__film.show(steps)"
 _SHOW_AND_HAND_OVER = """async (steps) => {
   await window.__film.show(steps);
@@ -89,6 +90,16 @@ class CameraPage:
         told = [{"beat": step.beat, "cut": step.cut} for step in steps]
         self._page.evaluate(_SHOW if self.paced else _SHOW_AND_HAND_OVER, told)
         return base64.b64decode(self._framed() if self.paced else self._screenshot())
+
+    def sound(self, pictures: Sequence[Picture], fps: int, rate_hz: int) -> bytes:
+        """Return the sound of all pictures of a film.
+
+        Returns:
+            Samples of the left and the right side in turn, each with 16 bits, little endian.
+        """
+        told = [{"beat": one.beat, "cut": one.cut} for one in pictures]
+        wanted = {"steps": told, "fps": fps, "rate": rate_hz}
+        return base64.b64decode(self._page.evaluate(_SOUND, wanted))
 
     def _framed(self) -> str:
         for _ in range(_FRAMES_MOST):

@@ -16,6 +16,8 @@ from lacoc_client.film.plan import Picture
 
 T = TypeVar("T")
 
+SOUND_HZ = 24_000
+"""Samples a second of a film's sound: its highest tone has less than 3 kHz."""
 _AHEAD = 4
 """Pictures that a browser may be ahead of the film."""
 _LOOK_S = 0.2
@@ -34,7 +36,8 @@ class Drawing:
     def __init__(self, address: str, look: Look, number: int, of: int) -> None:
         self._address, self._look = address, look
         self._number, self._of = number, of
-        self._wanted: Queue[Sequence[Picture]] = Queue()
+        self._wanted: Queue[tuple[Sequence[Picture], int]] = Queue()
+        self._sound: Queue[bytes | BaseException] = Queue()
         self._ends: Queue[tuple[int, int] | BaseException] = Queue()
         self._drawn: Queue[bytes | BaseException] = Queue(_AHEAD)
         self._stopped = threading.Event()
@@ -49,9 +52,17 @@ class Drawing:
         """
         return _got(self._ends)
 
-    def begin(self, pictures: Sequence[Picture]) -> None:
+    def begin(self, pictures: Sequence[Picture], fps: int) -> None:
         """Begin to draw; may be called once."""
-        self._wanted.put(pictures)
+        self._wanted.put((pictures, fps))
+
+    def sound(self) -> bytes:
+        """Wait for the sound of all pictures (`CameraPage.sound`); only the first browser makes it.
+
+        Raises:
+            UserError: if it can't be made.
+        """
+        return _got(self._sound)
 
     def next(self) -> bytes:
         """Wait for this browser's next picture, and return it as PNG.
@@ -72,9 +83,13 @@ class Drawing:
                 self._ends.put((page.first, page.last))
                 while not self._stopped.is_set():
                     with contextlib.suppress(Empty):
-                        self._draw(page, self._wanted.get(timeout=_LOOK_S))
+                        pictures, fps = self._wanted.get(timeout=_LOOK_S)
+                        if self._number == 0:
+                            self._sound.put(page.sound(pictures, fps, SOUND_HZ))
+                        self._draw(page, pictures)
         except BaseException as error:  # whoever waits for a picture must get it
             self._ends.put(error)
+            self._sound.put(error)
             self._put(error)
 
     def _draw(self, page: CameraPage, pictures: Sequence[Picture]) -> None:
@@ -107,15 +122,23 @@ class Crew:
         *_, ends = [drawing.ends() for drawing in self._drawings]
         return ends
 
-    def pictures(self, pictures: Sequence[Picture]) -> Iterator[bytes]:
-        """Yield pictures as PNG, in order; may be called once.
+    def begin(self, pictures: Sequence[Picture], fps: int) -> bytes:
+        """Begin to draw, and return the sound of all pictures; may be called once.
+
+        Raises:
+            UserError: if it can't be made.
+        """
+        for drawing in self._drawings:
+            drawing.begin(pictures, fps)
+        return self._drawings[0].sound()
+
+    def pictures(self, count: int) -> Iterator[bytes]:
+        """Yield the pictures as PNG, in order; may be called once, after `begin`.
 
         Raises:
             UserError: if one can't be drawn.
         """
-        for drawing in self._drawings:
-            drawing.begin(pictures)
-        for index in range(len(pictures)):
+        for index in range(count):
             yield self._drawings[index % len(self._drawings)].next()
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lacoc_client.film import moments, plan
 from lacoc_client.film.camera_page import camera_page
-from lacoc_client.film.crew import drawn_by
+from lacoc_client.film.crew import SOUND_HZ, drawn_by
 from lacoc_client.film.look import Look
 from lacoc_client.film.moments import Moment
 from lacoc_client.film.movie import Movie, movie
@@ -105,7 +105,7 @@ def make(
     Raises:
         UserError: if a record can't be shown, there is no browser, or the film can't be written.
     """
-    with movie(out, look.width, look.height, fps) as film:
+    with movie(out, look.width, look.height, fps, SOUND_HZ) as film:
         for one in parts:
             _add(film, one, look, fps, browsers, progress)
     return film.count
@@ -139,7 +139,8 @@ def _add(
     with served(one.paths) as site, drawn_by(browsers, site.address(look), look) as crew:
         pictures = plan.pictures(one.shots(*crew.ends()), fps)
         before = film.count
-        for png in crew.pictures(pictures):
+        film.hear(crew.begin(pictures, fps))
+        for png in crew.pictures(len(pictures)):
             film.add(png)
             progress(film.count, before + len(pictures))
 

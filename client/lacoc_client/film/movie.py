@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import av
+import numpy as np
 from av.video.frame import PictureType
 from av.video.reformatter import ColorRange, Colorspace
 
@@ -20,6 +21,9 @@ _OPTIONS = {"preset": "veryfast", "crf": "20"}
 _THREADS = 4
 """The number of threads changes the bits of a film, so it is the same on every machine."""
 _BT709 = 1
+_SOUND_CODEC, _SOUND_HZ = "aac", 48_000
+_SAMPLE_BYTES = 4
+"""A sample of both sides."""
 
 
 class Movie:
@@ -30,10 +34,16 @@ class Movie:
         width: width of each picture [px].
         height: height of each picture [px].
         fps: pictures a second.
+        sound_hz: samples a second of the sound; 0: the film is silent.
     """
 
-    def __init__(self, container: Any, width: int, height: int, fps: int) -> None:
+    def __init__(
+        self, container: Any, width: int, height: int, fps: int, sound_hz: int = 0
+    ) -> None:
         self._container = container
+        self._fps = fps
+        self._sound_hz = sound_hz
+        self._track = None
         self._stream = container.add_stream(_CODEC, rate=fps, options=_OPTIONS)
         self._stream.width, self._stream.height = width, height
         self._stream.pix_fmt = "yuv420p"
@@ -45,6 +55,20 @@ class Movie:
         context.colorspace = context.color_primaries = context.color_trc = _BT709
         self.count = 0
         """How many pictures it has."""
+        if sound_hz:
+            self._track = container.add_stream(_SOUND_CODEC, rate=_SOUND_HZ, layout="stereo")
+        self._samples = bytearray()
+        """Sound that is not in the film yet."""
+        self._heard = 0
+        """How many samples of each side are in the film."""
+
+    def hear(self, samples: bytes) -> None:
+        """Add the sound of the next pictures.
+
+        Args:
+            samples: of the left and the right side in turn, each with 16 bits, little endian.
+        """
+        self._samples += samples
 
     def add(self, png: bytes) -> None:
         """Add a picture.
@@ -62,14 +86,32 @@ class Movie:
         frame.time_base = self._stream.codec_context.time_base
         self._container.mux(self._stream.encode(frame))
         self.count += 1
+        self._sound_on()
 
     def end(self) -> None:
-        """Write what is left in the encoder."""
+        """Write what is left in the encoders."""
         self._container.mux(self._stream.encode(None))
+        if self._track is not None:
+            self._container.mux(self._track.encode(None))
+
+    def _sound_on(self) -> None:
+        """Write the sound until the end of the newest picture; what is missing is silent."""
+        if self._track is None:
+            return
+        until = round(self.count * self._sound_hz / self._fps)
+        length = _SAMPLE_BYTES * (until - self._heard)
+        part = bytes(self._samples[:length]).ljust(length, b"\0")
+        del self._samples[:length]
+        values = np.frombuffer(part, "<i2").reshape(1, -1)
+        frame = av.AudioFrame.from_ndarray(values, format="s16", layout="stereo")
+        frame.sample_rate, frame.pts = self._sound_hz, self._heard
+        frame.time_base = Fraction(1, self._sound_hz)
+        self._heard = until
+        self._container.mux(self._track.encode(frame))
 
 
 @contextmanager
-def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
+def movie(out: Path, width: int, height: int, fps: int, sound_hz: int = 0) -> Iterator[Movie]:
     """Open a film for writing; when the block has ended, the film is at `out`.
 
     If the block fails, or the program is killed, no new file gets the film's name, and an older
@@ -80,6 +122,7 @@ def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
         width: width of each picture [px], even.
         height: height of each picture [px], even.
         fps: pictures a second.
+        sound_hz: samples a second of its sound; 0: it is silent.
 
     Raises:
         UserError: if it can't be written, such as on a full disk.
@@ -90,7 +133,7 @@ def movie(out: Path, width: int, height: int, fps: int) -> Iterator[Movie]:
         # The index comes first, so that a browser begins before it has loaded all.
         container = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
         try:
-            film = Movie(container, width, height, fps)
+            film = Movie(container, width, height, fps, sound_hz)
             yield film
             film.end()
         finally:

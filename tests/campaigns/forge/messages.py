@@ -1,6 +1,6 @@
 """Hostile clients against a real court: how much is accepted?
 
-In each of two configurations an honest contestant plays in each seat. Meanwhile hostile clients
+In each of three configurations an honest contestant plays in each seat. Meanwhile hostile clients
 use real Zenoh sessions. They send commands for the other seat, commands as a spectator, commands
 that were heard before, altered commands, and decisions without being the referee. At the end they
 publish frames, events, a sheet and health as if they were the court.
@@ -32,6 +32,7 @@ from ports import free_port
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient
 from lacoc_client.play.spectator import Spectator
+from lacoc_server.contest.acts.certificate import make_certificate
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.access import Access
@@ -63,11 +64,14 @@ class Way(NamedTuple):
     name: str
     without: str
     """What is switched off in the court's process: "" or "rules"."""
+    encrypted: bool = False
+    """Whether the contest has a certificate, so that its courts speak TLS."""
 
 
 WAYS = (
     Way("all protection", ""),
     Way("transport's rules off", "rules"),
+    Way("with TLS", "", encrypted=True),
 )
 
 
@@ -83,7 +87,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
         The accepted attempts by kind, what the court refused, and how many honest keys and controls
         were accepted.
     """
-    people = _contest(folder)
+    people = _contest(folder, way.encrypted)
     with ExitStack() as stack:
         court = _serve(folder, way.without)
         stack.callback(_stop, court)
@@ -324,13 +328,15 @@ def _controls(
     return {(0, seq, seq % 4) for seq in range(first, first + CONTROLS)}
 
 
-def _contest(folder: Path) -> dict[str, Access]:
+def _contest(folder: Path, encrypted: bool) -> dict[str, Access]:
     port = free_port()
     file = folder / "contest.toml"
     file.write_text(
         f'[court.main]\narena = "othello"\nlisten = ["127.0.0.1:{port}"]\n'
         "settings.match.countdown_s = 0.1\nsettings.match.duration_s = 3600.0\n"
     )
+    if encrypted:
+        make_certificate(file, ())
     contest = contests.load(file)
     watching, secrets = contest.access(contest.court()[0]), contest.secrets
     people = {seat: watching.of_seat(seat, secrets.seat("main", seat)) for seat in SEATS}

@@ -14,7 +14,8 @@ import { Phase } from "../../../client/web/src/core/wire.ts";
 
 /** Sheets of contests with random results, made by Python. */
 const SHEETS = JSON.parse(
-  execFileSync(process.env.PYTHON, [fileURLToPath(new URL("contest_sheets.py", import.meta.url))], {
+  execFileSync(process.env.PYTHON ?? "python", ["-m", "tests.pages.core.contest_sheets"], {
+    cwd: fileURLToPath(new URL("../../..", import.meta.url)),
     maxBuffer: 1 << 28,
   }),
 );

@@ -13,6 +13,7 @@ from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.guesses import Guesses
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_client.web.office.links import qr_code
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.state import (
     NOBODY,
@@ -146,7 +147,7 @@ class Classroom:
     def greet(self, student: Student, viewer: Viewer) -> None:
         """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
-        self._send_away(student, forgotten=False)
+        student.send_away()
         student.viewers[viewer] = None
         student.seen_s = time.time()
         viewer.send(folder_message("", None))
@@ -227,7 +228,7 @@ class Classroom:
         await student.diary.forget()
         if self.students.get(same_name(student.name)) is student:  # else another page was quicker
             del self.students[same_name(student.name)]
-        self._send_away(student, forgotten=True)
+        student.send_away(forgotten=True)
         self._tell(wire.map_message(MessageKind.GONE, {"name": student.name}))
 
     async def evidence(self) -> list[Kept]:
@@ -302,13 +303,6 @@ class Classroom:
         self.students[same_name(name)] = student
         return student
 
-    def _send_away(self, student: ClassStudent, forgotten: bool) -> None:
-        """Refuse further requests from all pages of a student, and tell the pages why."""
-        student.send(wire.map_message(MessageKind.ELSEWHERE, {"forgotten": forgotten}))
-        for viewer in student.viewers:
-            viewer.can_act = False
-        student.viewers.clear()
-
     async def _set(self, **changes: Any) -> None:
         """Change and keep settings of the class, and tell the teacher."""
         self.state = msgspec.structs.replace(self.state, **changes)
@@ -372,6 +366,7 @@ class Classroom:
         body = {
             "code": self.state.code,
             "addresses": self.addresses,
+            "qr": qr_code(self.addresses[0]) if self.addresses else "",
             "rules": self.state.rules,
             "trouble": trouble,
             "studios": studios,

@@ -71,7 +71,8 @@ class Designer:
         return LetIn(self._student)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page the folder's files, the studio's state and the phases; see `Host.greet`."""
+        """Tell a page what it shows first, and stop the other pages; see `Host.greet`."""
+        student.send_away()
         student.viewers[viewer] = None
         viewer.send(self._folder_message(()))
         viewer.send(studio_message(self.studios))

@@ -25,8 +25,3 @@ export class Desk {
     return this.connection.ask<T>("desk", { request });
   }
 }
-
-/** An SVG picture that the gateway made, such as a QR code, as the address of an image. */
-export function pictureUrl(svg: string): string {
-  return `data:image/svg+xml;utf8,${encodeURIComponent(svg)}`;
-}

@@ -24,3 +24,6 @@ function read<T>(name: string, otherwise: T, where: Kept): T {
 export type Quality = "auto" | "low" | "high";
 
 export const quality = remembered<Quality>("quality", "auto");
+
+/** Whether the cues of a match are heard. */
+export const isLoud = remembered("sound", true);

@@ -153,6 +153,8 @@ export interface ClassState {
   code: string;
   /** What students type into their browsers. */
   addresses: string[];
+  /** The first of them as a QR code, in SVG; "": there is none. */
+  qr: string;
   rules: StudentRules;
   trouble: Phrase | null;
   studios: number;

@@ -44,7 +44,7 @@ export const language = computed<Language>(() => {
 const GROUPS = [
   "every",
   "play",
-  "files",
+  "seldom",
   "referee",
   "replay",
   "design",

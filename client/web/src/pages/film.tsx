@@ -8,11 +8,13 @@
 import { signal } from "@preact/signals";
 import { flag } from "../core/address";
 import { followColours } from "../core/colours";
+import { cuesBetween, type Heard, heardAt } from "../core/cues";
 import { fetched, readBeside } from "../core/record_files";
 import { Recording } from "../core/recording";
 import { t } from "../i18n";
 import { BEATS_PER_S } from "../i18n/words";
 import { Shutter } from "../scene/View";
+import { rendered, type TimedCue } from "../ui/tones";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
 import { cameraOfAddress, qualityOfAddress } from "./watch/flags";
 
@@ -31,6 +33,10 @@ interface Film {
   open(): Promise<[number, number]>;
   /** Go through some pictures in order; the last one is in the browser's next frame. */
   show(steps: Step[]): Promise<void>;
+  /**
+   * The sound of all pictures, at `rate` samples a second: base64 of 16 bits for each side in turn.
+   */
+  sound(steps: Step[], fps: number, rate: number): Promise<string>;
   /** How the page draws: "low" or "high", or "map" without WebGL. */
   quality(): string;
 }
@@ -76,8 +82,31 @@ window.__film = {
       shutter.expose(beat * MS_PER_BEAT, index === steps.length - 1);
     }
   },
+  async sound(steps, fps, rate) {
+    const cues: TimedCue[] = [];
+    let heard: Heard | null = null;
+    for (const [index, { beat, cut }] of steps.entries()) {
+      recording.value?.seek(beat);
+      const { frame, sheet, events } = recording.value!;
+      if (!frame.value || !sheet.value) continue;
+      const now: Heard = heardAt(frame.value, sheet.value, events.value, heard);
+      const told = cuesBetween(cut ? null : heard, now, events.value);
+      cues.push(...told.map((cue) => ({ ...cue, at_s: index / fps })));
+      heard = now;
+    }
+    const samples = await rendered(cues, steps.length / fps, rate);
+    return await inBase64(new Uint8Array(samples.buffer));
+  },
   quality: () => window.__lacoc?.view?.quality ?? "",
 };
+
+function inBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
+  const reader = new FileReader();
+  return new Promise((resolve) => {
+    reader.onload = () => resolve(String(reader.result).split(",")[1] ?? "");
+    reader.readAsDataURL(new Blob([bytes]));
+  });
+}
 
 /** Resolves when the browser has drawn once. */
 function drawn(): Promise<unknown> {

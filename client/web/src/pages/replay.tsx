@@ -22,6 +22,7 @@ import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
+import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
 import { Toasts, toast } from "../ui/toasts";
 import { SeekBar, seconds } from "./replay/bar";
@@ -280,6 +281,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
       </Corner>
       <div class="middle-stage">
         <Countdown match={recording} />
+        <Sound match={recording} />
         <ResultCard match={recording} isLast />
       </div>
       <div class="lower">

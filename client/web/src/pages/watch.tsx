@@ -5,6 +5,7 @@ import { amount, flag, goToCourt, setting } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { part } from "../core/match";
+import { Rewind } from "../core/rewind";
 import { quality, remembered } from "../core/settings";
 import { LEAST_HZ, MOST_HZ, USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
@@ -20,7 +21,9 @@ import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
+import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
+import { Again, againKeys, againRows } from "./watch/again";
 import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
@@ -37,6 +40,8 @@ const court = new Court(
   1000 * amount("delay", 0, 0, DELAY_MOST_S),
   flag("director", false) ? "director" : "court",
 );
+/** What is shown of it: live, or some time behind. */
+const shown = new Rewind(court);
 /** The director's second picture. */
 const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside") : null;
 const camera = signal(cameraOfAddress());
@@ -63,13 +68,14 @@ title.subscribe((text) => {
 const SHORTCUTS = {
   ...cameraKeys(camera, () => court.sheet.peek()),
   ...cornerKeys(panel),
+  ...againKeys(shown),
 };
 
 export default function Watch() {
   useShortcuts(SHORTCUTS);
   const hud = flag("hud", true);
   const beside = !isNarrow.value && panel.value && hud;
-  const opening = useOpening(court);
+  const opening = useOpening(shown);
   const isShown = court.begun.value || !court.directed;
   const inset = !hud
     ? {}
@@ -80,7 +86,7 @@ export default function Watch() {
     <main class="show watch">
       <div class={`scene${isStale.value ? " stale" : ""}`}>
         <View
-          source={court}
+          source={shown}
           camera={camera.value}
           quality={fineness}
           inset={inset}
@@ -93,8 +99,9 @@ export default function Watch() {
       {hud && <Hud />}
       {hud && isShown && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
+      <Sound match={shown} />
       <CornerSettings />
-      <KeyHelp rows={() => [...cameraRows(court.sheet.value), ...cornerRows()]} />
+      <KeyHelp rows={() => [...cameraRows(court.sheet.value), ...againRows(), ...cornerRows()]} />
     </main>
   );
 }
@@ -107,17 +114,17 @@ function Hud() {
       <div class="top">
         <Brand />
         <header class="head">
-          <ScoreBug match={court} />
-          <Hint match={court} />
+          <ScoreBug match={shown} />
+          <Hint match={shown} />
           <OnAir court={court} />
         </header>
       </div>
       <Corner panel={panel} />
       <div class="middle-stage">
-        <Countdown match={court} />
+        <Countdown match={shown} />
         {putAway.value !== match && (
           <ResultCard
-            match={court}
+            match={shown}
             withReplay
             isLast={!court.live.value}
             onClose={() => {
@@ -129,16 +136,17 @@ function Hud() {
       </div>
       <div class="before">
         {court.begun.value &&
-          (between ? <EventCard court={court} /> : <OpeningCard match={court} />)}
+          (between ? <EventCard court={court} /> : <OpeningCard match={shown} />)}
       </div>
       <div class="lower">
-        <Thirds match={court} />
+        <Thirds match={shown} />
       </div>
       {aside && <Aside court={aside} />}
       <div class="foot">
         {(court.begun.value || !court.directed) && (
           <Cameras camera={camera} sheet={court.sheet.value} />
         )}
+        {court.begun.value && <Again rewind={shown} />}
       </div>
     </>
   );
@@ -184,9 +192,9 @@ function Brand() {
 function Panel() {
   return (
     <aside class="panel" aria-label={t("watch.panel")}>
-      <Board match={court} />
+      <Board match={shown} />
       <h2>{t("log.title")}</h2>
-      <EventLog match={court} toldElsewhere />
+      <EventLog match={shown} toldElsewhere />
     </aside>
   );
 }

@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { chosenPalette, PALETTE_NAMES, type PaletteName } from "../core/colours";
-import { quality } from "../core/settings";
+import { isLoud, quality } from "../core/settings";
 import { chosen, LANGUAGES, type Language, t } from "../i18n";
 import { Dialog } from "./dialog";
 
@@ -58,6 +58,18 @@ export function Settings({ onClose, children }: Props) {
                 {t(`settings.colours.${name}`)}
               </option>
             ))}
+          </select>
+        </label>
+        <label class="field">
+          <span>{t("settings.sound")}</span>
+          <select
+            value={isLoud.value ? "on" : "off"}
+            onChange={(event) => {
+              isLoud.value = event.currentTarget.value === "on";
+            }}
+          >
+            <option value="on">{t("settings.soundOn")}</option>
+            <option value="off">{t("settings.soundOff")}</option>
           </select>
         </label>
         {children}

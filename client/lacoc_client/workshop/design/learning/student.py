@@ -41,6 +41,19 @@ class Student:
         for viewer in self.viewers:
             viewer.send(message)
 
+    def send_away(self, forgotten: bool = False) -> None:
+        """Refuse further requests from all pages, and tell the pages why.
+
+        Two pages at work would lose each other's changes: only the newest one works.
+
+        Args:
+            forgotten: whether the student was deleted; else another page was opened.
+        """
+        self.send(wire.map_message(MessageKind.ELSEWHERE, {"forgotten": forgotten}))
+        for viewer in self.viewers:
+            viewer.can_act = False
+        self.viewers.clear()
+
     def phases_message(self) -> bytes:
         """Return the message that says how far the student is."""
         return wire.map_message(

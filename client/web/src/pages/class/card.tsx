@@ -72,7 +72,11 @@ export function Dots({ card }: { card: Card }) {
 /** When each foot was down in the last trial, a row for each leg. */
 export function Feet({ card }: { card: Card }) {
   const { feet } = card;
-  if (!feet?.length) return <span class="feet empty">{t("class.noTrial")}</span>;
+  if (!feet?.length) {
+    // After a restart of the class the figures are there, but no trial to draw.
+    const why = card.best_mm_s === null ? "class.noTrial" : "class.noTrialSince";
+    return <span class="feet empty">{t(why)}</span>;
+  }
   return (
     <svg
       class="feet"

@@ -1,6 +1,7 @@
 /** What fills the screen, for the whole room: how to join, and the standings. */
 
 import { short } from "../../core/address";
+import { pictureUrl } from "../../core/picture";
 import { t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
 import { toggleFullscreen } from "../../ui/screen";
@@ -37,9 +38,11 @@ export function Screens({ teacher }: { teacher: Teacher }) {
 
 /** How to join, in three steps. */
 function Room({ teacher }: { teacher: Teacher }) {
+  const qr = teacher.state.value?.qr;
   return (
     <div class="room">
       <h2>{t("class.join")}</h2>
+      {qr && <img class="qr" src={pictureUrl(qr)} alt={t("class.qr")} />}
       <ol>
         <li>
           <span>{t("class.join.1")}</span>

@@ -2,7 +2,8 @@
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { type EventInfo, type OwnEntry, pictureUrl, TEAM_NAME_MAX } from "../../core/desk";
+import { type EventInfo, type OwnEntry, TEAM_NAME_MAX } from "../../core/desk";
+import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
 import { Mistakes } from "../../ui/mistakes";
 import { dayTime } from "../office/head";

@@ -3,7 +3,8 @@
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { stateOf } from "../../core/contest/sheet";
-import { type Effect, type OfficeView, pictureUrl, TEAM_NAME_MAX } from "../../core/desk";
+import { type Effect, type OfficeView, TEAM_NAME_MAX } from "../../core/desk";
+import { pictureUrl } from "../../core/picture";
 import { momentOf } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { noticeText } from "../../ui/banner";

@@ -2,7 +2,8 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { type Effect, pictureUrl } from "../../core/desk";
+import type { Effect } from "../../core/desk";
+import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { toast } from "../../ui/toasts";

@@ -13,6 +13,7 @@ import { View } from "../../scene/View";
 import { Countdown } from "../../ui/opening";
 import { ResultCard } from "../../ui/result";
 import { ScoreBug } from "../../ui/score";
+import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
 import { Brief } from "./brief";
 import { nextStep } from "./steps";
@@ -90,6 +91,7 @@ export function Field(props: Props) {
             <NextStep {...props} />
             {!alone && <Brief court={court} player={player} />}
             {!alone && <Countdown match={court} />}
+            {!alone && <Sound match={court} own={player.index.value} />}
             {!alone && (
               <ResultCard match={court} own={player.index.value} withReplay isLast>
                 {player.data && player.data.length > 0 && (

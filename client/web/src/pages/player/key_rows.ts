@@ -20,6 +20,7 @@ export function keyRows(sheet: Sheet | null, alone: boolean): readonly KeyRow[] 
     [levels.length > 1, [["Tab"], t("keys.level")]],
     [true, [["x"], t("keys.restart")]],
     [true, [["Space"], t("keys.view")]],
+    [!alone, [["M"], t("keys.mute")]],
     [!alone, [["r"], t("keys.ready")]],
     [true, [["z"], t(alone ? "keys.leavePractice" : "keys.leave")]],
     [true, [levels.length > 1 ? ["Esc"] : ["Tab", "Esc"], t("keys.out")]],

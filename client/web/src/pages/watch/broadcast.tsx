@@ -12,6 +12,7 @@ import { Board } from "../../ui/board";
 import { Countdown, OpeningCard, useOpening } from "../../ui/opening";
 import { ResultCard } from "../../ui/result";
 import { Hint, ScoreBug } from "../../ui/score";
+import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
 import "./broadcast.css";
 
@@ -133,6 +134,7 @@ function Hud({ match, belowScore, inCentre, beside, isLast = false }: { match: M
       </header>
       <div class="centre">
         <Countdown match={match} />
+        <Sound match={match} isQuiet />
         <ResultCard match={match} isLast={isLast} />
         {inCentre}
       </div>

@@ -58,6 +58,7 @@ export function CornerSettings() {
 export function cornerRows(): readonly KeyRow[] {
   return [
     [["E"], t("watch.panel")],
+    [["M"], t("keys.mute")],
     [["S"], t("settings.title")],
     [["F"], t("keys.fullscreen")],
   ];
