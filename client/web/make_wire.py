@@ -4,10 +4,10 @@
 
 src/core/wire.gen.ts has the court's messages as types, from the Python structs,
 src/core/desk.gen.ts those of an office's desk, src/core/contest/sheet.gen.ts the sheet of a
-contest, src/core/leg/samples.gen.ts the legs of the sample robots. src/i18n/texts/LANGUAGE/GROUP.json
-has what pages say: their own messages (texts/*.toml) and the phrases of programs, without those of
-commands. A page loads its groups in one language. A test fails when a file does not fit the Python
-code any more.
+contest, src/core/leg/samples.gen.ts the legs of the sample robots.
+src/i18n/texts/LANGUAGE/GROUP.json has what pages say: their own messages (texts/*.toml) and the
+phrases of programs, without those of commands. A page loads its groups in one language. A test
+fails when a file does not fit the Python code any more.
 """
 
 import json

@@ -188,7 +188,7 @@ function stand(robot: SampleRobot, legs: readonly number[]): Question {
       { say: { code: "leg.stand.no" }, right: !isIn },
     ],
     because: {
-      code: isIn ? "leg.stand.inside" : "leg.stand.outside",
+      code: `leg.stand.${isIn ? "inside" : found < -FIRM_MM ? "outside" : "edge"}`,
       values: { margin: Math.abs(found) },
     },
   };
