@@ -4,7 +4,6 @@ import { useRef } from "preact/hooks";
 import { bent, type Leg, type Spot, spots } from "../../core/leg/leg";
 import type { SampleRobot } from "../../core/leg/samples.gen";
 import { t } from "../../i18n";
-import { classes } from "../design/names";
 import { Arc, Label, Line, mm, RightAngle, textSize } from "./svg";
 
 /** A square of the area that the foot reaches [mm]. */
@@ -66,7 +65,7 @@ export function Behind(props: Props) {
   return (
     <svg
       ref={svg}
-      class={classes("leg-drawing", onDrag && "to-drag", isHalfSize && "half-size")}
+      class={`leg-drawing ${onDrag ? "to-drag" : ""} ${isHalfSize ? "half-size" : ""}`}
       viewBox={`${box.left} ${-box.top} ${wide} ${box.top - box.bottom}`}
       role={onDrag ? "group" : "img"}
       style={textSize(wide) + (isHalfSize ? `; width: ${wide / 2}mm` : "")}
