@@ -4,12 +4,14 @@
 
 src/core/wire.gen.ts has the court's messages as types, from the Python structs,
 src/core/desk.gen.ts those of an office's desk, src/core/contest/sheet.gen.ts the sheet of a
-contest. src/i18n/texts/LANGUAGE/GROUP.json has what pages say: their own messages (texts/*.toml)
-and the phrases of programs, without those of commands. A page loads its groups in one language. A
-test fails when a file does not fit the Python code any more.
+contest, src/core/leg/samples.gen.ts the legs of the sample robots.
+src/i18n/texts/LANGUAGE/GROUP.json has what pages say: their own messages (texts/*.toml) and the
+phrases of programs, without those of commands. A page loads its groups in one language. A test
+fails when a file does not fit the Python code any more.
 """
 
 import json
+import math
 import types
 import typing
 from collections import Counter
@@ -33,6 +35,8 @@ from lacoc_client.workshop.design import folder, requests
 from lacoc_client.workshop.design.learning import diary, draft, learner, rules
 from lacoc_client.workshop.design.table import FileRow, FileTable
 from lacoc_client.workshop.phases import facts
+from lacoc_robots.library import find_robot
+from lacoc_robots.robot_file import read_robot
 from lacoc_server.contest.league import (
     contest,
     decided,
@@ -247,8 +251,12 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "class": ("class", "tournament"),
     "contest": (),
     "office": ("office",),
+    "leg": (),
 }
 """By group of the pages' own messages: which files of phrases go with it."""
+
+SAMPLES = ("hexapod", "long-legs", "quadruped", "octopod")
+"""The sample robots, the workshop's first."""
 
 _IMPORTS = {Phrase: "phrase"}
 """Types that pages write themselves, with the module of core that has them."""
@@ -284,6 +292,45 @@ def desk_types() -> str:
         f"export type AnyRequest = {names};",
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def sample_legs() -> str:
+    """Return the sample robots' bodies and legs, in mm and degrees: src/core/leg/samples.gen.ts."""
+    made = json.dumps({name: _sample(name) for name in SAMPLES}, indent=2)
+    return (
+        "// Made by client/web/make_wire.py from the robot files; not edited by hand.\n\n"
+        'import type { Leg, Three } from "./leg";\n\n'
+        "/** A robot as its file describes it. */\n"
+        "export interface SampleRobot {\n"
+        "  name: string;\n"
+        "  /** Width, length and height of the body. */\n"
+        "  size_mm: Three;\n"
+        "  legs: readonly Leg[];\n"
+        "  /** The posture in which the robot begins, by joint id. */\n"
+        "  start_deg: readonly number[];\n"
+        "}\n\n"
+        f"export const SAMPLES: Readonly<Record<string, SampleRobot>> = {made};\n"
+    )
+
+
+def _sample(name: str) -> dict[str, Any]:
+    file, content = find_robot(name)
+    robot = read_robot(content, file)
+    return {
+        "name": robot.name,
+        "size_mm": [round(1000 * side, 6) for side in robot.size_m],
+        "legs": [
+            {
+                "label": leg.label,
+                "position_mm": [round(1000 * one, 6) for one in leg.position_m],
+                "outward_deg": round(math.degrees(leg.outward_rad), 9),
+                "lengths_mm": [round(1000 * one, 6) for one in leg.lengths_m],
+                "range_deg": leg.range_deg,
+            }
+            for leg in robot.legs
+        ],
+        "start_deg": [round(math.degrees(angle), 9) for angle in robot.start_posture],
+    }
 
 
 def _head(core: str) -> list[str]:
@@ -420,6 +467,7 @@ FILES: dict[Path, Callable[[], str]] = {
     _SOURCE / "core" / "wire.gen.ts": wire_types,
     _SOURCE / "core" / "desk.gen.ts": desk_types,
     _SOURCE / "core" / "contest" / "sheet.gen.ts": sheet_types,
+    _SOURCE / "core" / "leg" / "samples.gen.ts": sample_legs,
     _SOURCE / "i18n" / "limits.gen.ts": limits,
 } | {
     _SOURCE / "i18n" / "texts" / language / f"{group}.json": partial(_json, group, language)

@@ -245,6 +245,12 @@ def test_the_class_plays_a_tournament(
     assert all(one["record"] in str(names) for one in played["matches"])
 
 
+def test_a_class_says_which_pages_it_has(room: ClassRoom) -> None:
+    """Without a code: the lesson of one leg is open, and learns here that there is a /design."""
+    with urllib.request.urlopen(f"{room.url}/healthz", timeout=LIMIT_S) as answer:
+        assert json.load(answer)["pages"] == ["/design", "/class", "/leg", "/replay"]
+
+
 def test_a_student_is_let_in_again_and_forgotten(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:

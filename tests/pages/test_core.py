@@ -19,6 +19,8 @@ NODE_OF_PAGES = [
     *("--import", Path(__file__).with_name("core") / "page.mjs"),
 ]
 """The words that start Node so that it loads the pages' modules, except those that draw."""
+_LEAGUE = Path(__file__).parents[1] / "league"
+"""Has modules that the cases' own programs import."""
 CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))
 
 
@@ -31,7 +33,7 @@ def test_the_pure_parts_of_the_pages() -> None:
         text=True,
         encoding="utf-8",
         check=False,
-        env={**os.environ, "PYTHON": sys.executable},
+        env={**os.environ, "PYTHON": sys.executable, "PYTHONPATH": str(_LEAGUE)},
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

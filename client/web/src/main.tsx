@@ -27,6 +27,7 @@ const PAGES: Record<string, [Load, ...Group[]]> = {
   "/office": [() => import("./pages/office"), "office", "contest"],
   "/enter": [() => import("./pages/enter"), "office", "contest", "seldom"],
   "/replay": [() => import("./pages/replay"), "replay"],
+  "/leg": [() => import("./pages/leg"), "leg"],
   "/film": [() => import("./pages/film")],
 };
 

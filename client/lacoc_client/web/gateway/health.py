@@ -14,3 +14,5 @@ class GatewayHealth(msgspec.Struct, frozen=True, kw_only=True):
     """The request's `Host`, which a proxy may have replaced."""
     unnamed_proxy: bool
     """Whether a proxy says who asks and is not believed: all then seem to be one machine."""
+    pages: tuple[str, ...] = ()
+    """Paths of the pages."""

@@ -41,7 +41,9 @@ from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest")
+LESSON = "/leg"
+"""Path of the lesson of one leg, which is served wherever there are pages."""
+PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest", LESSON)
 """Paths that all serve index.html; the page itself looks at its path."""
 
 _OLD_NAMES = {"favicon.ico": "icon.svg"}
@@ -222,7 +224,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
 
 
 def page_routes(
-    files: PageFiles, paths: Iterable[str], others: Iterable[BaseRoute], title: str = ""
+    files: PageFiles, paths: Sequence[str], others: Iterable[BaseRoute], title: str = ""
 ) -> list[BaseRoute]:
     """Return the routes of a site with pages.
 
@@ -265,6 +267,7 @@ def page_routes(
             contest=title,
             host=request.headers.get("host", ""),
             unnamed_proxy=bool(asks) and machine_of(request.scope) not in asks,
+            pages=tuple(paths),
         )
         return Response(msgspec.json.encode(health), media_type="application/json")
 

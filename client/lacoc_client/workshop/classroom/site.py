@@ -12,7 +12,7 @@ from starlette.websockets import WebSocket
 
 from lacoc_client.web.gateway.files import PageFiles
 from lacoc_client.web.gateway.recordings import Recordings
-from lacoc_client.web.gateway.site import page_routes, recording_routes
+from lacoc_client.web.gateway.site import LESSON, page_routes, recording_routes
 from lacoc_client.workshop.classroom.classroom import Classroom
 from lacoc_client.workshop.classroom.teacher_page import TeacherPage
 from lacoc_client.workshop.design.design_page import DesignPage
@@ -50,5 +50,5 @@ def class_site(classroom: Classroom, files: PageFiles) -> ASGIApp:
         WebSocketRoute(f"{PATH}/ws", teacher),
         *recording_routes(shelf),
     ]
-    routes = page_routes(files, [STUDENTS, PATH, "/replay"], others)
+    routes = page_routes(files, [STUDENTS, PATH, LESSON, "/replay"], others)
     return Starlette(routes=routes, lifespan=lifespan)

@@ -11,7 +11,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from lacoc_client.web.gateway.files import PageFiles
-from lacoc_client.web.gateway.site import page_routes
+from lacoc_client.web.gateway.site import LESSON, page_routes
 from lacoc_client.workshop.design.design_page import DesignPage
 from lacoc_client.workshop.design.designer import Designer
 
@@ -19,7 +19,7 @@ PATH = "/design"
 
 
 def design_site(designer: Designer, files: PageFiles) -> ASGIApp:
-    """Make the application of a gateway whose only page is /design.
+    """Make the application of a gateway with /design and the lesson of one leg.
 
     Args:
         designer: the folder and the studio, which its pages share.
@@ -38,4 +38,4 @@ def design_site(designer: Designer, files: PageFiles) -> ASGIApp:
         return RedirectResponse(PATH[1:])
 
     others = [Route("/", start), WebSocketRoute(f"{PATH}/ws", page)]
-    return Starlette(routes=page_routes(files, [PATH], others), lifespan=lifespan)
+    return Starlette(routes=page_routes(files, [PATH, LESSON], others), lifespan=lifespan)

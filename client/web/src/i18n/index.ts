@@ -10,6 +10,7 @@ import type classroom from "./texts/en/class.json";
 import type contest from "./texts/en/contest.json";
 import type design from "./texts/en/design.json";
 import type every from "./texts/en/every.json";
+import type leg from "./texts/en/leg.json";
 import type office from "./texts/en/office.json";
 import type play from "./texts/en/play.json";
 import type referee from "./texts/en/referee.json";
@@ -24,7 +25,8 @@ type Texts = typeof every &
   typeof design &
   typeof classroom &
   typeof contest &
-  typeof office;
+  typeof office &
+  typeof leg;
 export type MessageName = keyof Texts;
 
 /** The language that the reader chose; "": as the browser has it. */
@@ -49,6 +51,7 @@ const GROUPS = [
   "class",
   "contest",
   "office",
+  "leg",
 ] as const;
 export type Group = (typeof GROUPS)[number];
 

@@ -4,7 +4,16 @@ import { setting } from "../core/address";
 import { type MessageName, t } from "../i18n";
 import "./home.css";
 
-const WAYS = ["watch", "contest", "play", "practice", "referee", "replay", "overlay"] as const;
+const WAYS = [
+  "watch",
+  "contest",
+  "play",
+  "practice",
+  "referee",
+  "replay",
+  "overlay",
+  "leg",
+] as const;
 
 export default function Home() {
   const court = setting("court");

@@ -18,9 +18,11 @@ export function jointName(legs: readonly string[], joint: number): string {
   return `${legs[leg] ?? leg} ${LEVELS[level]}`;
 }
 
-/** "2 R,F 1st": the place of a number in the table. */
-export function placeName({ rows, legs }: Table, row: number, joint: number): string {
-  return t("design.place", { key: rows[row]?.key ?? "?", joint: jointName(legs, joint) });
+/** "row 2, R,F 1st": the place of a number in the table. */
+export function placeName({ rows, legs, kind }: Table, row: number, joint: number): string {
+  const found = rows[row];
+  const name = found ? rowName(found, kind === "locomotion") : "?";
+  return t("design.place", { row: name, joint: jointName(legs, joint) });
 }
 
 /** "forward"; "" for a key that the sample does not have. */

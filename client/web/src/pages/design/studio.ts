@@ -19,6 +19,7 @@ import { Gateway } from "./gateway";
 import { Learning } from "./learning/learning";
 import { Numbers } from "./robot/numbers";
 import { RobotInUse } from "./robot/robot";
+import { takeGivenLeg } from "./table/given_leg";
 import { Sheet } from "./table/sheet";
 import { Trials } from "./trials/trials";
 import { Showing } from "./walk/showing";
@@ -162,6 +163,7 @@ export class Studio {
     await this.opening.first(this.greeting);
     if (this.opening.isOpen) {
       this.learning.greet();
+      takeGivenLeg(this.sheet);
       const { student } = this.greeting;
       void this.trials.comeBack(student ?? `folder ${this.files.folder.peek().folder}`);
     }

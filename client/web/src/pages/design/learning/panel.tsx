@@ -58,7 +58,12 @@ export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVari
       {isFirst && explanation}
       <p class="learn-task">{said(phase.task)}</p>
       <p>{said(phase.question)}</p>
-      {number === ONE_LEG && <FootGuess learning={learning} />}
+      {number === ONE_LEG && (
+        <>
+          <a href="leg">{t("design.lesson")}</a>
+          <FootGuess learning={learning} />
+        </>
+      )}
       {pose && sheet.table.value?.kind === "postures" && (
         <button
           class="button"

@@ -109,8 +109,8 @@ function cellLabel(table: Table, { row, col }: Place): string {
   const found = table.rows[row];
   if (!found) return "";
   const angle = found.cells[col] ?? "";
-  const key = rowName(found, table.kind === "locomotion");
-  const label = t("design.cell", { key, joint: jointName(table.legs, col), angle });
+  const name = rowName(found, table.kind === "locomotion");
+  const label = t("design.cell", { row: name, joint: jointName(table.legs, col), angle });
   const why = wrongOf(angle);
   return why ? `${label}. ${t(`design.bad.${why}` as MessageName, rangeOf(table, col))}` : label;
 }

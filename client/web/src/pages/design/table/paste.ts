@@ -10,7 +10,7 @@ import {
 import type { Table } from "../../../core/design/table";
 import { type MessageName, t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
-import { jointName } from "../names";
+import { jointName, rowName } from "../names";
 import type { Sheet } from "./sheet";
 
 /** The name under which a pasted sheet goes to the reader of files. */
@@ -53,8 +53,9 @@ function refusePaste(sheet: Sheet, table: Table, bad: readonly BadPaste[]): void
   }
   const { row, col, text, why } = first;
   const reason = t(`design.bad.${why}` as MessageName, rangeOf(table, col));
-  const key = table.rows[row]?.key ?? "?";
-  toast(t("design.notPasted", { text, key, where: jointName(table.legs, col), reason }), "no");
+  const name = rowName(table.rows[row]!, table.kind === "locomotion");
+  const where = jointName(table.legs, col);
+  toast(t("design.notPasted", { text, row: name, where, reason }), "no");
 }
 
 /** The range of a joint, for a message. */

@@ -142,7 +142,7 @@ function Head({ sheet, table, lit, onSelect }: HeadProps) {
     <thead>
       <tr class="levels">
         <th scope="col" rowSpan={3} class="corner">
-          {t("design.key")}
+          {t("design.row")}
         </th>
         {LEVELS.map((name, level) => (
           <th

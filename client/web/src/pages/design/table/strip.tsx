@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { setCell } from "../../../core/design/table";
 import { t } from "../../../i18n";
-import { jointName, rowName } from "../names";
+import { placeName } from "../names";
 import type { Sheet } from "./sheet";
 import { Tools } from "./tools";
 import { turnCells } from "./typist";
@@ -22,8 +22,7 @@ export function Strip({ sheet }: { sheet: Sheet }) {
   const cell = found?.cells[col];
   const [low, high] = table.ranges[col] ?? [-USUAL, USUAL];
   if (!found) return null;
-  const key = rowName(found, table.kind === "locomotion");
-  const place = t("design.place", { key, joint: jointName(table.legs, col) });
+  const place = placeName(table, row, col);
   const range = sheet.area.value;
   const count = (range.bottom - range.top + 1) * (range.right - range.left + 1);
   return (
