@@ -22,9 +22,11 @@ export default defineConfig({
           groups: [
             {
               name: "shared",
+              // What people learn with is large, and no page of a match needs it.
+              test: /^(?!.*[\\/](?:leg|design|class)[\\/.])/,
               minShareCount: 2,
               entriesAware: true,
-              entriesAwareMergeThreshold: 30000,
+              entriesAwareMergeThreshold: 60_000,
             },
           ],
         },
