@@ -40,10 +40,10 @@ def test_no_role_does_what_is_anothers(attempts: int) -> None:
 def test_nothing_forged_is_accepted() -> None:
     """A court accepts no forgery.
 
-    This holds with all protection, and with tokens and seals alone.
+    This holds with all protection, with tokens and seals alone, and with TLS.
     """
     found = forged("messages", 2000)
-    assert [one["right"] for one in found] == [True] * 2
+    assert [one["right"] for one in found] == [True] * 3
     assert {sum(one["accepted"].values()) for one in found} == {0}
     refused = found[1]["refused by the court"]["commands"]
     assert {"bad-seal", "old", "not-your-seat"} <= set(refused)  # so the forgeries did arrive
