@@ -31,6 +31,7 @@ TESTS_OF_SATELLITES = (
     "arenas/test_learned.py",
     "server/test_coach.py",
     "server/test_forks.py",
+    "server/test_mistakes.py",
     "server/test_odds.py",
     "server/test_studio.py",
     "server/test_styles.py",
