@@ -68,7 +68,7 @@ walls: .venv/.lint ## Check who imports whom (docs/architecture.md).
 	$(BIN)/lint-imports
 
 core: .venv/.test ## Delete all satellites in a copy, and run the core's tests there.
-	$(BIN)/python tests/project/core_alone.py -n 2
+	$(BIN)/python tests/project/core_alone.py $(or $(ARGS),-n 2)
 
 check: lint type walls core test ## Everything that must be right before a commit.
 
