@@ -254,6 +254,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "leg": (),
 }
 """By group of the pages' own messages: which files of phrases go with it."""
+SELDOM = ("forked", "gateway", "refused")
+"""Subjects that are said so seldom that a page loads their words only then."""
 
 SAMPLES = ("hexapod", "long-legs", "quadruped", "octopod")
 """The sample robots, the workshop's first."""
@@ -455,7 +457,10 @@ def texts() -> dict[str, dict[str, Wording]]:
     every = [code for part in (*said.values(), *own.values()) for code in part]
     if twice := sorted(code for code, times in Counter(every).items() if times > 1):
         raise ValueError(f"several entries have the code {', '.join(twice)}")
-    return {group: {**own.get(group, {}), **said[group]} for group in GROUPS}
+    found = {group: {**own.get(group, {}), **said[group]} for group in GROUPS}
+    for code in [code for code in said["every"] if code.partition(".")[0] in SELDOM]:
+        found["seldom"][code] = found["every"].pop(code)
+    return found
 
 
 def _json(group: str, language: Language) -> str:

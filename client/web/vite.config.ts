@@ -6,7 +6,7 @@ const NO_LESSON = /^(?!.*[\\/](?:leg|design|class)[\\/.])/;
 const BASE =
   /^(?!.*[\\/](?:leg|design|class)[\\/.]).*(?:node_modules|[\\/]src[\\/](?:core|i18n)[\\/])/;
 /** What several pages share is in few files: a page loads at most some kilobytes in vain. */
-const SHARED = { minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 100_000 };
+const SHARED = { minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 200_000 };
 
 // One page for all paths; each of them loads its own part (src/main.tsx). Addresses are relative,
 // so that a published folder can be at any path.
