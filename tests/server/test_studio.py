@@ -272,8 +272,9 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
         trials = Trials(task, workers, threading.Event())
         again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
     assert reply == reply_of(task, 2, again)
-    assert len(reply.changes) == 1
-    assert reply.score_after > reply.score_before
+    # One round may find no number that makes nothing else worse.
+    assert len(reply.changes) <= 1
+    assert (reply.score_after > reply.score_before) == bool(reply.changes)
     assert len(reply.matters) == 24
     assert not reply.cancelled
     told = []
