@@ -1,4 +1,4 @@
-"""Writes the types and texts that the pages take from the Python code, as TypeScript.
+"""Writes what the pages take from the Python code: types, texts and the legs of sample robots.
 
     python client/web/make_wire.py
 
@@ -11,10 +11,8 @@ fails when a file does not fit the Python code any more.
 """
 
 import json
-import math
 import types
 import typing
-from collections import Counter
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import partial
@@ -22,6 +20,8 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import page_texts
+import sample_legs
 
 from lacoc_arenas import brains
 from lacoc_client.play import simulation
@@ -35,8 +35,6 @@ from lacoc_client.workshop.design import folder, requests
 from lacoc_client.workshop.design.learning import diary, draft, learner, rules
 from lacoc_client.workshop.design.table import FileRow, FileTable
 from lacoc_client.workshop.phases import facts
-from lacoc_robots.library import find_robot
-from lacoc_robots.robot_file import read_robot
 from lacoc_server.contest.league import (
     contest,
     decided,
@@ -78,12 +76,9 @@ from lacoc_shared.words.render import (
     LARGEST,
     LONGEST_LIST,
     LONGEST_TEXT,
-    Language,
 )
-from lacoc_shared.words.table import ON_PAGES, Wording, read, table
 
 _SOURCE = Path(__file__).parent / "src"
-_TEXTS = Path(__file__).parent / "texts"
 
 STRUCTS = (
     messages.SeatFrame,
@@ -233,33 +228,6 @@ LIMITS: dict[str, float] = {
     "DECIMALS": DECIMALS,
 }
 """Of phrases that are put into words."""
-GROUPS: dict[str, tuple[str, ...]] = {
-    "every": (
-        "general",
-        "match",
-        "referee",
-        "contestant",
-        "gateway",
-        "league",
-        "contest",
-    ),
-    "play": (),
-    "seldom": ("files", "network"),
-    "referee": ("health",),
-    "replay": (),
-    "design": ("studio", "phases"),
-    "class": ("class", "tournament"),
-    "contest": (),
-    "office": ("office",),
-    "leg": (),
-}
-"""By group of the pages' own messages: which files of phrases go with it."""
-SELDOM = ("forked", "gateway", "refused")
-"""Subjects that are said so seldom that a page loads their words only then."""
-
-SAMPLES = ("hexapod", "long-legs", "quadruped", "octopod")
-"""The sample robots, the workshop's first."""
-
 _IMPORTS = {Phrase: "phrase"}
 """Types that pages write themselves, with the module of core that has them."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
@@ -294,45 +262,6 @@ def desk_types() -> str:
         f"export type AnyRequest = {names};",
     ]
     return "\n\n".join(parts) + "\n"
-
-
-def sample_legs() -> str:
-    """Return the sample robots' bodies and legs, in mm and degrees: src/core/leg/samples.gen.ts."""
-    made = json.dumps({name: _sample(name) for name in SAMPLES}, indent=2)
-    return (
-        "// Made by client/web/make_wire.py from the robot files; not edited by hand.\n\n"
-        'import type { Leg, Three } from "./leg";\n\n'
-        "/** A robot as its file describes it. */\n"
-        "export interface SampleRobot {\n"
-        "  name: string;\n"
-        "  /** Width, length and height of the body. */\n"
-        "  size_mm: Three;\n"
-        "  legs: readonly Leg[];\n"
-        "  /** The posture in which the robot begins, by joint id. */\n"
-        "  start_deg: readonly number[];\n"
-        "}\n\n"
-        f"export const SAMPLES: Readonly<Record<string, SampleRobot>> = {made};\n"
-    )
-
-
-def _sample(name: str) -> dict[str, Any]:
-    file, content = find_robot(name)
-    robot = read_robot(content, file)
-    return {
-        "name": robot.name,
-        "size_mm": [round(1000 * side, 6) for side in robot.size_m],
-        "legs": [
-            {
-                "label": leg.label,
-                "position_mm": [round(1000 * one, 6) for one in leg.position_m],
-                "outward_deg": round(math.degrees(leg.outward_rad), 9),
-                "lengths_mm": [round(1000 * one, 6) for one in leg.lengths_m],
-                "range_deg": leg.range_deg,
-            }
-            for leg in robot.legs
-        ],
-        "start_deg": [round(math.degrees(angle), 9) for angle in robot.start_posture],
-    }
 
 
 def _head(core: str) -> list[str]:
@@ -445,38 +374,17 @@ def limits() -> str:
     return f"// Made by client/web/make_wire.py; not edited by hand.\n\n{_constants(LIMITS)}\n"
 
 
-def texts() -> dict[str, dict[str, Wording]]:
-    """Return what pages say, by group and code.
-
-    Raises:
-        ValueError: if two entries have the same code.
-    """
-    said = {group: table(files) for group, files in GROUPS.items()}
-    assert sorted(sum(GROUPS.values(), ())) == sorted(ON_PAGES)
-    own = {file.stem: read(file) for file in sorted(_TEXTS.glob("*.toml"))}
-    every = [code for part in (*said.values(), *own.values()) for code in part]
-    if twice := sorted(code for code, times in Counter(every).items() if times > 1):
-        raise ValueError(f"several entries have the code {', '.join(twice)}")
-    found = {group: {**own.get(group, {}), **said[group]} for group in GROUPS}
-    for code in [code for code in said["every"] if code.partition(".")[0] in SELDOM]:
-        found["seldom"][code] = found["every"].pop(code)
-    return found
-
-
-def _json(group: str, language: Language) -> str:
-    entries = {code: getattr(entry, language) for code, entry in texts()[group].items()}
-    return json.dumps(entries, ensure_ascii=False, indent=2) + "\n"
-
-
 FILES: dict[Path, Callable[[], str]] = {
     _SOURCE / "core" / "wire.gen.ts": wire_types,
     _SOURCE / "core" / "desk.gen.ts": desk_types,
     _SOURCE / "core" / "contest" / "sheet.gen.ts": sheet_types,
-    _SOURCE / "core" / "leg" / "samples.gen.ts": sample_legs,
+    _SOURCE / "core" / "leg" / "samples.gen.ts": sample_legs.samples,
     _SOURCE / "i18n" / "limits.gen.ts": limits,
 } | {
-    _SOURCE / "i18n" / "texts" / language / f"{group}.json": partial(_json, group, language)
-    for group in GROUPS
+    _SOURCE / "i18n" / "texts" / language / f"{group}.json": partial(
+        page_texts.as_json, group, language
+    )
+    for group in page_texts.GROUPS
     for language in LANGUAGES
 }
 

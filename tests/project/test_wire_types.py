@@ -3,14 +3,17 @@
 import runpy
 from pathlib import Path
 
+import pytest
+
 from lacoc_shared.words.table import read
 from lacoc_shared.words.template import holes
 
 WEB = Path(__file__).parents[2] / "client" / "web"
 
 
-def test_the_pages_have_the_courts_types_and_words() -> None:
+def test_the_pages_have_the_courts_types_and_words(monkeypatch: pytest.MonkeyPatch) -> None:
     """The generated files are up to date, so that pages read each field in its right place."""
+    monkeypatch.syspath_prepend(WEB)
     maker = runpy.run_path(str(WEB / "make_wire.py"))
     behind = [str(p) for p, made in maker["FILES"].items() if p.read_text("utf-8") != made()]
     assert not behind, "run: python client/web/make_wire.py"

@@ -39,7 +39,7 @@ test("who goes back sees what was, and only the events until then", () => {
   assert.equal(rewind.isBack.value, true);
   assert.equal(rewind.frame.value.beat, 500);
   assert.equal(rewind.events.value.length, 2);
-  assert.equal(rewind.behind_s.value, 10);
+  assert.equal(rewind.behindS.value, 10);
   rewind.seek(501);
   const { before, after, part } = rewind.sample(0);
   assert.deepEqual([before.beat, after.beat, part], [500, 502, 0.5]);

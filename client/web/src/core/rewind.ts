@@ -3,6 +3,7 @@
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { Match } from "./match";
 import { Playback } from "./playback";
+import { countUntil } from "./recording";
 import { type Moment, momentAt } from "./timeline";
 import { BEATS_PER_S, type Event, type Frame, type Scene, type Sheet } from "./wire";
 
@@ -20,7 +21,7 @@ export class Rewind implements Match {
   /** Whether something is shown that has passed. */
   readonly isBack = signal(false);
   /** How long ago the moment shown was [s]; 0: it is live. */
-  readonly behind_s: ReadonlySignal<number>;
+  readonly behindS: ReadonlySignal<number>;
   /** The beat that is shown, with its fraction, while it is not live. */
   readonly beat = signal(0);
   readonly playback = new Playback(this);
@@ -34,11 +35,12 @@ export class Rewind implements Match {
       const newest = live.frame.value;
       return this.isBack.value ? momentAt(this.frames, whole.value).before : newest;
     });
+    const happened = computed(() => countUntil(live.events.value, whole.value));
     this.events = computed(() => {
       const all = live.events.value;
-      return this.isBack.value ? all.filter(({ beat }) => beat <= whole.value) : all;
+      return this.isBack.value ? all.slice(0, happened.value) : all;
     });
-    this.behind_s = computed(() => {
+    this.behindS = computed(() => {
       const newest = live.frame.value?.beat ?? 0;
       return this.isBack.value ? Math.max(0, newest - this.beat.value) / BEATS_PER_S : 0;
     });

@@ -60,11 +60,13 @@ const words = signal<Words>({});
 
 /** Load parts of the words in the reader's language, and again whenever she chooses another. */
 export async function loadWords(...wanted: Group[]): Promise<void> {
-  const isFirst = groups.size === 0;
   for (const group of wanted) groups.add(group);
-  await load(language.value);
-  if (isFirst) language.subscribe((chosen) => void load(chosen));
+  await load(language.peek());
 }
+
+language.subscribe((into) => {
+  if (groups.size) void load(into);
+});
 
 async function load(into: Language): Promise<void> {
   const files = [...groups].map((group) => import(`./texts/${into}/${group}.json`));

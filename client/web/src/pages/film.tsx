@@ -91,7 +91,7 @@ window.__film = {
       if (!frame.value || !sheet.value) continue;
       const now: Heard = heardAt(frame.value, sheet.value, events.value, heard);
       const told = cuesBetween(cut ? null : heard, now, events.value);
-      cues.push(...told.map((cue) => ({ ...cue, at_s: index / fps })));
+      cues.push(...told.map((cue) => ({ ...cue, atS: index / fps })));
       heard = now;
     }
     const samples = await rendered(cues, steps.length / fps, rate);

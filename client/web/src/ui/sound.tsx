@@ -40,14 +40,15 @@ export function Sound({ match, isQuiet = false, own = -1 }: Props) {
       if (!cues.length) return;
       // A picture is shown a little after its frame has come: so is a sound.
       const shown = match.sample(performance.now())?.beat ?? frame.beat;
-      const later_s = Math.min(MOST_LATER_S, Math.max(0, frame.beat - shown) / BEATS_PER_S);
-      for (const cue of cues) tell(cue, later_s, own);
+      const laterS = Math.min(MOST_LATER_S, Math.max(0, frame.beat - shown) / BEATS_PER_S);
+      for (const cue of cues) tell(cue, laterS, own);
     });
   }, [match, isQuiet, own]);
   useEffect(() => {
     const mute = (event: KeyboardEvent) => {
       if (event.code !== "KeyM" || isTyping(event) || event.ctrlKey || event.metaKey) return;
       isLoud.value = !isLoud.peek();
+      wake();
     };
     addEventListener("keydown", mute);
     return () => removeEventListener("keydown", mute);
@@ -55,16 +56,17 @@ export function Sound({ match, isQuiet = false, own = -1 }: Props) {
   return null;
 }
 
-function tell({ name, seat }: Cue, later_s: number, own: number): void {
+function tell({ name, seat }: Cue, laterS: number, own: number): void {
   if (!isLoud.peek()) return;
   const shake = SHAKES[name];
   if (own >= 0 && shake && (seat < 0 || seat === own)) navigator.vibrate?.(shake);
   // A browser lets no page sound before somebody has pressed something on it.
   if (context?.state !== "running") return;
-  schedule(context, { name, seat }, context.currentTime + later_s);
+  schedule(context, { name, seat }, context.currentTime + laterS);
 }
 
 function wake(): void {
+  if (!isLoud.peek()) return;
   context ??= new AudioContext();
   void context.resume();
 }

@@ -3,7 +3,7 @@
 import type { Cue, CueName } from "../core/cues";
 
 /** A tone of a cue: when it begins [s], how high [Hz], how long [s], how loud (0 to 1). */
-type Tone = readonly [at_s: number, hz: number, lasts_s: number, loud: number];
+type Tone = readonly [atS: number, hz: number, lastsS: number, loud: number];
 
 /** The tones of each cue; those of a seat are shifted by `SEAT_SHIFT`. */
 const TONES: Record<CueName, readonly Tone[]> = {
@@ -37,12 +37,12 @@ const SILENT = 0.0001;
 
 /** A cue at a time of its own [s]. */
 export interface TimedCue extends Cue {
-  at_s: number;
+  atS: number;
 }
 
 /** Let a cue be heard at a time of the sound's own clock [s]. */
-export function schedule(audio: BaseAudioContext, { name, seat }: Cue, at_s: number): void {
-  for (const tone of TONES[name]) sound(audio, at_s, tone, seat);
+export function schedule(audio: BaseAudioContext, { name, seat }: Cue, atS: number): void {
+  for (const tone of TONES[name]) sound(audio, atS, tone, seat);
 }
 
 /**
@@ -52,11 +52,11 @@ export function schedule(audio: BaseAudioContext, { name, seat }: Cue, at_s: num
  */
 export async function rendered(
   cues: readonly TimedCue[],
-  lasts_s: number,
+  lastsS: number,
   rate: number,
 ): Promise<Int16Array<ArrayBuffer>> {
-  const audio = new OfflineAudioContext(2, Math.max(1, Math.round(lasts_s * rate)), rate);
-  for (const cue of cues) schedule(audio, cue, cue.at_s);
+  const audio = new OfflineAudioContext(2, Math.max(1, Math.round(lastsS * rate)), rate);
+  for (const cue of cues) schedule(audio, cue, cue.atS);
   const sides = await audio.startRendering();
   const [left, right] = [sides.getChannelData(0), sides.getChannelData(1)];
   const samples = new Int16Array(2 * left.length);
@@ -73,23 +73,23 @@ function sampleOf(value: number): number {
 
 function sound(
   audio: BaseAudioContext,
-  cue_s: number,
-  [at_s, hz, lasts_s, loud]: Tone,
+  cueS: number,
+  [atS, hz, lastsS, loud]: Tone,
   seat: number,
 ): void {
-  const begin_s = cue_s + at_s;
+  const beginS = cueS + atS;
   const source = new OscillatorNode(audio, {
     type: "triangle",
     frequency: hz * (SEAT_SHIFT[seat as 0] ?? 1),
   });
   const volume = new GainNode(audio, { gain: SILENT });
-  volume.gain.setValueAtTime(SILENT, begin_s);
-  volume.gain.exponentialRampToValueAtTime(loud, begin_s + ATTACK_S);
-  volume.gain.exponentialRampToValueAtTime(SILENT, begin_s + lasts_s);
+  volume.gain.setValueAtTime(SILENT, beginS);
+  volume.gain.exponentialRampToValueAtTime(loud, beginS + ATTACK_S);
+  volume.gain.exponentialRampToValueAtTime(SILENT, beginS + lastsS);
   source.connect(volume);
   volume
     .connect(new StereoPannerNode(audio, { pan: SEAT_PAN[seat as 0] ?? 0 }))
     .connect(audio.destination);
-  source.start(begin_s);
-  source.stop(begin_s + lasts_s);
+  source.start(beginS);
+  source.stop(beginS + lastsS);
 }

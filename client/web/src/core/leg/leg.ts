@@ -20,6 +20,16 @@ export interface Leg {
   range_deg: readonly [number, number];
 }
 
+/** A robot as its file describes it. */
+export interface SampleRobot {
+  name: string;
+  /** Width, length and height of the body. */
+  size_mm: Three;
+  legs: readonly Leg[];
+  /** The posture in which the robot begins, by joint id. */
+  start_deg: readonly number[];
+}
+
 /** A point in the plane of a leg, seen from its root hinge: outward and up [mm]. */
 export interface Spot {
   r: number;

@@ -2,8 +2,17 @@
 
 import { joint, LEVELS, legAndLevel } from "../design/table";
 import type { Phrase } from "../phrase";
-import { bent, bodyWay, cos, points, type Spot, sin, spots, type Three } from "./leg";
-import type { SampleRobot } from "./samples.gen";
+import {
+  bent,
+  bodyWay,
+  cos,
+  points,
+  type SampleRobot,
+  type Spot,
+  sin,
+  spots,
+  type Three,
+} from "./leg";
 import { type Flat, margin } from "./stance";
 
 export type StepName = "joints" | "knee" | "foot" | "swing" | "back" | "reach" | "stand" | "table";

@@ -1,8 +1,7 @@
 /** The first leg from behind: its links, a right triangle at each, and its foot to drag. */
 
 import { useRef } from "preact/hooks";
-import { bent, type Leg, type Spot, spots } from "../../core/leg/leg";
-import type { SampleRobot } from "../../core/leg/samples.gen";
+import { bent, type Leg, type SampleRobot, type Spot, spots } from "../../core/leg/leg";
 import { t } from "../../i18n";
 import { Arc, Label, Line, mm, RightAngle, textSize } from "./svg";
 

@@ -2,9 +2,8 @@
 
 import type { ComponentChildren } from "preact";
 import { joint, LEVELS } from "../../core/design/table";
-import { bent, bodyWay, spots } from "../../core/leg/leg";
+import { bent, bodyWay, type SampleRobot, spots } from "../../core/leg/leg";
 import { farSpot, feetOf, KNEE_DEG, SWING_DEG, standing, startOf } from "../../core/leg/lesson";
-import type { SampleRobot } from "../../core/leg/samples.gen";
 import { margin } from "../../core/leg/stance";
 import { t } from "../../i18n";
 import { RobotAbove } from "./above";

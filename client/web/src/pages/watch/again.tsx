@@ -24,7 +24,7 @@ export function Again({ rewind }: { rewind: Rewind }) {
   return (
     <fieldset class="again is-back">
       <legend class="hidden-text">{t("again.title")}</legend>
-      <b role="status">{t("again.behind", { seconds: Math.round(rewind.behind_s.value) })}</b>
+      <b role="status">{t("again.behind", { seconds: Math.round(rewind.behindS.value) })}</b>
       {back}
       <PlayButton playback={rewind.playback} title={(word) => `${word} (K)`} />
       <SpeedChooser playback={rewind.playback} speeds={SPEEDS} />
