@@ -246,12 +246,12 @@ def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
 
 
 def coach_request(job: str, **more: object) -> CoachRequest:
-    """Make a request to improve a quadruped's gait; the gait has small steps and short trials."""
+    """Make a request to improve a quadruped's gait, which has short trials."""
     entry = entry_of("quadruped")
     assert entry.gait.postures is not None
     one, other = (entry.gait.postures.postures[digit] for digit in (1, 3))
-    small = tuple((3 * a + b) / 4 for a, b in zip(one, other, strict=True))
-    large = tuple((a + 3 * b) / 4 for a, b in zip(one, other, strict=True))
+    small = tuple((9 * a + b) / 10 for a, b in zip(one, other, strict=True))
+    large = tuple((a + 9 * b) / 10 for a, b in zip(one, other, strict=True))
     start = entry.robot.start_posture
     table = LocomotionTable(((start,), (start,), (small, large)))
     sent = SentFile("LocoTra-data.txt", write_gait(table, entry.robot.labels))
@@ -272,9 +272,8 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
         trials = Trials(task, workers, threading.Event())
         again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
     assert reply == reply_of(task, 2, again)
-    # One round may find no number that makes nothing else worse.
-    assert len(reply.changes) <= 1
-    assert (reply.score_after > reply.score_before) == bool(reply.changes)
+    assert len(reply.changes) == 1
+    assert reply.score_after > reply.score_before
     assert len(reply.matters) == 24
     assert not reply.cancelled
     told = []
