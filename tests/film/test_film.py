@@ -215,7 +215,8 @@ def test_ffprobe_reads_it(alone: tuple[Path, list[np.ndarray]]) -> None:
     if program is None:
         pytest.skip("there is no ffprobe")
     out, pictures = alone
-    words = ["-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames"]
+    words = ["-v", "error", "-select_streams", "v", "-count_frames"]
+    words += ["-show_entries", "stream=nb_read_frames"]
     told = subprocess.check_output([program, *words, "-of", "csv=p=0", str(out)], text=True)
     assert int(told) == len(pictures)
 

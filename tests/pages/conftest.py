@@ -54,6 +54,13 @@ class Console:
         """Expect errors that match a pattern, for instance because the test ends a gateway."""
         self._expected.append(re.compile(pattern))
 
+    def expect_a_break(self) -> None:
+        """Expect what a browser logs while a gateway is away.
+
+        A page asks what stands in its way: a gateway that came back meanwhile answers 426.
+        """
+        self.expect("WebSocket|ERR_CONNECTION|status of 426")
+
     def watch(self, page: Page) -> None:
         """Collect the errors of a page."""
         page.on("console", self._said)

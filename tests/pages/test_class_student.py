@@ -157,7 +157,7 @@ def test_goes_on_after_the_gateway_was_killed(
     open_page: OpenPage, room: ClassRoom, folder: Path, console: Any
 ) -> None:
     """When a killed gateway is back, a student's page sends it what was typed meanwhile."""
-    console.expect("ERR_CONNECTION|WebSocket")
+    console.expect_a_break()
     page = Pupil(open_page, room.url)
     page.joins(room, "Zoe")
     page.changes("20.375")
@@ -183,7 +183,7 @@ def test_alone_changes_come_back_after_a_kill(
     open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
 ) -> None:
     """After kill -9 of `lacoc design` the unsaved table is back; undo gives the file's table."""
-    console.expect("ERR_CONNECTION|WebSocket")
+    console.expect_a_break()
     write_sample(tmp_path)
     command = OwnPage(tmp_path, "design")
     process, url, key = command.process, command.url, command.key

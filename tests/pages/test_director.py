@@ -85,7 +85,7 @@ def test_pages_follow_the_director(
 
     When this court is killed, both pages go to another court without a reload.
     """
-    console.expect("WebSocket|ERR_CONNECTION")  # the gateway ends before the pages
+    console.expect_a_break()  # the gateway ends before the pages
     with running(tmp_path) as (courts, web, stack):
         url = web.opened["url"]
         paths = ("/watch?director=1&q=low&lang=en", "/overlay?director=1&q=low&lang=ja")
@@ -131,7 +131,7 @@ def test_a_swing_elsewhere_is_in_the_second_picture(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:
     """During the close end of one court, a second picture shows the swings at another one."""
-    console.expect("WebSocket|ERR_CONNECTION")  # the gateway ends before the pages
+    console.expect_a_break()  # the gateway ends before the pages
     with running(tmp_path, east=CLOSE) as (_, web, stack):
         url, key = web.opened["url"], web.opened["key"]
         paths = ("/watch?director=1&q=low&lang=ja", "/overlay?director=1&q=low&lang=en")

@@ -142,7 +142,7 @@ def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
 @pytest.mark.long
 def test_it_heals_for_ever(venue: Venue, open_page: OpenPage, console: Any) -> None:
     """Without court or gateway the overlay says so at its lower edge, and recovers by itself."""
-    console.expect("WebSocket|ERR_CONNECTION")
+    console.expect_a_break()
     web = venue.web()
     show = Show(open_page(viewport=SOURCE), venue.url, LOW, drawn=False)
     show.sees(".waits", "Waiting for court main")

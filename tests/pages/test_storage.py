@@ -53,7 +53,7 @@ def test_who_acts_needs_no_storage(venue: Venue, sit: Sit, console: Any) -> None
     desk.page.click(".enter button[type=submit]")
     desk.sees(".acting.mine")
 
-    console.expect("WebSocket connection|ERR_CONNECTION")
+    console.expect_a_break()
     web.kill()
     page.sees(".banner", "Trying again")
     venue.web()

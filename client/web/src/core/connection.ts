@@ -78,6 +78,8 @@ export class Connection {
   private lastId = 0;
   private heardMs = 0;
   private ended = false;
+  /** What answered in the gateway's place; said if the next opening fails too. */
+  private inTheWay: Phrase | null = null;
   private readonly waiting = new Map<number, Waiting>();
 
   /**
@@ -125,6 +127,7 @@ export class Connection {
     this.socket = socket;
     this.heardMs = performance.now();
     socket.onopen = () => {
+      this.inTheWay = null;
       this.state.value = { ...this.state.value, open: true };
       void this.begin(socket);
     };
@@ -159,7 +162,7 @@ export class Connection {
     this.waiting.clear();
     if (this.ended) return;
     const { open, attempt, refused } = this.state.value;
-    this.state.value = { open: false, attempt: attempt + 1, refused };
+    this.state.value = { open: false, attempt: attempt + 1, refused: this.inTheWay ?? refused };
     if (!open && attempt % DOUBTS === DOUBTS - 1) void this.doubt();
     const soon = Math.min(RETRY_MOST_MS, RETRY_FIRST_MS * 2 ** attempt);
     // Not all pages of a hall at the same moment.
@@ -167,14 +170,16 @@ export class Connection {
     setTimeout(() => this.open(), wait);
   }
 
-  /** Say what stands in the way if a proxy answers, but opens no WebSocket. */
+  /**
+   * Find out what stands in the way if a proxy answers, but opens no WebSocket.
+   * A gateway that came back just now answers a usual request too: it opens the next one.
+   */
   private async doubt(): Promise<void> {
     try {
       // A browser says with a POST, as with a WebSocket, which site's page asks.
       const { status } = await fetch(this.url.replace(/^ws/, "http"), { method: "POST" });
       const code = IN_THE_WAY[status];
-      if (code && !this.state.peek().open)
-        this.state.value = { ...this.state.peek(), refused: { code } };
+      if (code && !this.state.peek().open) this.inTheWay = { code };
     } catch {
       // Nothing answers: the page waits, as it says.
     }
