@@ -27,6 +27,8 @@ from lacoc_arenas import brains
 from lacoc_client.play import simulation
 from lacoc_client.web.gateway import scores
 from lacoc_client.web.gateway.page import TRY_LATER
+from lacoc_client.web.gateway.pieces.cutter import PIECE_MS
+from lacoc_client.web.gateway.pieces.route import PiecesNow
 from lacoc_client.web.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.web.office import links
@@ -137,6 +139,7 @@ STRUCTS = (
     learner.Judged,
     learner.EditReply,
     learner.CheckReply,
+    PiecesNow,
 )
 CONTEST_STRUCTS = (
     draws.Team,
@@ -212,6 +215,7 @@ CONSTANTS: dict[str, float | str] = {
     "USUAL_HZ": USUAL_HZ,
     "MOST_HZ": MOST_HZ,
     "TRY_LATER": TRY_LATER,
+    "PIECE_MS": PIECE_MS,
     "DESIGN_MAX_BYTES": requests.REQUEST_BYTES,
     "PARSE_MAX_BYTES": requests.PARSE_BYTES,
     "SAME_MM_S": facts.SAME_MM_S,

@@ -9,16 +9,10 @@ from pathlib import Path
 
 import pytest
 from chromium import WEB, npm
+from page_node import NODE_OF_PAGES
 
 pytestmark = pytest.mark.slow
 
-NODE = Path(sys.executable).with_name("node")
-"""Node of this Python environment: an older Node on the path does not read TypeScript."""
-NODE_OF_PAGES = [
-    *(NODE, "--experimental-transform-types", "--disable-warning=ExperimentalWarning"),
-    *("--import", Path(__file__).with_name("core") / "page.mjs"),
-]
-"""The words that start Node so that it loads the pages' modules, except those that draw."""
 _LEAGUE = Path(__file__).parents[1] / "league"
 """Has modules that the cases' own programs import."""
 CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))

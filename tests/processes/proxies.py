@@ -1,5 +1,6 @@
 """Runs the proxies of examples/online on loopback, with an authority of the test's own."""
 
+import os
 import shutil
 import socket
 import subprocess
@@ -15,6 +16,8 @@ from waiting import LIMIT_S, until
 
 from lacoc_shared.network.certificate import Pair
 
+_OWN_USER = "user root;\n" if os.geteuid() == 0 else ""
+"""Else nginx's workers can't reach a test's folders."""
 EXAMPLES = Path(__file__).parents[2] / "examples" / "online"
 
 
@@ -40,18 +43,19 @@ def caddy(folder: Path, pair: Pair, name: str, port: int, gateway: str) -> Itera
     """
     text = (EXAMPLES / "Caddyfile").read_text("utf-8")
     tls = f"\ttls {pair.certificate} {pair.key}\n\treverse_proxy"
-    text = text.replace("\treverse_proxy", tls)
+    text = text.replace("\treverse_proxy", tls, 1)
     settings = "{\n\tadmin off\n\tauto_https off\n}\n"
     (folder / "Caddyfile").write_text(settings + text)
     environment = {
         "LACOC_NAME": f"https://{name}:{port}",
         "LACOC_GATEWAY": gateway,
+        "LACOC_CROWD": gateway,
         "HOME": str(folder),
         "XDG_DATA_HOME": str(folder),
         "PATH": "/usr/bin:/bin",
     }
     words = ["run", "--adapter", "caddyfile", "--config", str(folder / "Caddyfile")]
-    with _running(folder, [_program("caddy"), *words], port, environment):
+    with _running(folder, [program("caddy"), *words], port, environment):
         yield
 
 
@@ -65,17 +69,18 @@ def nginx(folder: Path, pair: Pair, name: str, port: int, gateway: str) -> Itera
         ("/etc/letsencrypt/live/uni.example/fullchain.pem", str(pair.certificate)),
         ("/etc/letsencrypt/live/uni.example/privkey.pem", str(pair.key)),
         ("127.0.0.1:8080", gateway),
+        ("/var/cache/nginx/lacoc", str(folder / "cache")),
     ):
         assert wanted in text
         text = text.replace(wanted, own)
     kinds = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
     places = "".join(f"{kind}_temp_path {folder}/{kind};\n" for kind in kinds)
     (folder / "nginx.conf").write_text(
-        f"daemon off;\npid {folder}/nginx.pid;\nerror_log {folder}/error.log;\n"
+        f"{_OWN_USER}daemon off;\npid {folder}/nginx.pid;\nerror_log {folder}/error.log;\n"
         f"events {{}}\nhttp {{\naccess_log off;\n{places}{text}}}\n"
     )
     words = ["-p", str(folder), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")]
-    with _running(folder, [_program("nginx"), *words], port, None):
+    with _running(folder, [program("nginx"), *words], port, None):
         yield
 
 
@@ -99,8 +104,8 @@ def _answers(port: int) -> bool:
         return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
-def _program(name: str) -> str:
-    """Return the path of a proxy's program; install it on Debian if it is missing."""
+def program(name: str) -> str:
+    """Return the path of a program; install it on Debian if it is missing."""
     where = "/usr/local/sbin:/usr/sbin:/usr/local/bin:/usr/bin:/bin"
     with locked(name):
         found = shutil.which(name) or shutil.which(name, path=where)

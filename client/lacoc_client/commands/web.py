@@ -66,7 +66,8 @@ def web_command(
         typer.Option(
             min=1,
             max=2000,
-            help="How many watching pages may be open at once; further pages are refused.",
+            help="How many watching pages get each frame at once; further pages see the match in "
+            "pieces, 2 to 4 s later.",
         ),
     ] = VIEWERS_MOST,
     browser: Annotated[

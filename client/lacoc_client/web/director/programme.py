@@ -104,9 +104,9 @@ class Programme:
         late = self._late.get(court)
         return None if late is None else late.audience
 
-    def others(self, viewer: Viewer) -> int:
-        """Count the other pages that follow and have the same right as this one."""
-        return sum(late.audience.others(viewer) for late in list(self._late.values()))
+    def others(self, can_act: bool, but: Viewer | None = None) -> int:
+        """Count the pages that follow and may act, or only watch, but for one."""
+        return sum(late.audience.others(can_act, but) for late in list(self._late.values()))
 
     def stop(self) -> None:
         """Stop choosing courts and passing messages on."""

@@ -28,7 +28,7 @@ class Audience:
         """Frame counts of pages that have gone."""
 
     def __len__(self) -> int:
-        return len(self._viewers)
+        return sum(one.is_page for one in self._viewers)
 
     def add(self, viewer: Viewer) -> None:
         """Add a page, which gets everything from now on."""
@@ -45,9 +45,10 @@ class Audience:
             self._gone.sent += viewer.frames.sent
             self._gone.dropped += viewer.frames.dropped
 
-    def others(self, viewer: Viewer) -> int:
-        """Count the other pages with the same right as this one: to act, or only to watch."""
-        return sum(one.can_act == viewer.can_act for one in self._viewers if one is not viewer)
+    def others(self, can_act: bool, but: Viewer | None = None) -> int:
+        """Count the pages that may act, or those that only watch, but for one."""
+        places = (one for one in self._viewers if one.is_page and one is not but)
+        return sum(one.can_act == can_act for one in places)
 
     def frames(self) -> Frames:
         """Return the frame counts of all pages; may be called from any thread."""

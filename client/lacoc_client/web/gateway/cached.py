@@ -14,7 +14,7 @@ FOR_EVER = "public, max-age=31536000, immutable"
 """For what never changes under its name: assets, whose names contain their hash, and records."""
 ASK_AGAIN = "no-cache"
 """For what changes: the browser asks whether what it has is still the newest."""
-_A_SECOND = "public, max-age=1"
+A_SECOND = "public, max-age=1"
 """For what a crowd asks again and again: a proxy that keeps it asks once a second for all."""
 
 _packed = lru_cache(maxsize=16)(page_file)
@@ -42,7 +42,7 @@ def file_response(request: Request, file: PageFile, cache: str) -> Response:
 def json_response(request: Request, found: Any) -> Response:
     """Answer with what changes all the time and many pages ask for."""
     file = _packed(msgspec.json.encode(found), "application/json")
-    return file_response(request, file, _A_SECOND)
+    return file_response(request, file, A_SECOND)
 
 
 def large_response(request: Request, path: Path, media_type: str, cache: str) -> Response:

@@ -51,7 +51,9 @@ class Courts:
         self._accepted: set[bytes] = set()
         """Digests of the tokens that a court has accepted."""
         self.sent_away = 0
-        """Number of pages that were refused because there were too many."""
+        """Number of pages that found no place; those that only watch go on in pieces."""
+        self.pieces_asked = 0
+        """Number of requests for pieces that came here: caches on the way answer the others."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
         """Return the started feed and the referees of a court; without a name, of the first court.
@@ -136,10 +138,7 @@ class Courts:
         """
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
-        others = sum(feed.audience.others(viewer) for feed in self.feeds)
-        if self._programme is not None:
-            others += self._programme.others(viewer)
-        if others < most:
+        if self._others(acts, viewer) < most:
             return None
         if acts:
             return say("gateway.full-acting", most=most)
@@ -147,6 +146,22 @@ class Courts:
             self.claiming.add(viewer)
             return None
         return say("gateway.full", most=most)
+
+    def free_places(self) -> int:
+        """Count the places that are free for pages that only watch."""
+        return max(0, self.home.viewers_most - self._others(False))
+
+    def _others(self, can_act: bool, but: Viewer | None = None) -> int:
+        others = sum(feed.audience.others(can_act, but) for feed in self.feeds)
+        return others + (self._programme.others(can_act, but) if self._programme else 0)
+
+    def dismiss(self, viewer: Viewer) -> None:
+        """Send a viewer nothing any more."""
+        self.pages.discard(viewer)
+        for feed in self.feeds:
+            feed.audience.remove(viewer)
+        if self._programme is not None:
+            self._programme.remove(viewer)
 
     async def watch_files(self) -> None:
         """Watch the files on this machine; tell the pages what has changed.

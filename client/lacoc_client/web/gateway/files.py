@@ -12,7 +12,9 @@ PAGES = Path(__file__).parents[2] / "pages"
 NOT_BUILT = say("gateway.not-built")
 
 _PACKED_FROM_BYTES = 1024
-_PACKED = ("text/", "application/json", "image/svg+xml")
+PIECES_TYPE = "application/vnd.lacoc.piece"
+"""Media type of a piece of a match."""
+_PACKED = ("text/", "application/json", "image/svg+xml", PIECES_TYPE)
 _TYPES = {".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "application/wasm"}
 
 

@@ -4,23 +4,10 @@ import time
 from collections import deque
 from enum import Enum, auto
 
-import msgspec
-
-from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.audience import Audience
+from lacoc_client.web.gateway.backlog import Backlog
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import MessageKind
-from lacoc_shared.codec import decode
-
-_NEEDED = (MessageKind.LINK, MessageKind.SHEET, MessageKind.SCENE)
-
-
-class _LinkMessage(msgspec.Struct):
-    """The fields of a link message that say which earlier messages still count."""
-
-    connected: bool
-    log: int
 
 
 class _SentBy(Enum):
@@ -45,10 +32,7 @@ class LateFeed:
         """The pages that watch it late."""
         self._behind_s = behind_s
         self._waiting: deque[tuple[float, _SentBy, bytes]] = deque()
-        self._newest: dict[MessageKind, bytes] = {}
-        """The messages besides the events that a page needs when it comes, by kind."""
-        self._events: dict[bytes, None] = {}
-        self._log = 0
+        self._backlog = Backlog()
         feed.tap(self)
 
     def send(self, framed: bytes) -> None:
@@ -65,10 +49,7 @@ class LateFeed:
 
     def add(self, viewer: Viewer) -> None:
         """Let a page watch; send it everything that was known `behind_s` ago."""
-        kept = self._newest
-        messages = [kept[kind] for kind in _NEEDED if kind in kept] + [*self._events]
-        messages += [kept[kind] for kind in (MessageKind.HEALTH, MessageKind.FRAME) if kind in kept]
-        for framed in messages:
+        for framed in self._backlog.all():
             viewer.send(framed)
         self.audience.add(viewer)
 
@@ -80,7 +61,7 @@ class LateFeed:
         """
         while self._waiting and self._waiting[0][0] <= now_s - self._behind_s:
             _, way, framed = self._waiting.popleft()
-            self._keep(framed)
+            self._backlog.take(framed)
             match way:
                 case _SentBy.SENT:
                     self.audience.send(framed)
@@ -88,17 +69,3 @@ class LateFeed:
                     self.audience.send_if_fast(framed)
                 case _SentBy.OFFERED:
                     self.audience.offer(framed, now_s)
-
-    def _keep(self, framed: bytes) -> None:
-        kind, payload = wire.opened(framed)
-        if kind is MessageKind.EVENT:
-            self._events[framed] = None
-            return
-        self._newest[kind] = framed
-        if kind is MessageKind.LINK:
-            link = decode(payload, _LinkMessage)
-            if link.log != self._log:
-                self._log = link.log
-                self._events.clear()
-            if not link.connected:  # an old frame must not look like a new one
-                self._newest.pop(MessageKind.FRAME, None)

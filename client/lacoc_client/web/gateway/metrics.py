@@ -45,8 +45,8 @@ class GatewayMetrics(Collector):
             sent.add_metric(court, sum(one.sent for one in frames))
             dropped.add_metric(court, sum(one.dropped for one in frames))
         yield from (connected, viewers, sent, dropped)
-        full = CounterMetricFamily(
-            "lacoc_gateway_sent_away", "Pages that were refused because there were too many."
-        )
-        full.add_metric([], self._courts.sent_away)
-        yield full
+        courts = self._courts
+        full = "Pages that found no place; those that only watch go on in pieces."
+        yield CounterMetricFamily("lacoc_gateway_sent_away", full, courts.sent_away)
+        asked = "Requests for matches in pieces that no cache answered."
+        yield CounterMetricFamily("lacoc_gateway_pieces_asked", asked, courts.pieces_asked)

@@ -18,10 +18,8 @@ from lacoc_client.web.gateway.page_requests import serve_requests
 from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.referees import Referees
 from lacoc_client.web.gateway.viewer import USUAL_HZ, Viewer
-from lacoc_client.web.gateway.wire import MessageKind
-from lacoc_shared import __version__
+from lacoc_client.web.gateway.welcome import welcome
 from lacoc_shared.contest.access import Access
-from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
@@ -159,26 +157,7 @@ class Page:
         return True
 
     def _welcome(self, court: str | None) -> bytes:
-        home, prefill = self._home, self._home.prefill
-        filled = None
-        if prefill is not None and self._viewer.is_own:
-            filled = {
-                "seat": prefill.seat,
-                "name": prefill.name,
-                "has_token": bool(prefill.token),
-            }
-        body = {
-            "protocol": PROTOCOL,
-            "version": __version__,
-            "courts": list(home.courts),
-            "court": court,
-            "can_act": self._may_act,
-            "home": home.kind,
-            "contest": home.contest,
-            "desk": home.desk,
-            "prefill": filled,
-        }
-        return wire.map_message(MessageKind.WELCOME, body)
+        return welcome(self._home, court, self._may_act, self._viewer.is_own)
 
     @property
     def _may_act(self) -> bool:

@@ -17,6 +17,7 @@ from starlette.websockets import WebSocket
 from lacoc_client.play.link.event import PATH as EVENT_PATH
 from lacoc_client.play.link.event import LinkedEvent
 from lacoc_client.web.gateway.cached import (
+    A_SECOND,
     ASK_AGAIN,
     FOR_EVER,
     file_response,
@@ -31,6 +32,8 @@ from lacoc_client.web.gateway.health import GatewayHealth
 from lacoc_client.web.gateway.home import Home
 from lacoc_client.web.gateway.metrics import GatewayMetrics
 from lacoc_client.web.gateway.page import Page
+from lacoc_client.web.gateway.pieces.pictures import Pictures
+from lacoc_client.web.gateway.pieces.route import piece_routes
 from lacoc_client.web.gateway.published_route import published_routes
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.scores import scores_route
@@ -79,15 +82,18 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     shown = ShownRecords(home.sheet) if home.keeps_back and home.sheet is not None else None
     shelf = Recordings(home.recordings, courts.over, shown)
     forks = Forks(shelf.own)
+    pictures = Pictures(courts)
     if home.exporter is not None:
         home.exporter.registry.register(GatewayMetrics(courts))
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         courts.find(None)
-        watching = asyncio.get_running_loop().create_task(courts.watch_files())
+        loop = asyncio.get_running_loop()
+        tasks = [loop.create_task(work) for work in (courts.watch_files(), pictures.forget())]
         yield
-        watching.cancel()
+        for task in tasks:
+            task.cancel()
         await courts.close()
         if more is not None:
             await more.close()
@@ -104,6 +110,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         sheet_route(home.sheet),
         *published_routes(home.sheet),
         scores_route(courts),
+        *piece_routes(courts, pictures),
         WebSocketRoute("/ws", page),
     ]
     paths = PATHS if more is None else (*PATHS, *more.paths)
@@ -218,7 +225,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
             found = await asyncio.to_thread(files.find, path.name)
         if found is None:
             return answer_browser(request.scope, say("gateway.no-contest"), 404)
-        return file_response(request, found, ASK_AGAIN)
+        return file_response(request, found, A_SECOND)
 
     return Route("/contest.json", sheet)
 

@@ -1,9 +1,9 @@
 """One page: how often it gets a frame, and whether it may act."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
-
-from lacoc_client.web.gateway.page_socket import PageSocket
+from typing import Protocol
 
 LEAST_HZ, MOST_HZ = 1.0, 50.0
 USUAL_HZ = 25.0
@@ -21,6 +21,25 @@ class Frames:
     """Frames that a page was too slow for; it got a newer one."""
 
 
+class Socket(Protocol):
+    """Where the messages to a page are written."""
+
+    drained: Callable[[], None] | None
+    """Called when all bytes that had to wait have been sent."""
+    heard_s: float
+    """Time when the page last sent anything, on the loop's clock."""
+
+    @property
+    def keeps_up(self) -> bool:
+        """True if everything written has been sent."""
+
+    def write(self, framed: bytes) -> None:
+        """Send a finished frame."""
+
+    def watch_closely(self) -> None:
+        """Look several times a second whether the page is there."""
+
+
 class Viewer:
     """A page's place in a feed.
 
@@ -28,15 +47,17 @@ class Viewer:
     Everything else is written at once; a page that does not take it is cut off.
 
     Args:
-        socket: the page's WebSocket.
+        socket: the page's WebSocket, or what stands in its place.
     """
 
-    def __init__(self, socket: PageSocket) -> None:
+    def __init__(self, socket: Socket) -> None:
         self._socket = socket
         self._slot: bytes | None = None
         self._interval_s = 1 / USUAL_HZ
         self._next_s = 0.0
         self.frames = Frames()
+        self.is_page = True
+        """Whether it takes the place of a page; else it is what stands for a crowd of them."""
         self.is_own = False
         """Whether it is a page of the person who started the gateway: it showed the page key."""
         self.can_act = False

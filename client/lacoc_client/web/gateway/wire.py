@@ -260,10 +260,15 @@ def message(kind: MessageKind, payload: bytes) -> bytes:
     return head + payload
 
 
+def inside(framed: bytes) -> bytes:
+    """Return a message that `message` made without its WebSocket frame: kind and payload."""
+    return framed[{126: 4, 127: 10}.get(framed[1], 2) :]
+
+
 def opened(framed: bytes) -> tuple[MessageKind, bytes]:
     """Return the kind and the payload of a message that `message` made."""
-    head = {126: 4, 127: 10}.get(framed[1], 2)
-    return MessageKind(framed[head]), framed[head + 1 :]
+    data = inside(framed)
+    return MessageKind(data[0]), data[1:]
 
 
 def map_message(kind: MessageKind, value: dict[str, Any]) -> bytes:

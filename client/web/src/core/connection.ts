@@ -78,6 +78,8 @@ export class Connection {
   private lastId = 0;
   private heardMs = 0;
   private ended = false;
+  private rests = false;
+  private retry: ReturnType<typeof setTimeout> | undefined;
   /** What answered in the gateway's place; said if the next opening fails too. */
   private inTheWay: Phrase | null = null;
   private readonly waiting = new Map<number, Waiting>();
@@ -113,6 +115,19 @@ export class Connection {
   async greetAgain(): Promise<void> {
     // Where it is not open now, it greets when it is.
     if (this.socket?.readyState === WebSocket.OPEN) await this.begin(this.socket);
+  }
+
+  /** Try no more until it is told to. */
+  rest(): void {
+    this.rests = true;
+    clearTimeout(this.retry);
+  }
+
+  /** Try again after a rest. */
+  wake(): void {
+    if (!this.rests) return;
+    this.rests = false;
+    this.open();
   }
 
   /** Close for good. */
@@ -164,10 +179,11 @@ export class Connection {
     const { open, attempt, refused } = this.state.value;
     this.state.value = { open: false, attempt: attempt + 1, refused: this.inTheWay ?? refused };
     if (!open && attempt % DOUBTS === DOUBTS - 1) void this.doubt();
+    if (this.rests) return;
     const soon = Math.min(RETRY_MOST_MS, RETRY_FIRST_MS * 2 ** attempt);
     // Not all pages of a hall at the same moment.
     const wait = later ? LATER_MS * (1 + Math.random()) : soon * (0.7 + 0.6 * Math.random());
-    setTimeout(() => this.open(), wait);
+    this.retry = setTimeout(() => this.open(), wait);
   }
 
   /**

@@ -1,12 +1,14 @@
 /** The page's knowledge of a court, as signals that its parts draw from. */
 
-import { batch, type ReadonlySignal, signal } from "@preact/signals";
+import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import { ownToken, runKey, setting, socketUrl } from "./address";
 import { recoloured } from "./colours";
-import { Connection } from "./connection";
+import { Connection, type SocketState } from "./connection";
 import { type Match, part } from "./match";
+import type { Due, Shows } from "./pieces";
 import { type Moment, Timeline } from "./timeline";
 import {
+  BEATS_PER_S,
   type Event,
   type Frame,
   type Health,
@@ -40,6 +42,21 @@ const DELAYED: ReadonlySet<Message["kind"]> = new Set([
   "programme",
 ]);
 
+/** Why a page that only watches gets its match in pieces: the code of what was said instead. */
+const NO_PLACE: ReadonlySet<string> = new Set([
+  "gateway.full",
+  "page.machine-full",
+  "page.no-gateway",
+  "page.no-websocket",
+]);
+/** A frame this much older than what was shown is no repetition: the court has gone back. */
+const REPEATS_BEATS = 10 * BEATS_PER_S;
+
+const REACHED: SocketState = { open: true, attempt: 0, refused: null };
+
+/** Where the same match comes in pieces: made for a page that finds no place on a WebSocket. */
+export type InPieces = (url: string, shows: Shows) => { end(): void };
+
 /** What a page watches: one court, or the first or the second picture of the director. */
 export type Watched = "court" | "director" | "aside";
 
@@ -70,6 +87,8 @@ export class Court implements Match {
   readonly outdated = signal(false);
   readonly timeline: Timeline;
   readonly connection: Connection;
+  /** How the page hears of the court: by its socket, or in pieces as long as they come. */
+  readonly reached: ReadonlySignal<SocketState>;
   /** The sheet as the court has it. */
   private readonly published = signal<Sheet | null>(null);
   private scenes: { hash: Uint8Array; scene: Scene }[] = [];
@@ -77,6 +96,9 @@ export class Court implements Match {
   private arrivedMs = 0;
   private arrivals: number[] = [];
   private held: { dueMs: number; take: () => void }[] = [];
+  private pieces: { end(): void } | null = null;
+  /** Whether frames come in pieces now. */
+  private readonly piecesCome = signal(false);
   /** What came of a court that was cut to, until there is a frame of it; null: no cut is open. */
   private coming: (() => void)[] | null = null;
 
@@ -85,11 +107,13 @@ export class Court implements Match {
    * @param delayMs Everything is shown so much later, scores and events too: for a stream that
    *   must not help anyone.
    * @param watched Whether to follow one court, or the director.
+   * @param inPieces Gets the match in pieces; null: the page acts, so it needs a WebSocket.
    */
   constructor(
     private readonly hz: number,
     readonly delayMs = 0,
     private readonly watched: Watched = "court",
+    private readonly inPieces: InPieces | null = null,
   ) {
     this.sheet = recoloured(this.published);
     this.timeline = new Timeline();
@@ -98,8 +122,15 @@ export class Court implements Match {
       () => this.watch(),
       (message, arrivedMs) => this.receive(message, arrivedMs),
     );
+    this.reached = computed(() => (this.piecesCome.value ? REACHED : this.connection.state.value));
     setInterval(() => this.look(), LOOK_MS);
-    if (delayMs) setInterval(() => this.playOut(), PLAYOUT_MS);
+    if (delayMs || inPieces) setInterval(() => this.playOut(), PLAYOUT_MS);
+    if (inPieces && !runKey() && !ownToken()) {
+      const refused = computed(() => this.connection.state.value.refused);
+      refused.subscribe((why) => {
+        if (why && NO_PLACE.has(why.code)) this.beginPieces();
+      });
+    }
   }
 
   /** Whether it follows the director, and not one court. */
@@ -117,9 +148,6 @@ export class Court implements Match {
   }
 
   private watch(): Promise<unknown> {
-    this.later(performance.now(), () => {
-      this.log = null;
-    });
     this.seat.value = null;
     this.referee.value = null;
     const { hz, directed: director } = this;
@@ -128,7 +156,46 @@ export class Court implements Match {
     return this.ask("watch", { court, director, aside, hz, key: runKey(), token: ownToken() });
   }
 
+  /** Get the match in pieces, until there is room on a WebSocket. */
+  private beginPieces(): void {
+    this.connection.rest();
+    if (this.pieces) return;
+    const picture = this.directed ? this.watched : ["court", setting("court")].filter(Boolean);
+    const path = [picture].flat().map(encodeURIComponent).join("/");
+    this.pieces = this.inPieces!(new URL(`live/${path}`, location.href).href, {
+      take: (messages, begins) => this.takePiece(messages, begins),
+      room: () => this.connection.wake(),
+    });
+  }
+
+  private takePiece(messages: readonly Due[], begins: boolean): void {
+    const first = messages[0]?.dueMs ?? 0;
+    if (begins) this.forgetLog(first);
+    for (const { message, dueMs } of messages)
+      this.later(dueMs, (shownMs) => {
+        this.piecesCome.value = true;
+        this.take(message, shownMs);
+      });
+  }
+
+  private endPieces(): void {
+    this.pieces?.end();
+    this.pieces = null;
+    this.piecesCome.value = false;
+    this.held = [];
+  }
+
+  private forgetLog(arrivedMs: number): void {
+    this.later(arrivedMs, () => {
+      this.log = null;
+    });
+  }
+
   private receive(message: Message, arrivedMs: number): void {
+    if (message.kind === "welcome") {
+      if (this.pieces) this.endPieces();
+      this.forgetLog(arrivedMs); // all events follow
+    }
     if (!DELAYED.has(message.kind)) this.take(message, arrivedMs);
     else this.later(arrivedMs, (shownMs) => this.take(message, shownMs));
   }
@@ -136,7 +203,7 @@ export class Court implements Match {
   /** Do something when the delay has passed; at once where there is none. */
   private later(arrivedMs: number, take: (shownMs: number) => void): void {
     const dueMs = arrivedMs + this.delayMs;
-    if (this.delayMs) this.held.push({ dueMs, take: () => take(dueMs) });
+    if (this.delayMs || this.pieces) this.held.push({ dueMs, take: () => take(dueMs) });
     else take(arrivedMs);
   }
 
@@ -221,6 +288,7 @@ export class Court implements Match {
   }
 
   private takeFrame(frame: Frame, arrivedMs: number): void {
+    if (this.pieces && this.wasShown(frame)) return;
     this.arrivedMs = arrivedMs;
     this.arrivals.push(arrivedMs);
     this.timeline.push(frame, arrivedMs);
@@ -228,8 +296,17 @@ export class Court implements Match {
     this.live.value = true;
   }
 
+  /** Whether a frame is of the seconds that the page saw on a WebSocket before. */
+  private wasShown({ match, beat }: Frame): boolean {
+    const newest = this.timeline.newest;
+    if (newest?.match !== match) return false;
+    return beat <= newest.beat && beat > newest.beat - REPEATS_BEATS;
+  }
+
   private takeLink(link: Link): void {
     this.link.value = link;
+    // The court was restarted: its time may have gone back.
+    if (this.pieces && this.log !== null && link.log !== this.log) this.timeline.reset();
     if (link.log !== this.log && this.events.value.length) this.events.value = [];
     this.log = link.log;
   }
@@ -256,6 +333,8 @@ export class Court implements Match {
     const nowMs = performance.now();
     this.arrivals = this.arrivals.filter((atMs) => nowMs - atMs < 1000);
     this.framesHz.value = this.arrivals.length;
-    if (nowMs - this.arrivedMs > STALE_MS) this.live.value = false;
+    if (nowMs - this.arrivedMs <= STALE_MS) return;
+    this.live.value = false;
+    this.piecesCome.value = false;
   }
 }

@@ -25,6 +25,7 @@ export const LEAST_HZ = 1;
 export const USUAL_HZ = 25;
 export const MOST_HZ = 50;
 export const TRY_LATER = 1013;
+export const PIECE_MS = 1000;
 export const DESIGN_MAX_BYTES = 131072;
 export const PARSE_MAX_BYTES = 1052672;
 export const SAME_MM_S = 3;
@@ -633,6 +634,12 @@ export interface EditReply {
 export interface CheckReply {
   keys: number;
   mistakes: Mistake[];
+}
+
+export interface PiecesNow {
+  run: string;
+  closed: number;
+  room: boolean;
 }
 
 /** `SeatFrame` is an array on the wire: the names of its places. */

@@ -5,6 +5,7 @@ import { useEffect } from "preact/hooks";
 import { amount, flag } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
+import { inPieces } from "../core/pieces";
 import { reloadWhenServed } from "../core/reload";
 import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
@@ -18,9 +19,10 @@ const court = new Court(
   USUAL_HZ,
   1000 * amount("delay", 0, 0, DELAY_MOST_S),
   flag("director", false) ? "director" : "court",
+  inPieces,
 );
 /** The director's second picture. */
-const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside") : null;
+const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside", inPieces) : null;
 const style: Style = {
   camera: cameraOfAddress(),
   quality: qualityOfAddress() ?? "auto",

@@ -5,6 +5,7 @@ import { amount, flag, goToCourt, setting } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { part } from "../core/match";
+import { inPieces } from "../core/pieces";
 import { Rewind } from "../core/rewind";
 import { quality, remembered } from "../core/settings";
 import { LEAST_HZ, MOST_HZ, USUAL_HZ } from "../core/wire";
@@ -39,11 +40,12 @@ const court = new Court(
   amount("hz", USUAL_HZ, LEAST_HZ, MOST_HZ),
   1000 * amount("delay", 0, 0, DELAY_MOST_S),
   flag("director", false) ? "director" : "court",
+  inPieces,
 );
 /** What is shown of it: live, or some time behind. */
 const shown = new Rewind(court);
 /** The director's second picture. */
-const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside") : null;
+const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside", inPieces) : null;
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);

@@ -23,7 +23,7 @@ export function directorBegins(court: Court): string {
 
 /** A sentence that says what the page waits for; "" if it waits for nothing. */
 export function waitsFor(court: Court): string {
-  return waitsForGateway(court.connection.state.value) || directorBegins(court) || troubleOf(court);
+  return waitsForGateway(court.reached.value) || directorBegins(court) || troubleOf(court);
 }
 
 /** A sentence that says what is wrong with the court that is shown; "" if nothing is. */
@@ -125,7 +125,7 @@ export function LinkBanner({ court }: { court: Court }) {
     );
   }
   // That the director has not begun yet is no trouble: the page says it more calmly.
-  const text = waitsForGateway(court.connection.state.value) || troubleOf(court);
+  const text = waitsForGateway(court.reached.value) || troubleOf(court);
   if (!text) return <NoticeBanner notice={court.notice.value} />;
   return over ? <Banner calm>{t("link.over")}</Banner> : <Banner>{text}</Banner>;
 }

@@ -5,6 +5,7 @@ import { useEffect } from "preact/hooks";
 import { followColours } from "../../core/colours";
 import { Turns } from "../../core/contest/turns";
 import { Court } from "../../core/court";
+import { inPieces } from "../../core/pieces";
 import { reloadWhenServed } from "../../core/reload";
 import { USUAL_HZ } from "../../core/wire";
 import { OnAir } from "../../ui/on_air";
@@ -14,9 +15,9 @@ import { qualityOfAddress } from "../watch/flags";
 
 const LOOK_MS = 200;
 
-const court = new Court(USUAL_HZ, 0, "director");
+const court = new Court(USUAL_HZ, 0, "director", inPieces);
 /** The director's second picture. */
-const aside = new Court(USUAL_HZ, 0, "aside");
+const aside = new Court(USUAL_HZ, 0, "aside", inPieces);
 const turns = new Turns();
 const style: Style = {
   camera: "auto",

@@ -1,0 +1,89 @@
+"""The pictures that are cut into pieces, each from when somebody asks until nobody does."""
+
+import asyncio
+import time
+from dataclasses import dataclass
+
+from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.pieces.cutter import Cutter
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.web.gateway.welcome import welcome
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+DIRECTOR, ASIDE, COURT = "director", "aside", "court"
+"""Names of the pictures: the director's two, and `court`, which a court's name may follow."""
+UNASKED_S = 60.0
+"""A picture for which nobody has asked for so long is cut no longer [s]."""
+
+
+@dataclass
+class _CutPicture:
+    cutter: Cutter
+    viewer: Viewer
+    asked_s: float
+
+
+class Pictures:
+    """Cuts the pictures of a gateway; used from the event loop only.
+
+    Args:
+        courts: the courts of the gateway.
+    """
+
+    def __init__(self, courts: Courts) -> None:
+        self._courts = courts
+        self._cut: dict[str, _CutPicture] = {}
+
+    def find(self, name: str) -> Cutter:
+        """Return the cutter of a picture, which begins now if nobody has asked for it lately.
+
+        Args:
+            name: `director`, `aside`, `court` (the first one) or `court/NAME`.
+
+        Raises:
+            UserError: if there is no such picture.
+        """
+        found = self._known(name)
+        if found is None:
+            found = self._cut[name] = self._begin(name)
+        return found.cutter
+
+    def known(self, name: str) -> Cutter | None:
+        """Return the cutter of a picture that is being cut; else None."""
+        found = self._known(name)
+        return None if found is None else found.cutter
+
+    async def forget(self) -> None:
+        """Stop cutting what nobody asks for; ends only when it is cancelled."""
+        while True:
+            await asyncio.sleep(UNASKED_S / 4)
+            old_s = time.monotonic() - UNASKED_S
+            for name in [name for name, one in self._cut.items() if one.asked_s < old_s]:
+                self._courts.dismiss(self._cut.pop(name).viewer)
+
+    def _known(self, name: str) -> _CutPicture | None:
+        found = self._cut.get(name)
+        if found is not None:
+            found.asked_s = time.monotonic()
+        return found
+
+    def _begin(self, name: str) -> _CutPicture:
+        cutter = Cutter(time.monotonic)
+        viewer = Viewer(cutter)
+        viewer.is_page = False
+        courts = self._courts
+        kind, _, court = name.partition("/")
+        if name in (DIRECTOR, ASIDE):
+            viewer.send(welcome(courts.home, None))
+            viewer.send(courts.notice.message)
+            courts.programme.add(viewer, name == ASIDE)
+        elif kind == COURT:
+            feed, _ = courts.find(court or None)
+            viewer.send(welcome(courts.home, feed.court))
+            viewer.send(courts.notice.message)
+            feed.add(viewer)
+        else:
+            raise UserError(say("gateway.no-page"))
+        courts.pages.add(viewer)
+        return _CutPicture(cutter, viewer, time.monotonic())
