@@ -100,8 +100,8 @@ def numbered(*facts: AnyFact) -> tuple[AnyFact, ...]:
     [
         (15, ()),
         (4, [contest_forging.AGAIN]),
-        pytest.param(60, (), marks=pytest.mark.long),
-        pytest.param(16, [contest_forging.AGAIN], marks=pytest.mark.long),
+        pytest.param(30, (), marks=pytest.mark.long),
+        pytest.param(8, [contest_forging.AGAIN], marks=pytest.mark.long),
     ],
 )
 def test_no_forgery_is_missed(
