@@ -24,7 +24,9 @@ _LEAST_PX, _MOST_PX = 160, 3840
 _BROWSERS_MOST = 4
 
 
-class _Language(StrEnum):
+class Language(StrEnum):
+    """Language of a film or a stream."""
+
     EN = "en"
     JA = "ja"
 
@@ -68,7 +70,7 @@ def film_command(
         typer.Option("--poster", help="Write a still of each match too, as .png beside the film."),
     ] = False,
     language: Annotated[
-        _Language | None,
+        Language | None,
         typer.Option(help="Language of the overlay; by default that of this program."),
     ] = None,
     size: Annotated[
@@ -101,7 +103,7 @@ def film_command(
     command needs Chromium and the extra "film".
     """
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that nothing is left behind
-    look = _look(size, view, quality, overlay, language)
+    look = look_of(size, view, quality, overlay, language)
     _check(record, out, highlights, moments)
     # Only now: without the extra, the help of this command must still be shown.
     from lacoc_client.film import contest, film
@@ -150,8 +152,8 @@ def _stills(out: Path, count: int) -> list[Path]:
     return [out.with_name(f"{out.stem}-{number}.png") for number in range(1, count + 1)]
 
 
-def _look(
-    size: str, view: View, quality: Quality, overlay: bool, language: _Language | None
+def look_of(
+    size: str, view: View, quality: Quality, overlay: bool, language: Language | None
 ) -> Look:
     """Return the look of a film.
 

@@ -7,7 +7,6 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any
 
 from playwright.sync_api import (
     Browser,
@@ -22,6 +21,7 @@ from playwright.sync_api import (
 from lacoc_client.film.chromium import FLAGS, find
 from lacoc_client.film.look import Look
 from lacoc_client.film.plan import Picture
+from lacoc_client.film.shots import PNG, Shots
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
@@ -34,9 +34,6 @@ _WAIT_S = 120.0
 _LOOK_S = 0.02
 PACED = ("--enable-begin-frame-control", "--run-all-compositor-stages-before-draw")
 """Options with which `chromium-headless-shell` puts a page together only when it is told to."""
-_FRAMES_MOST = 10
-"""A browser may leave out the picture of a frame that it has not drawn yet."""
-_SHOT = {"format": "png", "optimizeForSpeed": True}
 # A string that the page evaluates by itself would need a weaker content security policy: the
 # protocol of the browser's developer tools does it from outside.
 _OPEN = """() => {
@@ -59,9 +56,6 @@ _SHOW_AND_HAND_OVER = """async (steps) => {
 class CameraPage:
     """An open page; only the thread that opened it may use it.
 
-    `chromium-headless-shell` puts the page together once for each picture, when it is told to.
-    Other programs also do so whenever they show a frame, which takes a quarter more time.
-
     Args:
         page: an empty page.
         address: address of the page of a record.
@@ -70,9 +64,7 @@ class CameraPage:
 
     def __init__(self, page: Page, address: str, paced: bool) -> None:
         self._page = page
-        self.paced = paced
-        """Whether frames are made only when they are asked for."""
-        self._tools = page.context.new_cdp_session(page)
+        self._shots = Shots(page, paced)
         page.goto(address, wait_until="commit")
         first, last, quality = self._opened()
         self.quality: str = quality
@@ -88,8 +80,8 @@ class CameraPage:
                 moving parts and the automatic camera are where they must be in the last.
         """
         told = [{"beat": step.beat, "cut": step.cut} for step in steps]
-        self._page.evaluate(_SHOW if self.paced else _SHOW_AND_HAND_OVER, told)
-        return base64.b64decode(self._framed() if self.paced else self._screenshot())
+        self._page.evaluate(_SHOW if self._shots.paced else _SHOW_AND_HAND_OVER, told)
+        return self._shots.take(PNG)
 
     def sound(self, pictures: Sequence[Picture], fps: int, rate_hz: int) -> bytes:
         """Return the sound of all pictures of a film.
@@ -101,21 +93,6 @@ class CameraPage:
         wanted = {"steps": told, "fps": fps, "rate": rate_hz}
         return base64.b64decode(self._page.evaluate(_SOUND, wanted))
 
-    def _framed(self) -> str:
-        for _ in range(_FRAMES_MOST):
-            if found := self._frame(screenshot=_SHOT).get("screenshotData"):
-                return str(found)
-        raise Error(f"{_FRAMES_MOST} frames without a picture")
-
-    def _screenshot(self) -> str:
-        # The screenshot of Playwright waits for fonts and hides a caret, each time.
-        return str(self._tools.send("Page.captureScreenshot", _SHOT)["data"])
-
-    def _frame(self, **wanted: Any) -> dict[str, Any]:
-        """Let the browser put the page together once."""
-        found: dict[str, Any] = self._tools.send("HeadlessExperimental.beginFrame", wanted)
-        return found
-
     def _opened(self) -> tuple[int, int, str]:
         """Wait until the page can show the record; return its ends, and how the page draws."""
         self._page.evaluate(_OPEN)
@@ -126,8 +103,8 @@ class CameraPage:
                     raise Error(found)
                 first, last, quality = found
                 return first, last, quality
-            if self.paced:
-                self._frame()
+            if self._shots.paced:
+                self._shots.frame()
             time.sleep(_LOOK_S)
         raise TimeoutError(f"the page did not open in {_WAIT_S:.0f} s")
 
@@ -143,6 +120,23 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
     Raises:
         UserError: if there is no browser, it does not start, or the page can't show the record.
     """
+    with window(look) as (page, paced):
+        yield CameraPage(page, address, paced)
+
+
+@contextmanager
+def window(look: Look) -> Iterator[tuple[Page, bool]]:
+    """Open an empty page in a new browser; the browser ends with the block.
+
+    Args:
+        look: the window has its size.
+
+    Yields:
+        The page, and whether its frames are made only when they are asked for.
+
+    Raises:
+        UserError: if there is no browser, it does not start, or the block has an error of it.
+    """
     with Scratch("browser") as folder, _started(folder) as playwright:
         program = find(playwright.chromium.executable_path)
         browser = _launched(playwright, program)
@@ -153,8 +147,7 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
                 reduced_motion="no-preference",  # else the automatic camera would stand still
             )
             context.set_default_timeout(1000 * _WAIT_S)
-            page, paced = empty_page(browser, context, look)
-            yield CameraPage(page, address, paced)
+            yield empty_page(browser, context, look)
         except Error as error:
             raise UserError(say("film.page-failed", error=_told(error))) from None
         finally:

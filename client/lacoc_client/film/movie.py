@@ -1,7 +1,7 @@
 """Writes pictures into an MP4 that every browser plays; the file gets its name when it is whole."""
 
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
@@ -22,6 +22,7 @@ _THREADS = 4
 """The number of threads changes the bits of a film, so it is the same on every machine."""
 _BT709 = 1
 _SOUND_CODEC, _SOUND_HZ = "aac", 48_000
+_PNG = b"\x89PNG"
 _SAMPLE_BYTES = 4
 """A sample of both sides."""
 
@@ -31,21 +32,26 @@ class Movie:
 
     Args:
         container: the open file.
-        width: width of each picture [px].
-        height: height of each picture [px].
+        size: width and height of each picture [px].
         fps: pictures a second.
         sound_hz: samples a second of the sound; 0: the film is silent.
+        options: of the encoder.
     """
 
     def __init__(
-        self, container: Any, width: int, height: int, fps: int, sound_hz: int = 0
+        self,
+        container: Any,
+        size: tuple[int, int],
+        fps: int,
+        sound_hz: int = 0,
+        options: Mapping[str, str] = _OPTIONS,
     ) -> None:
         self._container = container
         self._fps = fps
         self._sound_hz = sound_hz
         self._track = None
-        self._stream = container.add_stream(_CODEC, rate=fps, options=_OPTIONS)
-        self._stream.width, self._stream.height = width, height
+        self._stream = container.add_stream(_CODEC, rate=fps, options=dict(options))
+        self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
         self._stream.time_base = self._stream.codec_context.time_base = Fraction(1, fps)
         context = self._stream.codec_context
@@ -54,7 +60,7 @@ class Movie:
         context.color_range = ColorRange.MPEG
         context.colorspace = context.color_primaries = context.color_trc = _BT709
         self.count = 0
-        """How many pictures it has."""
+        """Number of the next picture."""
         if sound_hz:
             self._track = container.add_stream(_SOUND_CODEC, rate=_SOUND_HZ, layout="stereo")
         self._samples = bytearray()
@@ -70,18 +76,23 @@ class Movie:
         """
         self._samples += samples
 
-    def add(self, png: bytes) -> None:
+    def add(self, picture: bytes, number: int | None = None) -> None:
         """Add a picture.
+
+        Args:
+            picture: PNG or JPEG.
+            number: its number in the film, larger than that of the picture before; None: the next.
 
         Raises:
             OSError: if the file can't be written.
         """
         # A new decoder each time: one decoder draws a picture over those before, for animations.
-        (picture,) = av.CodecContext.create("png", "r").decode(av.Packet(png))
-        frame = picture.reformat(
+        decoder = av.CodecContext.create("png" if picture.startswith(_PNG) else "mjpeg", "r")
+        (decoded,) = decoder.decode(av.Packet(picture))
+        frame = decoded.reformat(
             format="yuv420p", dst_colorspace=Colorspace.ITU709, dst_color_range=ColorRange.MPEG
         )
-        frame.pts = self.count
+        frame.pts = self.count = self.count if number is None else number
         frame.pict_type = PictureType.NONE  # a PNG is a key picture, but not of this film
         frame.time_base = self._stream.codec_context.time_base
         self._container.mux(self._stream.encode(frame))
@@ -133,7 +144,7 @@ def movie(out: Path, width: int, height: int, fps: int, sound_hz: int = 0) -> It
         # The index comes first, so that a browser begins before it has loaded all.
         container = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
         try:
-            film = Movie(container, width, height, fps, sound_hz)
+            film = Movie(container, (width, height), fps, sound_hz)
             yield film
             film.end()
         finally:

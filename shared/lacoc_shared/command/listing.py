@@ -118,6 +118,9 @@ _PANELS: Mapping[str, Mapping[str, ListedCommand]] = {
             "Make a film of a recorded match, or of the best moments of a contest, as an MP4.",
             "film",
         ),
+        "stream": ListedCommand(
+            "Send an event live to a video platform, or into a file, until Ctrl-C.", "film"
+        ),
         "simulate": ListedCommand(
             "Play matches of bots or ghosts without a picture, and print the results.", _SERVER
         ),

@@ -7,6 +7,7 @@
 
 import { signal } from "@preact/signals";
 import { flag } from "../core/address";
+import { inBase64 } from "../core/base64";
 import { followColours } from "../core/colours";
 import { cuesBetween, type Heard, heardAt } from "../core/cues";
 import { fetched, readBeside } from "../core/record_files";
@@ -99,14 +100,6 @@ window.__film = {
   },
   quality: () => window.__lacoc?.view?.quality ?? "",
 };
-
-function inBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
-  const reader = new FileReader();
-  return new Promise((resolve) => {
-    reader.onload = () => resolve(String(reader.result).split(",")[1] ?? "");
-    reader.readAsDataURL(new Blob([bytes]));
-  });
-}
 
 /** Resolves when the browser has drawn once. */
 function drawn(): Promise<unknown> {

@@ -29,6 +29,8 @@ const TONES: Record<CueName, readonly Tone[]> = {
     [0, 784, 0.9, 0.3],
   ],
 };
+/** No cue sounds longer than this [s]. */
+export const LONGEST_S = 1;
 /** The right seat sounds a fourth higher than the left one, and from its own side. */
 const SEAT_SHIFT = [1, 4 / 3] as const;
 const SEAT_PAN = [-0.6, 0.6] as const;

@@ -1,0 +1,71 @@
+"""`lacoc stream`: send an event live to a video platform, or into a file."""
+
+from typing import Annotated
+
+import typer
+
+from lacoc_client.commands.film import Language, look_of
+from lacoc_client.film.look import Quality, View
+from lacoc_client.play.stopping import stop_signals
+from lacoc_shared.command import screen
+from lacoc_shared.words import say
+
+app = typer.Typer()
+
+_PAGES = "http://127.0.0.1:8080"
+_MUCH = 0.05
+"""A larger share of pictures that are left out is a warning."""
+
+
+@app.command(name="stream")
+def stream_command(
+    wanted: Annotated[
+        str,
+        typer.Argument(
+            metavar="TARGET",
+            help="Where it goes: an address of a video platform (rtmp://..., with the key of the "
+            "stream), a folder (HLS), or a file that ends in .m3u8, .mkv, .mp4 or .ts.",
+        ),
+    ],
+    pages: Annotated[
+        str,
+        typer.Option(metavar="ADDRESS", help="Address of the event's pages."),
+    ] = _PAGES,
+    court: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Show this court; by default what the director chooses."),
+    ] = None,
+    language: Annotated[
+        Language | None,
+        typer.Option(help="Language of the overlay; by default that of this program."),
+    ] = None,
+    size: Annotated[
+        str,
+        typer.Option(
+            metavar="WIDTHxHEIGHT",
+            help="Size of the film in pixels: two even numbers from 160 to 3840.",
+        ),
+    ] = "854x480",
+    fps: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 25,
+) -> None:
+    """Send an event live to a video platform, or into a file, until Ctrl-C.
+
+    It shows the broadcast's page with score, cards and sound. On a slow machine it leaves pictures
+    out, and never falls behind. It goes on when court, pages or platform were gone for a time. The
+    command needs Chromium and the extra "film".
+    """
+    look = look_of(size, View.AUTO, Quality.LOW, True, language)
+    # Only now: without the extra, the help of this command must still be shown.
+    from lacoc_client.film.live import stream
+    from lacoc_client.film.live.target import target
+
+    where = target(wanted)
+
+    def report(found: stream.Report) -> None:
+        said = say("stream.report", hz=found.hz, percent=100 * found.left_out)
+        (screen.warn if found.left_out > _MUCH else screen.note)(said)
+
+    with stop_signals() as stopping:
+        screen.note(say("stream.begins", target=where.shown))
+        source = stream.Streamed(pages, court or "")
+        stream.stream(source, where, look, fps, stopping, screen.warn, report)

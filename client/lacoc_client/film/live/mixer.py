@@ -1,0 +1,36 @@
+"""Mixes sounds that begin at any time into one track."""
+
+import numpy as np
+
+
+class Mixer:
+    """A track of both sides, taken from its beginning on; where nothing sounds it is silent."""
+
+    def __init__(self) -> None:
+        self._taken = 0
+        self._mixed = np.zeros((0, 2), np.int32)
+
+    def add(self, at: int, samples: bytes) -> None:
+        """Add a sound.
+
+        Args:
+            at: the sample at which it begins; one that was taken already becomes the next one.
+            samples: of the left and the right side in turn, each with 16 bits, little endian.
+        """
+        sound = np.frombuffer(samples, "<i2").reshape(-1, 2)
+        begin = max(0, at - self._taken)
+        self._reach(begin + len(sound))
+        self._mixed[begin : begin + len(sound)] += sound
+
+    def take(self, until: int) -> bytes:
+        """Return what was not taken yet, up to a sample, as `add` takes it."""
+        count = max(0, until - self._taken)
+        self._reach(count)
+        found, self._mixed = self._mixed[:count], self._mixed[count:]
+        self._taken += count
+        return np.clip(found, -32_768, 32_767).astype("<i2").tobytes()
+
+    def _reach(self, length: int) -> None:
+        missing = length - len(self._mixed)
+        if missing > 0:
+            self._mixed = np.concatenate([self._mixed, np.zeros((missing, 2), np.int32)])

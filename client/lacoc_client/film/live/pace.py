@@ -1,0 +1,43 @@
+"""Says which picture of a stream is due, and leaves out those for which there was no time."""
+
+import math
+
+
+class PicturePace:
+    """The pictures of a stream, by the clock: picture `n` is due `n / fps` after the beginning.
+
+    Args:
+        fps: pictures a second.
+        began_s: when picture 0 is due [s].
+    """
+
+    def __init__(self, fps: int, began_s: float) -> None:
+        self._fps = fps
+        self._began_s = began_s
+        self._next = 0
+        self.taken = 0
+        """Number of pictures that were taken."""
+        self.left_out = 0
+        """Number of pictures that were not."""
+
+    def wait_s(self, now_s: float) -> float:
+        """Return how long it is until the next picture is due [s]; 0: it is."""
+        return max(0.0, self._began_s + self._next / self._fps - now_s)
+
+    def take(self, now_s: float) -> int:
+        """Return the number of the picture that is due; all before it are past.
+
+        Args:
+            now_s: the time [s], not before the next picture is due.
+        """
+        # A clock's last bits must not make picture 3 picture 2.
+        due = math.floor((now_s - self._began_s) * self._fps + 1e-6)
+        number = max(due, self._next)
+        self.left_out += number - self._next
+        self.taken += 1
+        self._next = number + 1
+        return number
+
+    def time_s(self, number: int) -> float:
+        """Return when a picture was due [s]."""
+        return self._began_s + number / self._fps

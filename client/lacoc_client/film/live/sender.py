@@ -1,0 +1,135 @@
+"""Encodes the pictures of a stream and sends them, on a thread of its own."""
+
+import threading
+import time
+from collections.abc import Callable
+from queue import Empty, Full, Queue
+from typing import NamedTuple
+
+import av
+
+from lacoc_client.film.live.mixer import Mixer
+from lacoc_client.film.live.target import Target
+from lacoc_client.film.movie import Movie
+from lacoc_shared.words import Phrase, say
+
+SOUND_HZ = 48_000
+"""Samples a second of the sound."""
+_OPTIONS = {"preset": "veryfast", "crf": "23", "maxrate": "4M", "bufsize": "8M"}
+_WAITING_MOST = 4
+"""Pictures that may wait; further ones are left out: a stream never falls behind."""
+_AGAIN_S = 2.0
+_LOOK_S = 0.2
+
+
+class LivePicture(NamedTuple):
+    """A picture of a stream."""
+
+    number: int
+    data: bytes
+    """PNG or JPEG."""
+
+
+class Sender:
+    """Sends pictures and sounds; a server that has gone is tried again until it is back.
+
+    Args:
+        target: where they go.
+        size: width and height of a picture [px].
+        fps: pictures a second.
+        tell: called with what happens, from this thread.
+    """
+
+    def __init__(
+        self, target: Target, size: tuple[int, int], fps: int, tell: Callable[[Phrase], None]
+    ) -> None:
+        self._target, self._size, self._fps, self._tell = target, size, fps, tell
+        self._waiting: Queue[LivePicture] = Queue(_WAITING_MOST)
+        self._mixer, self._mixing = Mixer(), threading.Lock()
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self.sent = 0
+        """Number of pictures that were sent."""
+        self.left_out = 0
+        """Number of pictures that were not, because the encoder or the server was too slow."""
+        self.failed: OSError | None = None
+        """Why a file can't be written; the stream is at its end."""
+        self._thread.start()
+
+    def show(self, picture: LivePicture) -> None:
+        """Send a picture, or leave it out if several wait."""
+        try:
+            self._waiting.put_nowait(picture)
+        except Full:
+            self.left_out += 1
+
+    def hear(self, at_s: float, samples: bytes) -> None:
+        """Send a sound.
+
+        Args:
+            at_s: when it begins, counted from picture 0 [s].
+            samples: of both sides in turn, each with 16 bits, little endian.
+        """
+        with self._mixing:
+            self._mixer.add(round(at_s * SOUND_HZ), samples)
+
+    def end(self) -> None:
+        """Send what waits, and end."""
+        self._ending.set()
+        self._thread.join(10 * _AGAIN_S)
+
+    def _run(self) -> None:
+        is_away = False
+        while not self._ending.is_set():
+            try:
+                self._send(is_away)
+            except OSError as error:
+                if not self._target.is_remote:
+                    self.failed = error
+                    return
+                if not is_away:
+                    why = error.strerror or str(error)
+                    self._tell(say("stream.away", target=self._target.shown, why=why))
+                is_away = True
+                self._pass(_AGAIN_S)
+
+    def _pass(self, seconds: float) -> None:
+        """Leave pictures out for a time."""
+        end_s = time.monotonic() + seconds
+        while time.monotonic() < end_s and not self._ending.is_set():
+            self.left_out += self._next() is not None
+
+    def _next(self) -> LivePicture | None:
+        try:
+            return self._waiting.get(timeout=_LOOK_S)
+        except Empty:
+            return None
+
+    def _send(self, was_away: bool) -> None:
+        """Open the target, and send until the end.
+
+        Raises:
+            OSError: if it can't be written.
+        """
+        first = None
+        with av.open(
+            self._target.address, "w", format=self._target.form, options=self._target.options
+        ) as container:
+            film = Movie(container, self._size, self._fps, SOUND_HZ, _OPTIONS)
+            while not self._ending.is_set() or not self._waiting.empty():
+                picture = self._next()
+                if picture is None:
+                    continue
+                if first is None:
+                    first = picture.number
+                    self._sound_until(first)
+                    if was_away:
+                        self._tell(say("stream.back", target=self._target.shown))
+                film.hear(self._sound_until(picture.number + 1))
+                film.add(picture.data, picture.number - first)
+                self.sent += 1
+            film.end()
+
+    def _sound_until(self, number: int) -> bytes:
+        with self._mixing:
+            return self._mixer.take(round(number * SOUND_HZ / self._fps))

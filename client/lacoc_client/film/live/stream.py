@@ -1,0 +1,181 @@
+"""Draws the broadcast's page at a steady pace, and hands pictures and sounds to the sender."""
+
+import base64
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from urllib.parse import urlencode
+
+from playwright.sync_api import Error, Page
+
+from lacoc_client.film.camera_page import window
+from lacoc_client.film.live.pace import PicturePace
+from lacoc_client.film.live.sender import SOUND_HZ, LivePicture, Sender
+from lacoc_client.film.live.target import Target
+from lacoc_client.film.look import Look
+from lacoc_client.film.shots import JPEG, Shots
+from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.words import Phrase, say
+
+_HELD_S = 0.4
+"""A picture waits so long until all sounds of its time are known."""
+_SOUNDS_S = 0.1
+"""Time between two questions for new sounds."""
+_TOLD_S = 10.0
+"""Time between two reports."""
+_AGAIN_S = 2.0
+_SLEPT_MOST_S = 0.05
+_SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
+
+
+@dataclass(frozen=True)
+class Streamed:
+    """What is streamed."""
+
+    pages: str
+    """Address of the event's pages."""
+    court: str = ""
+    """One court; "": what the director shows."""
+
+    def address(self, look: Look) -> str:
+        """Return the address of the broadcast's page with a look."""
+        watched = {"court": self.court} if self.court else {"director": "1"}
+        query = {"q": "low", "lang": look.language, "taken": "1", **watched}
+        return f"{self.pages.rstrip('/')}/overlay?{urlencode(query)}"
+
+
+@dataclass(frozen=True)
+class Report:
+    """How a stream went in the last seconds."""
+
+    hz: float
+    """Pictures a second that were sent."""
+    left_out: float
+    """Share of the pictures that were left out."""
+
+
+class _Streaming:
+    """A stream that runs."""
+
+    def __init__(
+        self, source: Streamed, target: Target, look: Look, fps: int, tell: Callable[[Phrase], None]
+    ) -> None:
+        self._address = source.address(look)
+        self._look, self._tell = look, tell
+        self._pace = PicturePace(fps, time.time())
+        self.sender = Sender(target, (look.width, look.height), fps, tell)
+        self._held: deque[LivePicture] = deque()
+        self._sounds_s = 0.0
+        self._told_s = time.time()
+        self._told = (0, 0)
+
+    def run(self, stopping: Callable[[], bool], report: Callable[[Report], None]) -> None:
+        """Stream until it is told to stop.
+
+        Raises:
+            UserError: if there is no browser.
+            OSError: if the target is a file and can't be written.
+        """
+        while not stopping():
+            with window(self._look) as (page, paced):
+                shots = Shots(page, paced)
+                try:
+                    self._open(page, stopping)
+                    while not stopping():
+                        self._picture(page, shots)
+                        self._report(report)
+                except Error as error:  # the browser crashed
+                    self._tell(say("stream.browser-gone", why=_told(error)))
+                    time.sleep(_AGAIN_S)
+
+    def _open(self, page: Page, stopping: Callable[[], bool]) -> None:
+        """Open the page, however often it must be tried.
+
+        Raises:
+            Error: if the browser has gone.
+        """
+        is_away = False
+        while not stopping():
+            try:
+                page.goto(self._address, wait_until="commit")
+            except Error as error:
+                if page.is_closed():
+                    raise
+                if not is_away:
+                    self._tell(say("stream.no-page", address=self._address, why=_told(error)))
+                is_away = True
+                time.sleep(_AGAIN_S)
+            else:
+                if is_away:
+                    self._tell(say("stream.page-back", address=self._address))
+                return
+
+    def _picture(self, page: Page, shots: Shots) -> None:
+        """Wait for the next picture, take it, and pass on those that were held long enough."""
+        wait_s = self._pace.wait_s(time.time())
+        if wait_s > _SLEPT_MOST_S:
+            time.sleep(_SLEPT_MOST_S)
+            return
+        time.sleep(wait_s)
+        number = self._pace.take(time.time())
+        self._held.append(LivePicture(number, shots.take(JPEG)))
+        now_s = time.time()
+        if now_s - self._sounds_s > _SOUNDS_S:
+            self._sounds_s = now_s
+            for at_ms, samples in page.evaluate(_SOUNDS, SOUND_HZ):
+                at_s = at_ms / 1000 - self._pace.time_s(0)
+                self.sender.hear(at_s, base64.b64decode(samples))
+        while self._held and self._pace.time_s(self._held[0].number) < now_s - _HELD_S:
+            self.sender.show(self._held.popleft())
+        if self.sender.failed is not None:
+            raise self.sender.failed
+
+    def _report(self, report: Callable[[Report], None]) -> None:
+        now_s = time.time()
+        if now_s - self._told_s < _TOLD_S:
+            return
+        passed_s, self._told_s = now_s - self._told_s, now_s
+        sent, left_out = self.sender.sent, self.sender.left_out + self._pace.left_out
+        new, missed = sent - self._told[0], left_out - self._told[1]
+        self._told = sent, left_out
+        report(Report(new / passed_s, missed / max(1, new + missed)))
+
+
+def _told(error: Error) -> str:
+    return printable(error.message.partition("\n")[0], 200)
+
+
+def stream(
+    source: Streamed,
+    target: Target,
+    look: Look,
+    fps: int,
+    stopping: Callable[[], bool],
+    tell: Callable[[Phrase], None],
+    report: Callable[[Report], None],
+) -> None:
+    """Stream an event until `stopping` returns True.
+
+    A gateway, a court or a video server that has gone is waited for.
+
+    Args:
+        source: what is shown.
+        target: where it goes.
+        look: its language and size.
+        fps: pictures a second.
+        stopping: called for each picture.
+        tell: called with what happens, from any thread.
+        report: called each 10 s.
+
+    Raises:
+        UserError: if there is no browser, or a file can't be written.
+    """
+    running = _Streaming(source, target, look, fps, tell)
+    try:
+        running.run(stopping, report)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=target.address, why=why)) from None
+    finally:
+        running.sender.end()

@@ -1,0 +1,69 @@
+"""Where a stream goes, and how it is written there."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_SILENT_US = "10000000"
+"""After so long without an answer a video server counts as gone [us]."""
+_LIST = "index.m3u8"
+_FORMATS = {
+    ".mp4": ("mp4", {"movflags": "frag_keyframe+empty_moov+default_base_moof"}),
+    ".mkv": ("matroska", {}),
+    ".ts": ("mpegts", {}),
+}
+_SERVERS = {"rtmp": "flv", "rtmps": "flv", "srt": "mpegts", "tcp": "mpegts", "udp": "mpegts"}
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where a stream goes.
+
+    Args:
+        address: a path, or an address of a video server.
+        form: the format of the container, by FFmpeg's name.
+        options: of the container.
+    """
+
+    address: str
+    form: str
+    options: dict[str, str] = field(default_factory=dict)
+    is_remote: bool = False
+    """Whether it is a server, which may come back when it has gone."""
+
+    @property
+    def shown(self) -> str:
+        """The address without the key of the stream, which is its last part."""
+        return f"{self.address.rpartition('/')[0]}/..." if self.is_remote else self.address
+
+
+def target(wanted: str) -> Target:
+    """Return where a stream goes.
+
+    Args:
+        wanted: `rtmp://...`, `rtmps://...`, `srt://...`; a folder, which becomes one of HLS; or a
+            file that ends in .m3u8, .mp4, .mkv or .ts.
+
+    Raises:
+        UserError: if it is none of these.
+    """
+    scheme, is_address, _ = wanted.partition("://")
+    if is_address:
+        if scheme not in _SERVERS:
+            raise UserError(say("stream.bad-target", target=wanted))
+        return Target(wanted, _SERVERS[scheme], {"rw_timeout": _SILENT_US}, is_remote=True)
+    path = Path(wanted)
+    if path.is_dir() or wanted.endswith("/"):
+        path.mkdir(parents=True, exist_ok=True)
+        path /= _LIST
+    if not path.parent.is_dir():
+        raise UserError(say("film.no-folder", folder=str(path.parent)))
+    if path.suffix == ".m3u8":
+        options = {"hls_time": "2", "hls_list_size": "8", "hls_flags": "delete_segments"}
+        return Target(str(path), "hls", options)
+    if path.suffix not in _FORMATS:
+        raise UserError(say("stream.bad-target", target=wanted))
+    form, options = _FORMATS[path.suffix]
+    return Target(str(path), form, options)

@@ -1,0 +1,186 @@
+"""Tests of `lacoc stream`: its pace, its sound, and what a video server gets of a real match."""
+
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from lacoc_process import Lacoc, environment
+from ports import free_port
+from show import decide, playing
+from venue import Venue
+from waiting import LIMIT_S, until
+
+from lacoc_client.film.live.mixer import Mixer
+from lacoc_client.film.live.pace import PicturePace
+from lacoc_client.film.live.target import target
+from lacoc_shared.mistakes import UserError
+
+SIZE = (320, 180)
+SCORE = np.s_[0:24, 110:145]
+"""Where the left score stands in a picture of this size."""
+
+
+@given(st.integers(1, 60), st.lists(st.floats(0, 2), max_size=50))
+def test_a_pace_never_falls_behind(fps: int, busy_s: list[float]) -> None:
+    """Each picture is the one that is due; what was left out is counted."""
+    began_s = 1_700_000_000.0
+    pace, now_s, numbers = PicturePace(fps, began_s), began_s, []
+    for one_s in busy_s:
+        now_s += pace.wait_s(now_s)
+        numbers.append(number := pace.take(now_s))
+        assert abs(pace.time_s(number) - now_s) < 1 / fps + 1e-5
+        now_s += one_s
+    assert numbers == sorted({*numbers})
+    assert pace.taken == len(numbers)
+    assert pace.left_out == (numbers[-1] + 1 - len(numbers) if numbers else 0)
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 400), st.integers(1, 50)), max_size=20), st.integers(1, 99)
+)
+def test_a_mixer_adds_sounds_at_their_time(sounds: list[tuple[int, int]], step: int) -> None:
+    """All sounds that are known in time are in the track, where they begin."""
+    mixer, whole = Mixer(), np.zeros((500, 2), int)
+    for at, length in sounds:
+        sound = np.full((length, 2), (7, -9), "<i2")
+        mixer.add(at, sound.tobytes())
+        whole[at : at + length] += sound
+    taken = b"".join(mixer.take(until) for until in [*range(step, 500, step), 500])
+    assert np.array_equal(np.frombuffer(taken, "<i2").reshape(-1, 2), whole)
+
+
+def test_a_sound_that_comes_late_is_heard_at_once() -> None:
+    """A sound whose time was taken already begins with the next sample."""
+    mixer = Mixer()
+    assert mixer.take(2) == bytes(8)
+    mixer.add(0, np.array([[5, 6]], "<i2").tobytes())
+    assert np.frombuffer(mixer.take(4), "<i2").tolist() == [5, 6, 0, 0]
+
+
+def test_where_a_stream_can_go(tmp_path: Path) -> None:
+    """Servers, folders and files are told apart; the key of a stream is not shown."""
+    assert target("rtmp://a.example/live/key").form == "flv"
+    assert target("rtmp://a.example/live/key").shown == "rtmp://a.example/live/..."
+    assert target(f"{tmp_path}").address == f"{tmp_path}/index.m3u8"
+    assert target(f"{tmp_path}/a.mkv").form == "matroska"
+    for wrong in ("http://a.example", f"{tmp_path}/a.avi", f"{tmp_path}/none/a.mkv"):
+        with pytest.raises(UserError):
+            target(wrong)
+
+
+@pytest.fixture
+def venue(tmp_path: Path, with_browser: str) -> Iterator[Venue]:
+    """Give a court and its gateway."""
+    with ExitStack() as stack:
+        yield Venue(tmp_path, stack)
+
+
+def streaming(venue: Venue, where: str, stack: ExitStack) -> Lacoc:
+    """Start a stream of the court."""
+    words = ("--pages", venue.url, "--court", "main", "--size", "320x180", "--fps", "10")
+    log = stack.enter_context((venue.folder / "stream.log").open("ab"))
+    process = Lacoc("stream", where, *words, stderr=log, env=environment(LACOC_LANGUAGE="en"))
+    stack.callback(process.kill)
+    return process
+
+
+def pictures(container: Any) -> Iterator[tuple[float, np.ndarray]]:
+    """Give time [s] and pixels of each picture."""
+    for frame in container.decode(video=0):
+        yield float(frame.time), frame.to_ndarray(format="rgb24")
+
+
+@pytest.mark.slow
+def test_a_match_is_streamed_into_a_file(venue: Venue, tmp_path: Path) -> None:
+    """The file has the match as it goes on: pictures at their times, its sounds, the score."""
+    venue.court()
+    venue.web()
+    with ExitStack() as stack:
+        out = tmp_path / "out.mkv"
+        running = streaming(venue, str(out), stack)
+        until(lambda: out.exists() and out.stat().st_size > 10_000)
+        referee = playing(venue)
+        time.sleep(1)
+        decide(referee, "for the test", type="adjust", seat="left", points=70)
+        time.sleep(3)
+        running.send_signal(signal.SIGINT)
+        assert running.wait(LIMIT_S) == 0
+    with av.open(str(out)) as container:
+        shown = [*pictures(container)]
+    times = [at_s for at_s, _ in shown]
+    assert times == sorted({*times})
+    assert {one.shape for _, one in shown} == {(SIZE[1], SIZE[0], 3)}
+    scores = [one[SCORE].astype(int) for _, one in shown]
+    assert np.abs(scores[-1] - scores[len(scores) // 4]).mean() > 1
+    with av.open(str(out)) as container:
+        sound = np.concatenate([one.to_ndarray() for one in container.decode(audio=0)], axis=1)
+    assert np.abs(sound).max() > 0.1, "the count-down is heard"
+    assert sound.shape[1] / 48_000 == pytest.approx(times[-1] - times[0], abs=0.5)
+
+
+class VideoServer:
+    """Takes a stream by RTMP, as a video platform does, until it is closed."""
+
+    def __init__(self, port: int) -> None:
+        self.address = f"rtmp://127.0.0.1:{port}/live/key"
+        self.count = 0
+        self.sounds = 0
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        listening = av.open(self.address, "r", format="flv", options={"listen": "1"})
+        with suppress(OSError), listening as container:  # a stream that ends is no error here
+            for packet in container.demux():
+                self.count += packet.stream.type == "video"
+                self.sounds += packet.stream.type == "audio"
+                if self._closing:
+                    return
+
+    def close(self) -> None:
+        """End the connection."""
+        self._closing = True
+        self._thread.join()
+
+
+@pytest.mark.long
+@pytest.mark.slow
+def test_a_stream_survives_what_dies(venue: Venue) -> None:
+    """Court, gateway and video server are killed in turn; pictures and sound go on each time."""
+    court, web = venue.court(), venue.web()
+    server = VideoServer(port := free_port())
+
+    def goes_on() -> None:
+        """Wait until pictures and sound come again."""
+        count, sounds = server.count, server.sounds
+        until(lambda: server.count > count + 20 and server.sounds > sounds + 20)
+
+    with ExitStack() as stack:
+        running = streaming(venue, server.address, stack)
+        goes_on()
+        court.kill()
+        goes_on()
+        venue.court()
+        web.kill()
+        goes_on()
+        venue.web()
+        goes_on()
+        server.close()
+        until(lambda: "can't be reached" in (venue.folder / "stream.log").read_text())
+        server = VideoServer(port)
+        goes_on()
+        running.send_signal(signal.SIGINT)
+        assert running.wait(LIMIT_S) == 0
+    log = (venue.folder / "stream.log").read_text()
+    assert "again" in log
+    assert "live/key" not in log
