@@ -83,7 +83,7 @@ def test_a_browser_that_makes_its_own_frames_draws_the_same(
         with served(part.paths) as site:
             address = site.address(look)
             with camera_page.camera_page(address, look) as page:
-                return page.paced, [page.picture([step]) for step in way]
+                return page.shots.paced, [page.picture([step]) for step in way]
 
     told = aside(drawn)
     monkeypatch.setattr(camera_page, "PACED", ())

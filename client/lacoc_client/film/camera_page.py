@@ -64,7 +64,8 @@ class CameraPage:
 
     def __init__(self, page: Page, address: str, paced: bool) -> None:
         self._page = page
-        self._shots = Shots(page, paced)
+        self.shots = Shots(page, paced)
+        """Takes its pictures."""
         page.goto(address, wait_until="commit")
         first, last, quality = self._opened()
         self.quality: str = quality
@@ -80,8 +81,8 @@ class CameraPage:
                 moving parts and the automatic camera are where they must be in the last.
         """
         told = [{"beat": step.beat, "cut": step.cut} for step in steps]
-        self._page.evaluate(_SHOW if self._shots.paced else _SHOW_AND_HAND_OVER, told)
-        return self._shots.take(PNG)
+        self._page.evaluate(_SHOW if self.shots.paced else _SHOW_AND_HAND_OVER, told)
+        return self.shots.take(PNG)
 
     def sound(self, pictures: Sequence[Picture], fps: int, rate_hz: int) -> bytes:
         """Return the sound of all pictures of a film.
@@ -103,8 +104,8 @@ class CameraPage:
                     raise Error(found)
                 first, last, quality = found
                 return first, last, quality
-            if self._shots.paced:
-                self._shots.frame()
+            if self.shots.paced:
+                self.shots.frame()
             time.sleep(_LOOK_S)
         raise TimeoutError(f"the page did not open in {_WAIT_S:.0f} s")
 
