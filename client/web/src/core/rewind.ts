@@ -78,6 +78,12 @@ export class Rewind implements Match {
     this.seek(now + seconds * BEATS_PER_S);
   }
 
+  /** Play from a beat on at a speed. */
+  from(beat: number, speed: number): void {
+    this.skip((beat - this.lastBeat) / BEATS_PER_S);
+    this.playback.speed.value = speed;
+  }
+
   /** Stop the picture, or go on from there. */
   toggle(): void {
     if (!this.isBack.peek()) this.skip(-1);

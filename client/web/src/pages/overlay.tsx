@@ -7,6 +7,7 @@ import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { inPieces } from "../core/pieces";
 import { reloadWhenServed } from "../core/reload";
+import { Replays } from "../core/replays";
 import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
 import { isOver, waitsFor } from "../ui/banner";
@@ -23,6 +24,7 @@ const court = new Court(
 );
 /** The director's second picture. */
 const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside", inPieces) : null;
+const replays = new Replays(court);
 const style: Style = {
   camera: cameraOfAddress(),
   quality: qualityOfAddress() ?? "auto",
@@ -56,6 +58,7 @@ export default function Overlay() {
         scale={scale}
         belowScore={<OnAir court={court} />}
         inCentre={<LatestResults court={court} />}
+        replays={replays}
         beside={aside && <Aside court={aside} />}
       />
       <Waiting />

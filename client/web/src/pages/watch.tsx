@@ -6,6 +6,7 @@ import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { part } from "../core/match";
 import { inPieces } from "../core/pieces";
+import { Replays } from "../core/replays";
 import { Rewind } from "../core/rewind";
 import { quality, remembered } from "../core/settings";
 import { LEAST_HZ, MOST_HZ, USUAL_HZ } from "../core/wire";
@@ -43,7 +44,7 @@ const court = new Court(
   inPieces,
 );
 /** What is shown of it: live, or some time behind. */
-const shown = new Rewind(court);
+const shown = court.directed ? new Replays(court).rewind : new Rewind(court);
 /** The director's second picture. */
 const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside", inPieces) : null;
 const camera = signal(cameraOfAddress());

@@ -7,6 +7,7 @@ import { Turns } from "../../core/contest/turns";
 import { Court } from "../../core/court";
 import { inPieces } from "../../core/pieces";
 import { reloadWhenServed } from "../../core/reload";
+import { Replays } from "../../core/replays";
 import { USUAL_HZ } from "../../core/wire";
 import { OnAir } from "../../ui/on_air";
 import { Aside } from "../watch/aside";
@@ -19,6 +20,7 @@ const court = new Court(USUAL_HZ, 0, "director", inPieces);
 /** The director's second picture. */
 const aside = new Court(USUAL_HZ, 0, "aside", inPieces);
 const turns = new Turns();
+const replays = new Replays(court);
 const style: Style = {
   camera: "auto",
   quality: qualityOfAddress() ?? "auto",
@@ -59,6 +61,7 @@ export function Picture({ shown }: { shown: Signal<boolean> }) {
         scale={scale}
         belowScore={severalCourts() && <OnAir court={court} />}
         beside={severalCourts() && <Aside court={aside} />}
+        replays={replays}
       />
     </div>
   );

@@ -4,6 +4,7 @@ import { computed, type ReadonlySignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
 import type { Match } from "../../core/match";
+import type { Replays } from "../../core/replays";
 import type { Quality } from "../../core/settings";
 import { t } from "../../i18n";
 import { team } from "../../i18n/words";
@@ -14,6 +15,7 @@ import { ResultCard } from "../../ui/result";
 import { Hint, ScoreBug } from "../../ui/score";
 import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
+import "../../ui/on_air.css";
 import "./broadcast.css";
 
 /** What lies over the picture is made for this size; on another screen it is scaled. */
@@ -49,6 +51,8 @@ interface More {
   beside?: ComponentChildren;
   /** Whether no other match follows. */
   isLast?: boolean;
+  /** Shows moments again in pauses. */
+  replays?: Replays;
 }
 
 /** The scale at which what lies over the picture fits into the window. */
@@ -63,12 +67,13 @@ export function scaleOfWindow(): number {
 export function Broadcast({ match, style, scale, ...more }: Props & More) {
   const seats = useMemo(() => computed(() => match.sheet.value?.seats.length ?? 0), [match]).value;
   const isSplit = style.split && seats > 1;
+  const shown = more.replays?.rewind ?? match;
   return (
     <>
       {isSplit ? (
-        <Windows match={match} style={style} scale={scale} />
+        <Windows match={shown} style={style} scale={scale} />
       ) : (
-        <Whole match={match} style={style} scale={scale} />
+        <Whole match={shown} style={style} scale={scale} />
       )}
       {style.hud && <Hud match={match} {...more} />}
     </>
@@ -124,19 +129,29 @@ function Windows({ match, style, scale }: Props) {
   );
 }
 
-function Hud({ match, belowScore, inCentre, beside, isLast = false }: { match: Match } & More) {
+type Told = { match: Match } & More;
+
+/** Score and clock are those of now, also while the picture shows a moment again. */
+function Hud({ match, belowScore, inCentre, beside, isLast = false, replays }: Told) {
+  const isReplay = !!replays?.shown.value;
   return (
     <div class="hud">
       <header class="head">
         <ScoreBug match={match} />
         <Hint match={match} />
-        {belowScore}
+        {isReplay ? (
+          <p class="on-air" data-why="replay" role="status">
+            <b>{t("again.mark")}</b>
+          </p>
+        ) : (
+          belowScore
+        )}
       </header>
       <div class="centre">
         <Countdown match={match} />
         <Sound match={match} isQuiet />
-        <ResultCard match={match} isLast={isLast} />
-        {inCentre}
+        {!isReplay && <ResultCard match={match} isLast={isLast} />}
+        {!isReplay && inCentre}
       </div>
       <div class="before">
         <OpeningCard match={match} />
