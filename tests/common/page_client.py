@@ -47,6 +47,9 @@ class PageClient(PageConnection):
         self.referee: dict[str, Any] = {}
         self.files: dict[str, Any] = {}
         self.notice: dict[str, Any] = {}
+        self.crowd: dict[str, Any] = {}
+        self.cheers = [0, 0, 0, 0]
+        """How often each symbol was cheered since the page came."""
         self.sheet: Sheet | None = None
         self.scene: tuple[bytes, Scene] | None = None
         self.frame: Frame | None = None
@@ -158,6 +161,10 @@ class PageClient(PageConnection):
                 self.files = body
             case MessageKind.NOTICE:
                 self.notice = body
+            case MessageKind.CROWD:
+                self.crowd = body
+                cheers = zip(self.cheers, body["cheers"], strict=True)
+                self.cheers = [before + new for before, new in cheers]
             case MessageKind.REPLY if body["id"] in self._signed:
                 self._signed.discard(body["id"])
             case MessageKind.REPLY:

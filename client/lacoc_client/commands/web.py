@@ -178,6 +178,7 @@ def _of_contest(plan: ContestFile, file: Path, court: str | None, host: str) -> 
         recordings=plan.recordings,
         sheet=contests.sheet_path(file),
         keeps_back=plan.replays != "at-once",
+        cheers=plan.cheers,
         told={name: _told(plan, name, host) for name in names},
         authority=plan.public.read_authority(),
     )

@@ -50,6 +50,8 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
     """Limits beyond which a match should be played again."""
     replays: Replays = "at-once"
     """From when everybody may see the records, which hold the gaits of both teams."""
+    cheers: bool = True
+    """Whether people who watch may cheer."""
     public: PublicAddress = PublicAddress()
     """How everybody reaches the pages, and the certificate of pages and courts."""
     standby: Standby | None = None
@@ -199,6 +201,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
     replays: Replays = "at-once"
+    cheers: bool = True
     pages: str = ""
     certificate: _PathText | None = None
     private_key: _PathText | None = None
@@ -254,6 +257,7 @@ def _contest(table: dict[str, Any], path: Path) -> ContestFile:
         limits=limits,
         health=health,
         replays=general.replays,
+        cheers=general.cheers,
         public=public,
         standby=standby,
         courts=courts,

@@ -39,6 +39,10 @@ class Channel:
         viewer.send(self._told)
         self._late.add(viewer)
 
+    def has(self, viewer: Viewer) -> bool:
+        """Return whether a page sees it."""
+        return viewer in self._viewers
+
     def remove(self, viewer: Viewer) -> None:
         """Let a page see it no longer."""
         if viewer in self._viewers:
@@ -95,6 +99,13 @@ class Programme:
         """Let a page follow no longer."""
         self._first.remove(viewer)
         self._second.remove(viewer)
+
+    def seen_by(self, viewer: Viewer) -> Audience | None:
+        """Return the pages that see the same court as a page that follows."""
+        for channel in (self._first, self._second):
+            if channel.has(viewer):
+                return self.audience(channel.court)
+        return None
 
     def audience(self, court: str) -> Audience | None:
         """Return the pages to which this court is shown late; None: it has no late feed yet.

@@ -61,6 +61,11 @@ class Audience:
             for framed in messages:
                 one.send(framed)
 
+    def tell(self, framed: bytes) -> None:
+        """Send the pages what is no part of the match; a slow page misses it."""
+        for viewer in self._viewers:
+            viewer.send_if_fast(framed)
+
     def send_own(self, framed: bytes) -> None:
         """Send a message that must arrive, to the pages of whoever started the gateway."""
         for viewer in self._viewers:

@@ -147,9 +147,13 @@ class Courts:
             return None
         return say("gateway.full", most=most)
 
+    def watching(self) -> int:
+        """Count the pages that only watch."""
+        return self._others(False)
+
     def free_places(self) -> int:
         """Count the places that are free for pages that only watch."""
-        return max(0, self.home.viewers_most - self._others(False))
+        return max(0, self.home.viewers_most - self.watching())
 
     def _others(self, can_act: bool, but: Viewer | None = None) -> int:
         others = sum(feed.audience.others(can_act, but) for feed in self.feeds)

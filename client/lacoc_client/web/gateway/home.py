@@ -54,6 +54,8 @@ class Home:
     """The newest sheet of the contest, which its office writes."""
     keeps_back: bool = False
     """Whether pages may fetch only the recordings that the sheet names."""
+    cheers: bool = True
+    """Whether people who watch may cheer."""
     desk: bool = False
     """Whether there are the pages of a contest's desk: /enter and /office."""
     viewers_most: int = VIEWERS_MOST

@@ -13,6 +13,7 @@ from lacoc_client.play.team_way import where
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.answers import TOO_MUCH, Answers, in_future
 from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.crowd import CHEERS_HZ, Crowd
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.page_requests import serve_requests
 from lacoc_client.web.gateway.page_seat import PageSeat
@@ -46,11 +47,13 @@ class Page:
     Args:
         websocket: the page's WebSocket, not accepted yet.
         courts: the courts of the gateway.
+        crowd: counts what people cheer.
     """
 
-    def __init__(self, websocket: WebSocket, courts: Courts) -> None:
+    def __init__(self, websocket: WebSocket, courts: Courts, crowd: Crowd) -> None:
         self._websocket = websocket
         self._courts = courts
+        self._crowd = crowd
         self._home = courts.home
         self._viewer = Viewer(websocket.state.socket)
         self._feed: CourtFeed | None = None
@@ -60,6 +63,7 @@ class Page:
         self._answers = answers = Answers(self._viewer, self._log)
         self._seat = PageSeat(self._viewer, answers, self._home.prefill, self._log)
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
+        self._cheers = Allowance(CHEERS_HZ, 1)
         self._greetings = Allowance(_COURTS_HZ, _COURTS_BURST)
         self._entering = asyncio.Lock()
         self._leaving: asyncio.TimerHandle | None = None
@@ -102,6 +106,9 @@ class Page:
             case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk() | wire.SawAsk():
                 self._acting()
                 self._seat.steer(asked)
+            case wire.CheerAsk():
+                self._cheer(asked.symbol)
+                answers.reply(asked.id, {})
             case wire.EnterAsk():
                 feed, referees = self._acting()
                 _spend(self._tokens)
@@ -155,6 +162,14 @@ class Page:
             viewer.send(self._referees.state(viewer))
         self._answers.reply(asked.id, {})
         return True
+
+    def _cheer(self, symbol: int) -> None:
+        """Count a cheer; one that comes too soon is no error, and has no effect."""
+        audience = self._feed.audience if self._feed is not None else None
+        if self._follows is not None:
+            audience = self._follows.seen_by(self._viewer)
+        if audience is not None and self._cheers.take(1, time.monotonic()):
+            self._crowd.cheer(audience, symbol)
 
     def _welcome(self, court: str | None) -> bytes:
         return welcome(self._home, court, self._may_act, self._viewer.is_own)

@@ -16,6 +16,7 @@ from starlette.websockets import WebSocket
 
 from lacoc_client.play.link.event import PATH as EVENT_PATH
 from lacoc_client.play.link.event import LinkedEvent
+from lacoc_client.web.gateway.body import read_body
 from lacoc_client.web.gateway.cached import (
     A_SECOND,
     ASK_AGAIN,
@@ -25,6 +26,7 @@ from lacoc_client.web.gateway.cached import (
     large_response,
 )
 from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.crowd import Crowd
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.forks import ForkAsk, Forks, bots
 from lacoc_client.web.gateway.guard import answer_browser, language_of, machine_of
@@ -38,7 +40,7 @@ from lacoc_client.web.gateway.published_route import published_routes
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.scores import scores_route
 from lacoc_client.web.gateway.shown import ShownRecords
-from lacoc_client.web.gateway.wire import REQUEST_BYTES, too_long
+from lacoc_client.web.gateway.wire import REQUEST_BYTES
 from lacoc_shared import __version__
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
@@ -82,7 +84,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     shown = ShownRecords(home.sheet) if home.keeps_back and home.sheet is not None else None
     shelf = Recordings(home.recordings, courts.over, shown)
     forks = Forks(shelf.own)
-    pictures = Pictures(courts)
+    pictures, crowd = Pictures(courts), Crowd(courts)
     if home.exporter is not None:
         home.exporter.registry.register(GatewayMetrics(courts))
 
@@ -90,7 +92,10 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         courts.find(None)
         loop = asyncio.get_running_loop()
-        tasks = [loop.create_task(work) for work in (courts.watch_files(), pictures.forget())]
+        tasks = [
+            loop.create_task(work)
+            for work in (courts.watch_files(), pictures.forget(), crowd.tell())
+        ]
         yield
         for task in tasks:
             task.cancel()
@@ -101,7 +106,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         await asyncio.to_thread(shelf.close)
 
     async def page(websocket: WebSocket) -> None:
-        await Page(websocket, courts).serve()
+        await Page(websocket, courts, crowd).serve()
 
     others = [
         *recording_routes(shelf),
@@ -110,7 +115,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         sheet_route(home.sheet),
         *published_routes(home.sheet),
         scores_route(courts),
-        *piece_routes(courts, pictures),
+        *piece_routes(courts, pictures, crowd),
         WebSocketRoute("/ws", page),
     ]
     paths = PATHS if more is None else (*PATHS, *more.paths)
@@ -172,7 +177,7 @@ def fork_routes(
         try:
             found: object
             if request.method == "POST":
-                asked = msgspec.json.decode(await _body(request), type=ForkAsk)
+                asked = msgspec.json.decode(await read_body(request, REQUEST_BYTES), type=ForkAsk)
                 found = await forks.play(record, asked, language_of(request.scope))
             else:
                 found = {"bots": await asyncio.to_thread(bots, record)}
@@ -183,20 +188,6 @@ def fork_routes(
         return Response(msgspec.json.encode(found), media_type="application/json")
 
     return [Route("/recordings/{name}/forks", fork, methods=["GET", "POST"])]
-
-
-async def _body(request: Request) -> bytes:
-    """Read the body of a request.
-
-    Raises:
-        UserError: if it is too long.
-    """
-    data = b""
-    async for part in request.stream():
-        data += part
-        if len(data) > REQUEST_BYTES:
-            raise too_long(len(data), REQUEST_BYTES)
-    return data
 
 
 def event_route(home: Home) -> BaseRoute:

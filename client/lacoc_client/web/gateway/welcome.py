@@ -33,6 +33,7 @@ def welcome(home: Home, court: str | None, can_act: bool = False, is_own: bool =
         "home": home.kind,
         "contest": home.contest,
         "desk": home.desk,
+        "cheers": home.cheers,
         "prefill": filled,
     }
     return wire.map_message(MessageKind.WELCOME, body)

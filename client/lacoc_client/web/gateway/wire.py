@@ -61,6 +61,7 @@ class MessageKind(IntEnum):
     TOURNAMENT = 21
     PROGRAMME = 22
     NOTICE = 23
+    CROWD = 24
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
@@ -154,6 +155,12 @@ class SawAsk(Ask, frozen=True, kw_only=True, tag="saw"):
     beat: _Count
 
 
+class CheerAsk(Ask, frozen=True, kw_only=True, tag="cheer"):
+    """Cheer with one of the symbols."""
+
+    symbol: Annotated[int, msgspec.Meta(ge=0, le=3)]
+
+
 class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
     """Enter as a referee."""
 
@@ -189,6 +196,7 @@ Asked = (
     | LeaveAsk
     | KeyAsk
     | SawAsk
+    | CheerAsk
     | EnterAsk
     | TakeOver
     | DecideAsk

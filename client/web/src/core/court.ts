@@ -9,6 +9,7 @@ import type { Due, Shows } from "./pieces";
 import { type Moment, Timeline } from "./timeline";
 import {
   BEATS_PER_S,
+  type Crowd,
   type Event,
   type Frame,
   type Health,
@@ -55,7 +56,12 @@ const REPEATS_BEATS = 10 * BEATS_PER_S;
 const REACHED: SocketState = { open: true, attempt: 0, refused: null };
 
 /** Where the same match comes in pieces: made for a page that finds no place on a WebSocket. */
-export type InPieces = (url: string, shows: Shows) => { end(): void };
+export type InPieces = (url: string, shows: Shows) => PieceSource;
+
+interface PieceSource {
+  cheer(symbol: number): void;
+  end(): void;
+}
 
 /** What a page watches: one court, or the first or the second picture of the director. */
 export type Watched = "court" | "director" | "aside";
@@ -71,6 +77,8 @@ export class Court implements Match {
   readonly link = signal<Link | null>(null);
   /** What the organiser tells all; null until the gateway says so. */
   readonly notice = signal<Notice | null>(null);
+  /** Who watches; null until the gateway says so. */
+  readonly crowd = signal<Crowd | null>(null);
   readonly seat = signal<HeldSeat | null>(null);
   /** What the director shows in this picture; null where the page follows a court. */
   readonly programme = signal<Programme | null>(null);
@@ -96,7 +104,7 @@ export class Court implements Match {
   private arrivedMs = 0;
   private arrivals: number[] = [];
   private held: { dueMs: number; take: () => void }[] = [];
-  private pieces: { end(): void } | null = null;
+  private pieces: PieceSource | null = null;
   /** Whether frames come in pieces now. */
   private readonly piecesCome = signal(false);
   /** What came of a court that was cut to, until there is a frame of it; null: no cut is open. */
@@ -145,6 +153,12 @@ export class Court implements Match {
   /** Ask the gateway for something; rejects with `Refused`. */
   ask<T = unknown>(what: Request, fields: object = {}): Promise<T> {
     return this.connection.ask<T>(what, fields);
+  }
+
+  /** Cheer with a symbol; one that comes too soon has no effect. */
+  cheer(symbol: number): void {
+    if (this.pieces) this.pieces.cheer(symbol);
+    else this.ask("cheer", { symbol }).catch(() => undefined);
   }
 
   private watch(): Promise<unknown> {
@@ -268,6 +282,9 @@ export class Court implements Match {
         break;
       case "notice":
         this.notice.value = message.body;
+        break;
+      case "crowd":
+        this.crowd.value = message.body;
         break;
       case "seat":
         this.seat.value = message.body;

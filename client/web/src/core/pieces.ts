@@ -56,6 +56,9 @@ export class Pieces {
   /** Whether the page has nothing to go on from. */
   private begins = true;
   private lookedMs = Number.NEGATIVE_INFINITY;
+  private spokenMs = Number.NEGATIVE_INFINITY;
+  /** How often this page has cheered since it spoke, by symbol. */
+  private cheers: number[] = [];
   /** From when on the page goes back to a WebSocket if there is room. */
   private returnMs = Number.POSITIVE_INFINITY;
 
@@ -68,6 +71,11 @@ export class Pieces {
     private readonly shows: Shows,
   ) {
     void this.go();
+  }
+
+  /** Cheer with a symbol: the gateway hears of it when this page speaks next. */
+  cheer(symbol: number): void {
+    this.cheers[symbol] = (this.cheers[symbol] ?? 0) + 1;
   }
 
   end(): void {
@@ -106,7 +114,8 @@ export class Pieces {
   private async look(): Promise<boolean> {
     const reply = await fetch(`${this.url}/now.json`);
     if (!reply.ok || this.ended) return false;
-    const { run, closed, room } = (await reply.json()) as PiecesNow;
+    const { run, closed, room, share } = (await reply.json()) as PiecesNow;
+    if (performance.now() - this.spokenMs > LOOK_MS) this.speak(share);
     this.lookedMs = performance.now();
     if (!room) this.returnMs = Number.POSITIVE_INFINITY;
     else if (this.returnMs === Number.POSITIVE_INFINITY)
@@ -122,6 +131,16 @@ export class Pieces {
     if (run === this.run && closed > this.next) return true;
     this.lookedMs = Number.NEGATIVE_INFINITY;
     return false;
+  }
+
+  /** Say that this page is here; of a large crowd only a share does, and stands for the others. */
+  private speak(share: number): void {
+    this.spokenMs = performance.now();
+    const cheers = this.cheers;
+    this.cheers = [];
+    if (Math.random() >= share) return;
+    const body = JSON.stringify({ cheers: [...cheers].map((count) => count ?? 0) });
+    fetch(`${this.url}/here`, { method: "POST", body }).catch(() => undefined);
   }
 
   private dueMs(): number {

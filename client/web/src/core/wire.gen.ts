@@ -95,6 +95,7 @@ export const MESSAGE_KINDS = [
   "tournament",
   "programme",
   "notice",
+  "crowd",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */
@@ -640,6 +641,7 @@ export interface PiecesNow {
   run: string;
   closed: number;
   room: boolean;
+  share: number;
 }
 
 /** `SeatFrame` is an array on the wire: the names of its places. */

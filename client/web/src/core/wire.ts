@@ -39,6 +39,8 @@ export interface Welcome {
   contest: string;
   /** Whether there is the page /enter. */
   desk: boolean;
+  /** Whether people who watch may cheer. */
+  cheers: boolean;
   prefill: Prefill | null;
 }
 
@@ -64,6 +66,13 @@ export interface OwnFiles {
   /** Why the newest version can't be used; "" if it can. */
   error: Phrase | null;
   mistakes: Mistake[];
+}
+
+/** Who watches the event, and what was cheered in the last second. */
+export interface Crowd {
+  watching: number;
+  /** How often, by symbol. */
+  cheers: number[];
 }
 
 /** The gateway's own link to the court. */
@@ -211,6 +220,7 @@ export type Message =
   | { kind: "link"; body: Link }
   | { kind: "seat"; body: HeldSeat }
   | { kind: "notice"; body: Notice }
+  | { kind: "crowd"; body: Crowd }
   | { kind: "reply"; body: GoodReply | BadReply }
   | { kind: "referee"; body: RefereeState }
   | { kind: "files"; body: OwnFiles }
@@ -237,6 +247,7 @@ export type Request =
   | "leave"
   | "key"
   | "saw"
+  | "cheer"
   | "enter"
   | "take_over"
   | "outlook"

@@ -28,6 +28,7 @@ import { Thirds } from "../ui/thirds";
 import { Again, againKeys, againRows } from "./watch/again";
 import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
+import { Cheers, CheersSetting, Watching } from "./watch/cheers";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
 import { EventCard, useBetween } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
@@ -103,7 +104,9 @@ export default function Watch() {
       {hud && isShown && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
       <Sound match={shown} />
-      <CornerSettings />
+      <CornerSettings>
+        <CheersSetting />
+      </CornerSettings>
       <KeyHelp rows={() => [...cameraRows(court.sheet.value), ...againRows(), ...cornerRows()]} />
     </main>
   );
@@ -122,7 +125,9 @@ function Hud() {
           <OnAir court={court} />
         </header>
       </div>
-      <Corner panel={panel} />
+      <Corner panel={panel}>
+        <Watching court={court} />
+      </Corner>
       <div class="middle-stage">
         <Countdown match={shown} />
         {putAway.value !== match && (
@@ -150,6 +155,7 @@ function Hud() {
           <Cameras camera={camera} sheet={court.sheet.value} />
         )}
         {court.begun.value && <Again rewind={shown} />}
+        {court.begun.value && <Cheers court={court} />}
       </div>
     </>
   );

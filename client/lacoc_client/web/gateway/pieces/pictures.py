@@ -4,6 +4,7 @@ import asyncio
 import time
 from dataclasses import dataclass
 
+from lacoc_client.web.gateway.audience import Audience
 from lacoc_client.web.gateway.courts import Courts
 from lacoc_client.web.gateway.pieces.cutter import Cutter
 from lacoc_client.web.gateway.viewer import Viewer
@@ -53,6 +54,15 @@ class Pictures:
         """Return the cutter of a picture that is being cut; else None."""
         found = self._known(name)
         return None if found is None else found.cutter
+
+    def audience(self, name: str) -> Audience | None:
+        """Return the pages that see the same court as a picture; None: it is not being cut."""
+        found = self._cut.get(name)
+        if found is None:
+            return None
+        if name in (DIRECTOR, ASIDE):
+            return self._courts.programme.seen_by(found.viewer)
+        return self._courts.find(name.partition("/")[2] or None)[0].audience
 
     async def forget(self) -> None:
         """Stop cutting what nobody asks for; ends only when it is cancelled."""

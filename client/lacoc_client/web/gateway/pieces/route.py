@@ -1,19 +1,26 @@
 """The routes of pieces: which are there, and each of them."""
 
 import re
+import time
+from typing import Annotated
 
 import msgspec
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 
+from lacoc_client.web.gateway.body import read_body
 from lacoc_client.web.gateway.cached import A_SECOND, FOR_EVER, file_response, json_response
 from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.crowd import HEARD_MOST, LOOKS_S, SYMBOLS, Crowd
 from lacoc_client.web.gateway.guard import answer_browser
 from lacoc_client.web.gateway.pieces.pictures import Pictures
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
 
+HERE_HZ, HERE_BURST = 4.0 * HEARD_MOST / LOOKS_S, 4 * HEARD_MOST
+HERE_BYTES = 256
 _NUMBER = re.compile(r"[0-9]{1,9}")
 _ROOM_PART = 4
 """There is room for pages when a quarter of the places is free: else each would be sent back."""
@@ -28,9 +35,17 @@ class PiecesNow(msgspec.Struct, frozen=True):
     """Number of pieces that are whole: the newest has this number less one."""
     room: bool
     """Whether there is room for pages on WebSockets."""
+    share: float
+    """The chance with which a page says each 10 s that it is here."""
 
 
-def piece_routes(courts: Courts, pictures: Pictures) -> list[BaseRoute]:
+class Here(msgspec.Struct, frozen=True):
+    """What a page in pieces says: that it is here, and how often it cheered, by symbol."""
+
+    cheers: Annotated[list[Annotated[int, msgspec.Meta(ge=0)]], msgspec.Meta(max_length=SYMBOLS)]
+
+
+def piece_routes(courts: Courts, pictures: Pictures, crowd: Crowd) -> list[BaseRoute]:
     """Return the routes of pieces.
 
     A page that watches in pieces takes no place of a spectator. All its requests can be answered
@@ -39,7 +54,9 @@ def piece_routes(courts: Courts, pictures: Pictures) -> list[BaseRoute]:
     Args:
         courts: the courts of the gateway.
         pictures: their pictures in pieces.
+        crowd: counts who watches.
     """
+    spoken = Allowance(HERE_HZ, HERE_BURST)
 
     async def now(request: Request) -> Response:
         courts.pieces_asked += 1
@@ -48,7 +65,20 @@ def piece_routes(courts: Courts, pictures: Pictures) -> list[BaseRoute]:
         except UserError as error:
             return answer_browser(request.scope, error.phrase, 404)
         room = courts.free_places() * _ROOM_PART >= courts.home.viewers_most
-        return json_response(request, PiecesNow(cutter.run, cutter.closed(), room))
+        found = PiecesNow(cutter.run, cutter.closed(), room, crowd.share)
+        return json_response(request, found)
+
+    async def here(request: Request) -> Response:
+        audience = pictures.audience(request.path_params["picture"])
+        if audience is not None and spoken.take(1, time.monotonic()):
+            try:
+                said = msgspec.json.decode(await read_body(request, HERE_BYTES), type=Here)
+            except (msgspec.MsgspecError, UserError) as error:
+                return answer_browser(
+                    request.scope, say("gateway.bad-message", error=str(error)), 400
+                )
+            crowd.hear(audience, said.cheers)
+        return Response(status_code=204)
 
     async def piece(request: Request) -> Response:
         courts.pieces_asked += 1
@@ -65,5 +95,6 @@ def piece_routes(courts: Courts, pictures: Pictures) -> list[BaseRoute]:
 
     return [
         Route("/live/{picture:path}/now.json", now),
+        Route("/live/{picture:path}/here", here, methods=["POST"]),
         Route("/live/{picture:path}/{run}/{number}", piece),
     ]

@@ -43,14 +43,16 @@ export function Corner({ panel, children }: CornerProps) {
 }
 
 /** The dialog that the corner opens; there also where the corner is hidden. */
-export function CornerSettings() {
+export function CornerSettings({ children }: { children?: ComponentChildren }) {
   if (!settings.value) return null;
   return (
     <Settings
       onClose={() => {
         settings.value = false;
       }}
-    />
+    >
+      {children}
+    </Settings>
   );
 }
 

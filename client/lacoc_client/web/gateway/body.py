@@ -1,0 +1,23 @@
+"""Reads the body of a request, as far as it may be long."""
+
+from starlette.requests import Request
+
+from lacoc_client.web.gateway.wire import too_long
+
+
+async def read_body(request: Request, most: int) -> bytes:
+    """Read the body of a request.
+
+    Args:
+        request: the request.
+        most: longest body [bytes].
+
+    Raises:
+        UserError: if it is longer.
+    """
+    data = b""
+    async for part in request.stream():
+        data += part
+        if len(data) > most:
+            raise too_long(len(data), most)
+    return data

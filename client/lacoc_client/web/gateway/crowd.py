@@ -1,0 +1,89 @@
+"""How many people watch, and what they cheer: counted, never attributed."""
+
+import asyncio
+from collections import Counter, deque
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.audience import Audience
+from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.wire import MessageKind
+
+SYMBOLS = 4
+"""Number of symbols that people can cheer with; the page draws them."""
+CHEERS_HZ = 1.0
+"""Cheers of a page a second."""
+LOOKS_S = 10
+"""A page in pieces says that it is here each time this has passed, or with a chance [s]."""
+HEARD_MOST = 200
+"""Such messages in `LOOKS_S` that are wanted: of a larger crowd only a share speaks."""
+_SAYS_S = 1.0
+_SAYS_AGAIN = 5
+
+
+class Crowd:
+    """The people who watch; used from the event loop only.
+
+    Args:
+        courts: the courts of the gateway.
+    """
+
+    def __init__(self, courts: Courts) -> None:
+        self._courts = courts
+        self._cheers: dict[Audience, Counter[int]] = {}
+        self._told: dict[Audience, bytes] = {}
+        self._heard: deque[float] = deque([0.0] * LOOKS_S, LOOKS_S)
+        """By second, how many pages in pieces the messages stand for."""
+        self.share = 1.0
+        """The share of the pages in pieces that is asked to speak."""
+
+    def cheer(self, audience: Audience, symbol: int, count: float = 1) -> None:
+        """Count a cheer of somebody who watches a court."""
+        if self._courts.home.cheers and 0 <= symbol < SYMBOLS:
+            self._cheers.setdefault(audience, Counter())[symbol] += round(count)
+
+    def hear(self, audience: Audience, cheers: list[int]) -> None:
+        """Count a page in pieces; it stands for all that were not asked to speak.
+
+        Args:
+            audience: the pages that watch the same court.
+            cheers: how often it cheered since it spoke last, by symbol.
+        """
+        self._heard[-1] += 1 / self.share
+        for symbol, count in enumerate(cheers):
+            if count > 0:
+                self.cheer(audience, symbol, min(count, CHEERS_HZ * LOOKS_S) / self.share)
+
+    def watching(self) -> int:
+        """Return how many pages watch, as far as it is known."""
+        return self._courts.watching() + round(sum(self._heard))
+
+    async def tell(self) -> None:
+        """Tell all pages each second; ends only when it is cancelled."""
+        seconds = 0
+        while True:
+            await asyncio.sleep(_SAYS_S)
+            seconds += 1
+            for feed in self._courts.feeds:
+                for audience in self._courts.audiences(feed):
+                    self.say(audience, again=seconds % _SAYS_AGAIN == 0)
+            self.pass_second()
+
+    def say(self, audience: Audience, *, again: bool = False) -> None:
+        """Tell some pages what was cheered in this second, and how many watch.
+
+        Args:
+            audience: the pages.
+            again: whether to tell it also if nothing has changed.
+        """
+        cheers = self._cheers.get(audience, Counter[int]())
+        body = {"watching": self.watching(), "cheers": [cheers[one] for one in range(SYMBOLS)]}
+        message = wire.map_message(MessageKind.CROWD, body)
+        if again or cheers or message != self._told.get(audience):
+            self._told[audience] = message
+            audience.tell(message)
+
+    def pass_second(self) -> None:
+        """Begin a new second."""
+        self._cheers.clear()
+        self.share = min(1.0, HEARD_MOST / max(1.0, sum(self._heard)))
+        self._heard.append(0.0)
