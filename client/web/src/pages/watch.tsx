@@ -15,6 +15,7 @@ import { played, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
+import { Introductions } from "../ui/introductions";
 import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
 import { LatestResults, OnAir } from "../ui/on_air";
@@ -147,6 +148,7 @@ function Hud() {
           (between ? <EventCard court={court} /> : <OpeningCard match={shown} />)}
       </div>
       <div class="lower">
+        <Introductions match={shown} />
         <Thirds match={shown} />
       </div>
       {aside && <Aside court={aside} />}

@@ -10,6 +10,7 @@ import { t } from "../../i18n";
 import { team } from "../../i18n/words";
 import { type CameraName, type Shutter, View } from "../../scene/View";
 import { Board } from "../../ui/board";
+import { Introductions } from "../../ui/introductions";
 import { Countdown, OpeningCard, useOpening } from "../../ui/opening";
 import { ResultCard } from "../../ui/result";
 import { Hint, ScoreBug } from "../../ui/score";
@@ -157,6 +158,7 @@ function Hud({ match, belowScore, inCentre, beside, isLast = false, replays }: T
         <OpeningCard match={match} />
       </div>
       <div class="lower">
+        <Introductions match={match} />
         <Thirds match={match} />
       </div>
       {beside}
