@@ -104,6 +104,9 @@ class Page:
             case wire.ReadyAsk() | wire.LeaveAsk() | wire.KeyAsk() | wire.SawAsk():
                 self._acting()
                 self._seat.steer(asked)
+            case wire.TryAsk():
+                self._acting()
+                answers.later(asked.id, self._seat.try_out(asked, self._courts.threads))
             case wire.EnterAsk():
                 feed, referees = self._acting()
                 _spend(self._tokens)

@@ -237,6 +237,7 @@ export type Request =
   | "leave"
   | "key"
   | "saw"
+  | "try"
   | "enter"
   | "take_over"
   | "outlook"

@@ -5,6 +5,7 @@ import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
+import type { TryOut } from "../../core/try_out";
 import { type Event, Level, Phase, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";
 import { Board } from "../../ui/board";
@@ -17,6 +18,7 @@ interface Props {
   court: Court;
   player: Player;
   alone: boolean;
+  tryOut: TryOut | null;
   onKey: (key: number, atMs: number) => void;
   onLevel: (level: number) => void;
   onView: () => void;
