@@ -29,6 +29,7 @@ import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
 import { EventCard, useBetween } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
+import { NextOfTeams } from "./watch/next";
 import "./watch/frame.css";
 
 const WIDE_PX = 1280;
@@ -127,6 +128,7 @@ function Hud() {
             match={shown}
             withReplay
             isLast={!court.live.value}
+            next={court.welcome.value?.desk ? <NextOfTeams court={court} /> : undefined}
             onClose={() => {
               putAway.value = match;
             }}
