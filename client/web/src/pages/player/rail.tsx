@@ -9,10 +9,14 @@ import type { TryOut } from "../../core/try_out";
 import { type Event, Level, Phase, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";
 import { Board } from "../../ui/board";
+import { later } from "../../ui/later";
 import { EventLog } from "../../ui/log";
-import { Coach, useLessons } from "./coach";
 import { FilesChanged } from "./files";
+import { useLessons } from "./lessons";
 import { Pad } from "./pad";
+
+/** Only practice has it. */
+const Coach = later(() => import("./coach").then((it) => it.Coach));
 
 interface Props {
   court: Court;
