@@ -171,7 +171,7 @@ STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
                     "decision.adjust",
                     points=2,
                     team="Bees",
-                    score=say("score.two", left="Ants", points=18, conceded=20, right="Bees"),
+                    score=say("score.two", left="Ants", points=19, conceded=19, right="Bees"),
                 ),
                 "fair",
                 seat="right",
