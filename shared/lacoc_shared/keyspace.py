@@ -11,7 +11,7 @@ EVERY_COURT = "lacoc/*/live/court"
 DESK = "lacoc/office/desk"
 """Key expression on which an office's desk takes requests of pages, in a session of its own."""
 COMMAND_MAX_BYTES = 1024
-"""Largest command that is read; also largest ready, leave or where request."""
+"""Largest command that is read; also largest ready, leave, try or where request."""
 ENTER = "enter"
 """Used in place of a decision's name: the referee only shows the token."""
 DECISION_MAX_BYTES = 4096
@@ -94,7 +94,12 @@ class KeySpace:
         return f"{self.root}/seat/{seat}/key"
 
     def request(self, seat: str, what: str) -> str:
-        """Return the key expression of a request with a reply; `what`: join, ready or leave."""
+        """Return the key expression of a request with a reply.
+
+        Args:
+            seat: the seat.
+            what: join, ready, leave or try.
+        """
         return f"{self.root}/seat/{seat}/{what}"
 
     @property

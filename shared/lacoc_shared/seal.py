@@ -50,9 +50,10 @@ def command_mac(
     return _mac(secret, f"{key_expression} {session} {seq} {level} {key} {match} {seen}")
 
 
-def request_mac(secret: bytes, key_expression: str, session: int, seq: int, ready: bool) -> bytes:
-    """Compute the seal of a ready or leave request."""
-    return _mac(secret, f"{key_expression} {session} {seq} {int(ready)}")
+def request_mac(secret: bytes, key_expression: str, session: int, seq: int, *rest: int) -> bytes:
+    """Compute the seal of a seat's request; `rest` has the request's own numbers (`sealed`)."""
+    numbers = (str(int(number)) for number in (session, seq, *rest))
+    return _mac(secret, " ".join([key_expression, *numbers]))
 
 
 def same(one: bytes, other: bytes) -> bool:

@@ -11,15 +11,17 @@ from typing import Any
 import msgspec
 import pytest
 from court_process import CourtProcess, OpenCourt
+from stage import Stage
 from waiting import LIMIT_S
 
-from lacoc_client.commands.referee import _default_name, _show_reply
+from lacoc_client.commands.referee import _default_name, _rescored, _show_reply
 from lacoc_client.play.asking import NoAnswer
 from lacoc_client.play.referee import RefereeClient
 from lacoc_shared.command import cli
-from lacoc_shared.decisions import DECISIONS
+from lacoc_shared.decisions import DECISIONS, Adjust
 from lacoc_shared.messages import DecisionReply
-from lacoc_shared.words import say
+from lacoc_shared.seat import Phase
+from lacoc_shared.words import render, say
 
 pytestmark = pytest.mark.slow
 
@@ -106,6 +108,15 @@ def test_the_referee_has_every_decision(
     referee.decide("abort")
     referee.decide("next")
     assert referee.decided == set(DECISIONS) - {"ready"}  # see the next test
+
+
+def test_a_change_of_the_score_says_the_new_score_before() -> None:
+    """Whoever changes a score by hand reads the score before and after it."""
+    stage = Stage("othello").to(Phase.HALTED)
+    asked = _rescored(Adjust("right", -5), stage.frame, stage.match.sheet())
+    assert asked is not None
+    assert render(asked) == "Ants 18 : 18 Bees becomes Ants 18 : 13 Bees. Do it?"
+    assert _rescored(Adjust("middle", 1), stage.frame, stage.match.sheet()) is None
 
 
 def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -> None:

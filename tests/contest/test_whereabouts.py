@@ -10,6 +10,7 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import (
     Disqualified,
     Drawn,
+    Paused,
     Planned,
     Played,
     StageSettings,
@@ -95,6 +96,17 @@ def test_a_team_waits_until_its_court_has_the_match() -> None:
     assert (found[left].state, found[left].address, found[left].call) == ("waits", "", "")
     assert (found[left].court, found[left].about_s, found[left].games_before) == ("north", 0, 0)
     assert render(found[left].said) == f"Court north, in a moment, against {right}."
+
+
+def test_in_a_pause_without_an_end_nobody_knows_when() -> None:
+    """In a pause without an end a team hears court and opponent, and no time that is not true."""
+    cup = Cup()
+    cup.add(Paused, reason="a cable")
+    there = where(cup, {})["t001"]
+    assert (there.state, there.about_s) == ("waits", None)
+    assert "after the pause, against" in render(there.said)
+    cup.add(Paused, until_ms=cup.now_ms + 600_000)
+    assert where(cup, {})["t001"].about_s == 600
 
 
 def test_how_long_a_team_waits() -> None:

@@ -37,6 +37,8 @@ from lacoc_shared.messages import (
     Refusal,
     SeatRequest,
     SentFile,
+    TriedKey,
+    TryOutRequest,
 )
 from lacoc_shared.messages.office import WAITING, Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, Mistake
@@ -104,6 +106,21 @@ def request(joined: Joined, what: str, ready: bool = True, seat: int = LEFT, seq
     key = KEYS.request(SEATS[seat], what)
     mac = seal.request_mac(joined.secret, key, joined.session, seq, ready)
     return encode(SeatRequest(session=joined.session, seq=seq, ready=ready, mac=mac))
+
+
+def try_out(joined: Joined, seq: int = 1, ticks: Sequence[int] = (), **changes: int) -> bytes:
+    fields = {"first": 0, "until": 100} | changes
+    asked = TryOutRequest(
+        session=joined.session,
+        seq=seq,
+        drawn=False,
+        keys=tuple(TriedKey(tick, 1, 2) for tick in ticks),
+        mac=b"",
+        **fields,
+    )
+    key = KEYS.request("left", "try")
+    mac = seal.request_mac(joined.secret, key, joined.session, seq, *asked.sealed)
+    return encode(msgspec.structs.replace(asked, mac=mac))
 
 
 def refusals(inbox: Inbox, seat: int = LEFT) -> dict[str, int]:
@@ -778,3 +795,41 @@ def test_nobody_joins_while_the_court_waits() -> None:
         assert why_refused(inbox, token) == ("refused.waits-for-office", True)
     opened(inbox)
     assert isinstance(inbox.join(LEFT, join_bytes()), JoinSeat)
+
+
+def test_a_try_out_needs_the_seal_and_keys_in_their_order() -> None:
+    """Only the seat's session asks, with rising ticks and a bounded number of pictures."""
+    inbox = make()
+    joined = take_seat(inbox)
+    asked = inbox.try_out(LEFT, try_out(joined, ticks=[3, 9]))
+    assert isinstance(asked, TryOutRequest)
+    assert [key.tick for key in asked.keys] == [3, 9]
+    forged = msgspec.structs.replace(joined, secret=bytes(16))
+    wrong = [
+        (try_out(forged, 2), "refused.bad-seal"),
+        (try_out(joined, 1), "refused.request-old"),
+        (try_out(joined, 3, [9, 9]), "refused.bad-request"),
+        (try_out(joined, 4, until=151), "refused.bad-request"),
+        (try_out(joined, 5, first=101), "refused.bad-request"),
+        (try_out(joined, 6, first=3000, until=3000), "refused.bad-request"),
+        (try_out(joined, 7, range(65)), "refused.bad-request"),
+        (b"x" * 1025, "refused.bad-request"),
+    ]
+    for payload, code in wrong:
+        refused = inbox.try_out(LEFT, payload)
+        assert isinstance(refused, Refusal)
+        assert refused.why.code == code
+
+
+def test_try_outs_can_not_flood_a_court() -> None:
+    """Six try-outs at once, then three a second; the seat is free to play meanwhile."""
+    inbox = make()
+    joined = take_seat(inbox)
+    taken = [inbox.try_out(LEFT, try_out(joined, seq)) for seq in range(1, 9)]
+    assert [isinstance(one, TryOutRequest) for one in taken] == [True] * 6 + [False] * 2
+    assert taken[-1] == Refusal(say("refused.too-many-tries"), again=True)
+    assert refusals(inbox) == {"flood": 2}
+    assert isinstance(inbox.ready(LEFT, request(joined, "ready", seq=9)), ReadySeat)
+    inbox.beat(1.0, [[], []])
+    later = [inbox.try_out(LEFT, try_out(joined, seq)) for seq in range(10, 14)]
+    assert [isinstance(one, TryOutRequest) for one in later] == [True] * 3 + [False]

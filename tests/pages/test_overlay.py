@@ -236,3 +236,27 @@ def test_the_document_has_every_flag() -> None:
     read = set(re.findall(r'\b(?:setting|flag|amount)\("(\w+)"', sources))
     told = set(re.findall(r"^\| `(\w+)` \|", DOC.read_text("utf-8"), re.MULTILINE))
     assert told == read
+
+
+def test_a_phone_can_read_it(venue: Venue, open_page: OpenPage) -> None:
+    """In an upright window of a phone the letters are large enough, and nothing is cut off."""
+    venue.court("--seconds", "2")
+    venue.web()
+    show = Show(open_page(viewport={"width": 390, "height": 844}), venue.url, LOW)
+    show.sees(".opening")
+    sizes = """selector => {
+      const found = document.querySelector(selector);
+      const { left, right, height } = found.getBoundingClientRect();
+      return [left, right, height];
+    }"""
+    left, right, _ = show.page.evaluate(sizes, ".opening")
+    assert 0 <= left < right <= 390
+    playing(venue)
+    show.sees(".score-bug .clock")
+    for part, least_px in ((".score-bug .clock", 18), (".score-bug .name", 12)):
+        left, right, height = show.page.evaluate(sizes, part)
+        assert 0 <= left < right <= 390
+        assert height >= least_px
+    show.sees(".result h1")
+    left, right, _ = show.page.evaluate(sizes, ".result")
+    assert 0 <= left < right <= 390

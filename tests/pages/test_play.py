@@ -63,6 +63,41 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
     return other
 
 
+def test_keys_are_tried_in_the_lobby(venue: Venue, sit: Sit) -> None:
+    """In the lobby the own robot stands on the field and walks by keys, until Ready: alone."""
+    page = seated(venue, sit)
+    page.is_told("Try your keys: only you see it")
+    body = "window.__lacoc.view.bodyPos('left/body')"
+    page.until(f"{body} !== null")
+    page.sees(".view-tag.own", "You")
+    stood = page.page.evaluate(body)
+    watcher = sit(venue.url)
+    watcher.open("/watch")
+    watcher.sees(".opening")
+    page.press("2")
+    page.key_stands(2)
+    page.until(f"Math.hypot({body}[0] - {stood[0]}, {body}[1] - {stood[1]}) > 0.05")
+    page.press("1")
+    page.key_stands(1)
+    page.press("x")
+    page.until(f"Math.hypot({body}[0] - {stood[0]}, {body}[1] - {stood[1]}) < 0.01")
+    page.misses('.key[aria-pressed="true"]')
+    page.press("9")
+    page.is_toasted("no such key")
+    assert watcher.page.evaluate(body) is None
+    page.press("2")
+    page.key_stands(2)
+    page.page.click("button.ready")
+    page.is_told("Waiting for the right seat")
+    page.misses('.key[aria-pressed="true"]')
+    page.press("2")
+    page.is_toasted("[2]")
+    other = venue.contestant("right", "Bees")
+    page.phase(Phase.READY)
+    page.until("window.__lacoc.view.bodyPos('right/body') !== null")
+    other.close()
+
+
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The join form shows every mistake; the browser keeps the team's name but not the token."""
     venue.contest.write_text('[contest]\nname = "Autumn cup"\n' + venue.contest.read_text())

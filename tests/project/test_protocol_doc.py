@@ -117,7 +117,7 @@ def test_every_key_expression() -> None:
         keys.scene,
         keys.health,
         keys.command("{seat}"),
-        *(keys.request("{seat}", what) for what in ("join", "ready", "leave")),
+        *(keys.request("{seat}", what) for what in ("join", "ready", "leave", "try")),
         keys.enter,
         keys.decision("{decision}"),
         keys.outlook,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from stage import LEFT, QUICK, RIGHT, Script, Stage, decide, join, key, setup
+from stage import LEFT, QUICK, RIGHT, Script, Stage, X, decide, join, key, setup
 from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
@@ -101,6 +101,29 @@ def test_a_match_that_is_held_well() -> None:
     assert held.left.expected == 30
     assert held.left.arrived == 30
     assert verdict.advice == ()
+
+
+def test_how_far_a_robot_walks_and_by_which_keys() -> None:
+    """The verdict has the way of each robot without its sways and restarts, and its keys."""
+    x_m, y_m = arenas.load("othello").game.starts[LEFT][0][:2]
+    way = {tick: {LEFT: (x_m, y_m + 0.004 * tick)} for tick in range(1, 101)}
+    way |= {tick: {LEFT: (x_m, y_m + 0.4 + 0.004 * (tick % 2))} for tick in range(101, 150)}
+    way[150] = {LEFT: (x_m, y_m)}
+    held = Held(Stage("othello", QUICK, script=Script(poses=way)).to_playing())
+    held.beat()
+    held.beat(key(LEFT, 2))
+    held.beat(key(LEFT, 2, seq=2), key(RIGHT, 9))
+    held.beat(key(LEFT, X, seq=3))
+    held.seconds(3)
+    left, right = held.verdict.seats
+    assert left.walked_m == pytest.approx(0.4, abs=0.02)
+    assert left.keys == {"B2": 2, "x": 1}
+    assert (right.walked_m, right.keys) == (0.0, {})
+    later = Held(before=held.verdict)
+    later.beat()
+    later.beat(key(LEFT, 1))
+    assert later.left.keys == {"B2": 2, "x": 1, "B1": 1}
+    assert later.left.walked_m == left.walked_m
 
 
 def test_only_the_time_that_is_played_counts() -> None:

@@ -167,7 +167,12 @@ STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
         [
             word(
                 "adjust",
-                say("decision.adjust", points=2, team="Bees"),
+                say(
+                    "decision.adjust",
+                    points=2,
+                    team="Bees",
+                    score=say("score.two", left="Ants", points=19, conceded=19, right="Bees"),
+                ),
                 "fair",
                 seat="right",
                 points=2,

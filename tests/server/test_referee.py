@@ -192,7 +192,10 @@ def test_a_decision_is_an_event_with_beat_referee_and_reason() -> None:
         (reply.beat, reply.event) == (event.beat, event.number) == (stage.frame.beat, event.number)
     )
     assert reply.scores == (18, 16)
-    assert render(event.said) == "Referee Takeda: -2 points for Bees. Reason: pushed the table"
+    assert (
+        render(event.said)
+        == "Referee Takeda: -2 points for Bees: Ants 18 : 16 Bees. Reason: pushed the table"
+    )
     assert event.data["by"] == "Takeda"
     assert event.data["reason"] == "pushed the table"
     assert event.data["decision"] == "adjust"

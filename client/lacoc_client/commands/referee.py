@@ -29,7 +29,7 @@ from lacoc_client.play.terminal import words
 from lacoc_client.play.terminal.line_view import event_columns
 from lacoc_client.play.terminal.plain import event_dict, frame_dict, outlook_dict, reply_dict
 from lacoc_shared.command import options, screen
-from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Clock, Decision, Restart, TakeBack
+from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Adjust, Clock, Decision, Restart, TakeBack
 from lacoc_shared.messages import (
     OUTLOOK_MOST_S,
     DecisionReply,
@@ -340,6 +340,10 @@ def _decide(
             view = patience.until(lambda: Spectator(session, access.court))
             if _ends_play(decision, *_look(view), view.sheet):
                 _ask(name, say("referee.ends-play"))
+        if isinstance(decision, Adjust) and not yes and sys.stdin.isatty():
+            view = patience.until(lambda: Spectator(session, access.court))
+            if (question := _rescored(decision, _look(view)[0], view.sheet)) is not None:
+                _ask(name, question)
         referee = RefereeClient(session, access.court, access.token)
 
         def decide() -> DecisionReply:
@@ -363,6 +367,22 @@ def _decide(
 def _ends_play(decision: Clock, frame: Frame, _: Health, sheet: Sheet) -> bool:
     left_s = sheet.duration_s - frame.clock_ticks * BEAT_S
     return bool(sheet.duration_s) and left_s + decision.gives_s <= 0
+
+
+def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
+    """Ask for a score to be changed, with both scores; None: the court has not two such seats."""
+    names = [seat.id for seat in sheet.seats]
+    if len(names) != 2 or decision.seat not in names:
+        return None
+    now = [seat.score for seat in frame.seats]
+    then = list(now)
+    then[names.index(decision.seat)] += decision.points
+    left, right = (seat.team or seat.id for seat in sheet.seats)
+    scores = [
+        say("score.two", left=left, points=one, conceded=other, right=right)
+        for one, other in (now, then)
+    ]
+    return say("referee.adjusts", now=scores[0], then=scores[1])
 
 
 def _ask(name: str, question: Phrase) -> None:

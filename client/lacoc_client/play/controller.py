@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from enum import Enum
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import msgspec
 
@@ -23,6 +23,9 @@ from lacoc_shared.messages import (
     SeatFrame,
     SeatRequest,
     SentFile,
+    TriedKey,
+    TryOutReply,
+    TryOutRequest,
 )
 from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import Session
@@ -37,6 +40,8 @@ from lacoc_shared.seat import (
 from lacoc_shared.words import Phrase, say
 
 REPEAT_S = 1 / REPEATS_HZ
+
+_Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 
 _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
@@ -258,6 +263,38 @@ class Controller:
         self.hold, self._joined = Hold.LEFT, None
         return said
 
+    def try_out(
+        self, keys: tuple[TriedKey, ...], first: int, until: int, drawn: bool
+    ) -> Callable[[], TryOutReply]:
+        """Prepare the question how the robot would walk alone with some keys, before the match.
+
+        Args:
+            keys: as in `TryOutRequest`.
+            first: likewise.
+            until: likewise.
+            drawn: likewise.
+
+        Returns:
+            A function that asks and waits for the answer. Any thread may call it, so the seat stays
+            alive meanwhile. It raises `UserError` if the court refuses or does not answer.
+
+        Raises:
+            UserError: if the seat is not held.
+        """
+        key, request = self._sealed(
+            "try",
+            lambda session, seq: TryOutRequest(
+                session=session,
+                seq=seq,
+                drawn=drawn,
+                first=first,
+                until=until,
+                keys=keys,
+                mac=b"",
+            ),
+        )
+        return lambda: ask(self._session, self._keys, key, request, TryOutReply)
+
     def saw(self, frame: SeenFrame) -> None:
         """Send a sign of life of a player elsewhere.
 
@@ -353,12 +390,25 @@ class Controller:
         return self._joined
 
     def _request(self, what: str, ready: bool) -> Phrase | None:
+        key, request = self._sealed(
+            what,
+            lambda session, seq: SeatRequest(session=session, seq=seq, ready=ready, mac=b""),
+        )
+        return ask(self._session, self._keys, key, request, Done).said
+
+    def _sealed(self, what: str, make: Callable[[int, int], _Sealed]) -> tuple[str, _Sealed]:
+        """Return the key expression of a request and the request with its seal.
+
+        Args:
+            what: the request, as in `KeySpace.request`.
+            make: makes it from the session's number and its sequence number, without a seal.
+        """
         joined = self._session_held()
         key = self._keys.request(self.seat, what)
         self._requests += 1
-        mac = seal.request_mac(joined.secret, key, joined.session, self._requests, ready)
-        request = SeatRequest(session=joined.session, seq=self._requests, ready=ready, mac=mac)
-        return ask(self._session, self._keys, key, request, Done).said
+        request = make(joined.session, self._requests)
+        mac = seal.request_mac(joined.secret, key, joined.session, self._requests, *request.sealed)
+        return key, msgspec.structs.replace(request, mac=mac)
 
     def _note(self, frame: SeenFrame) -> None:
         """Remember the newest frame that a player elsewhere saw."""

@@ -18,6 +18,7 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.court.key_trials import KeyTrials
 from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.court.renewal import Renewal
+from lacoc_server.court.try_outs import TryOuts
 from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
@@ -157,6 +158,7 @@ def serve_command(
             office = OfficeDesk(new_token_hash(plan.secrets.office), seats, prepare, copying)
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         outlooks, key_trials = Outlooks(weighing.aside), KeyTrials(weighing.aside)
+        try_outs = TryOuts(weighing.aside)
         pair = plan.public.pair
         renewal = None if pair is None else opened.enter_context(Renewal(pair, name))
         network = opened.enter_context(
@@ -169,9 +171,10 @@ def serve_command(
                 office,
                 outlooks,
                 TeamDesk(alone(name, settings.assigned)),
+                try_outs,
             )
         )
-        running = Court(settings, network, left or over, office, outlooks, key_trials)
+        running = Court(settings, network, left or over, office, outlooks, key_trials, try_outs)
         if exporter is not None:
             exporter.registry.register(running.metrics)
         stop = _stop_on_signal()

@@ -23,6 +23,7 @@ from lacoc_server.court.log import CourtLog
 from lacoc_server.court.metrics import CourtMetrics
 from lacoc_server.court.outlooks import Outlooks
 from lacoc_server.court.pace import Pace
+from lacoc_server.court.try_outs import TryOuts
 from lacoc_server.doors.network import Arrival, CourtNetwork
 from lacoc_server.doors.office_desk import OfficeDesk, WantedMatch
 from lacoc_server.journal.journal import Journal
@@ -87,6 +88,8 @@ class Court:
         office: the desk of the contest's office, if it has one: the court then plays only what the
             office assigns.
         outlooks: answers referees who ask what would happen if play went on.
+        key_trials: names the keys of seated robots.
+        try_outs: lets players try their keys before the match.
     """
 
     def __init__(
@@ -97,10 +100,12 @@ class Court:
         office: OfficeDesk[Prepared] | None = None,
         outlooks: Outlooks | None = None,
         key_trials: KeyTrials | None = None,
+        try_outs: TryOuts | None = None,
     ) -> None:
         self._office = office
         self._outlooks = outlooks
         self._key_trials = key_trials
+        self._try_outs = try_outs
         self._settings = settings
         self._network = network
         self._log = CourtLog(settings.name)
@@ -208,6 +213,8 @@ class Court:
         network.hold(held, match.has_begun)
         if self._outlooks is not None:
             self._outlooks.hold(match)
+        if self._try_outs is not None:
+            self._try_outs.hold(match)
         arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])

@@ -5,6 +5,7 @@ with any loss of messages, so the verdict is not part of it. The record has the 
 of its own. Only its advice enters the match, as an input (docs/architecture.md).
 """
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -16,15 +17,45 @@ from lacoc_server.match.match import Beat, Match
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.inputs import Input, KeySeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict, Refusal
-from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, Phase
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, RESTART_KEY, Phase
 from lacoc_shared.words import Phrase, say
 
 _LEAST_FACTOR = 1e-4
 """Smallest real-time factor that is used; it avoids a division by zero."""
+_STEP_M = 0.01
+"""A body sways with each step, so its way is measured between points that far apart [m]."""
+_PUT_M = 0.05
+"""No robot goes so far in a beat [m]."""
 _CARRIED = 2
 """Most commands above ten in a second that count for the next second: with jitter one second has 11
 repeats and the next 9.
 """
+
+
+class _WalkedWay:
+    """How far one robot walks.
+
+    Args:
+        walked_m: how far it had walked before the court was killed [m].
+    """
+
+    def __init__(self, walked_m: float) -> None:
+        self.walked_m = walked_m
+        self._corner: tuple[float, float] | None = None
+        """Where the last step ended; None: not known."""
+
+    def pause(self) -> None:
+        """Count nothing from here to where the robot is next."""
+        self._corner = None
+
+    def go(self, centre_m: tuple[float, float]) -> None:
+        """Take in where the robot is now."""
+        step_m = math.dist(self._corner, centre_m) if self._corner else math.inf
+        if step_m < _STEP_M:
+            return
+        if step_m < _PUT_M:  # else it was put somewhere
+            self.walked_m += step_m
+        self._corner = centre_m
 
 
 class _LinkCounts:
@@ -43,6 +74,8 @@ class _LinkCounts:
         self.expected = before.expected if before else 0
         self.arrived = before.arrived if before else 0
         self.refused = Counter(before.refused if before else {})
+        self.keys = Counter(before.keys if before else {})
+        self.way = _WalkedWay(before.walked_m if before else 0.0)
         self._silent = False
         self._heard: int | None = None
         """Valid commands counted when this second began; None: no second of PLAYING has begun."""
@@ -146,10 +179,13 @@ class MatchHealth:
             if isinstance(item, KeySeat) and isinstance(outcome, Refusal):
                 why = outcome.why.code.removeprefix("key.")  # `count.*` has the same names
                 self._links[item.seat].refused[why] += 1
+            elif isinstance(item, KeySeat):
+                self._links[item.seat].keys[_key_name(item)] += 1
         if self._match.phase is not Phase.PLAYING:
             self._playing_since = None
             for link in self._links:
                 link.pause()
+                link.way.pause()
             return
         # The first beat of PLAYING, also after a halt, does not count: it began before PLAYING.
         if self._playing_since is not None:
@@ -159,6 +195,7 @@ class MatchHealth:
             self._worst_late_s = max(self._worst_late_s, self._late_s)
         self._playing_since = self._now_s
         for seat, link, door in zip(self._match.seats, self._links, self._doors, strict=True):
+            link.way.go(self._match.staging.centre_m(seat.index))
             if seat.left:  # the contestant has left: silence is expected
                 link.pause()
             else:
@@ -182,6 +219,8 @@ class MatchHealth:
                     expected=link.expected,
                     arrived=link.arrived,
                     refused=dict(link.refused + Counter(door.refused) - before),
+                    walked_m=round(link.way.walked_m, 2),
+                    keys=dict(link.keys),
                 )
                 for seat, link, door, before in zip(
                     self._match.seats, self._links, self._doors, self._doors_before, strict=True
@@ -190,6 +229,11 @@ class MatchHealth:
             advice=(),
         )
         return msgspec.structs.replace(verdict, advice=tuple(advice(verdict, self._limits)))
+
+
+def _key_name(item: KeySeat) -> str:
+    """Name a key as `LinkVerdict.keys` does."""
+    return "x" if item.key == RESTART_KEY else f"{'AB'[item.level]}{item.key}"
 
 
 def advice(verdict: HealthVerdict, limits: HealthLimits) -> Iterator[Phrase]:

@@ -8,7 +8,8 @@ than a fixed part of a beat.
 from collections import Counter, deque
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
+from itertools import pairwise
+from typing import NamedTuple, TypeVar
 
 import msgspec
 
@@ -29,6 +30,7 @@ from lacoc_shared.inputs import (
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES, JOIN_MAX_BYTES, KeySpace
 from lacoc_shared.messages import (
     PROTOCOL,
+    TRY_OUT_ASKED_TICKS,
     Command,
     Done,
     Join,
@@ -36,6 +38,7 @@ from lacoc_shared.messages import (
     Refusal,
     SeatHealth,
     SeatRequest,
+    TryOutRequest,
 )
 from lacoc_shared.messages.office import Assigned, AssignedSeat
 from lacoc_shared.mistakes import FileRefused, printable
@@ -61,6 +64,7 @@ FILE_NAME_MAX = 100
 
 _JOINS_HZ, _JOINS_BURST = 1.0, 5  # a join may cost reading three files
 _READYS_HZ, _READYS_BURST = 1.0, 5  # may build a model, and all see an event
+_TRIES_HZ, _TRIES_BURST = 3.0, 6  # the robot walks for some seconds
 _RATE_WINDOW_S = 2.0
 
 _NO_SESSION = {
@@ -71,6 +75,8 @@ _NO_SESSION = {
     Why.OTHER_MATCH: say("refused.other-match", seat=""),
 }
 
+
+_Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 
 Later = Callable[[], JoinSeat | Done | Refusal | None]
 """A request that takes longer than a beat: called in each beat until it gives an answer."""
@@ -117,6 +123,7 @@ class _SeatDoor:
         self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
         self.readys = Allowance(_READYS_HZ, _READYS_BURST)
+        self.tries = Allowance(_TRIES_HZ, _TRIES_BURST)
 
     def refuse(self, why: Why, said: Phrase, *, again: bool = False) -> Refusal:
         self.refused[why.value] += 1
@@ -336,7 +343,7 @@ class Inbox:
 
     def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
         """Check a ready request."""
-        request = self._request(index, payload, "ready")
+        request = self._request(index, payload, "ready", SeatRequest)
         if isinstance(request, Refusal):
             return request
         seat = self._seats[index]
@@ -346,8 +353,25 @@ class Inbox:
 
     def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
         """Check a leave request; call `left` once the match has accepted it."""
-        request = self._request(index, payload, "leave")
+        request = self._request(index, payload, "leave", SeatRequest)
         return request if isinstance(request, Refusal) else LeaveSeat(index)
+
+    def try_out(self, index: int, payload: bytes) -> TryOutRequest | Refusal:
+        """Check a request to try keys before the match."""
+        request = self._request(index, payload, "try", TryOutRequest)
+        if isinstance(request, Refusal):
+            return request
+        seat = self._seats[index]
+        ticks = [key.tick for key in request.keys]
+        if not (
+            0 <= request.until - request.first <= TRY_OUT_ASKED_TICKS
+            and all(one < other for one, other in pairwise(ticks))
+        ):
+            said = say("refused.bad-request", error="ticks")
+            return seat.refuse(Why.OUT_OF_RANGE, said)
+        if not seat.tries.take(1, self._now_s):
+            return seat.refuse(Why.FLOOD, say("refused.too-many-tries"), again=True)
+        return request
 
     def left(self, index: int) -> None:
         """Free a seat after the match has accepted a leave request."""
@@ -447,10 +471,12 @@ class Inbox:
             return Why.AHEAD
         return Why.OLD if 0 < command.seq < seat.last_seq else None
 
-    def _request(self, index: int, payload: bytes, what: str) -> SeatRequest | Refusal:
+    def _request(
+        self, index: int, payload: bytes, what: str, kind: type[_Sealed]
+    ) -> _Sealed | Refusal:
         seat = self._seats[index]
         try:
-            request = codec.decode(payload, SeatRequest, COMMAND_MAX_BYTES)
+            request = codec.decode(payload, kind, COMMAND_MAX_BYTES)
         except codec.BadMessage as error:
             return seat.refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
         secret = self._sessions.secret(index, request.session)
@@ -458,7 +484,7 @@ class Inbox:
             return seat.refuse(secret, _NO_SESSION[secret].with_values(seat=seat.name))
         key_expression = self._keys.request(seat.name, what)
         expected = seal.request_mac(
-            secret, key_expression, request.session, request.seq, request.ready
+            secret, key_expression, request.session, request.seq, *request.sealed
         )
         if not seal.same(request.mac, expected):
             return seat.refuse(Why.BAD_SEAL, say("refused.bad-seal", seat=seat.name))

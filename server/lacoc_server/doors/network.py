@@ -30,6 +30,8 @@ from lacoc_shared.messages import (
     Scene,
     SeatHealth,
     Sheet,
+    TryOutReply,
+    TryOutRequest,
 )
 from lacoc_shared.messages.office import Assigned, Copied, Whereabouts
 from lacoc_shared.network.certificate import Pair
@@ -43,7 +45,7 @@ _REQUESTS_PER_BEAT = 4  # refused ones; at most one request of a desk enters a b
 _FETCHES_PER_BEAT = 8
 
 
-_Told = Done | Copied | Whereabouts | Outlook
+_Told = Done | Copied | Whereabouts | Outlook | TryOutReply
 """Answers that do not concern the match."""
 _Judged = Input | _Told | Refusal
 _Later = Callable[[], _Judged | None]
@@ -54,6 +56,12 @@ LookAhead = Callable[[OutlookRequest], Callable[[], Outlook | Refusal | None]]
 """Starts to play a copy of the match, beside the beats.
 
 It returns a function that is called in each beat until it returns the outlook, or a refusal.
+"""
+
+TryOut = Callable[[int, TryOutRequest], Refusal | Callable[[], TryOutReply | Refusal | None]]
+"""Lets the robot of a seat walk alone, beside the beats.
+
+It returns a refusal, or a function that is called in each beat until it returns what became of it.
 """
 
 
@@ -77,6 +85,7 @@ class CourtNetwork:
         office_desk: checks what comes from the office; None: the court has no office.
         look_ahead: answers referees who ask for an outlook; None: nobody answers them.
         team_desk: answers whoever asks where to play, at a court without an office.
+        try_out: lets players try their keys before the match; None: nobody answers them.
 
     Raises:
         UserError: if the court can't listen on an address.
@@ -92,6 +101,7 @@ class CourtNetwork:
         office_desk: OfficeDesk[Any] | None = None,
         look_ahead: LookAhead | None = None,
         team_desk: TeamDesk | None = None,
+        try_out: TryOut | None = None,
     ) -> None:
         self._inbox = inbox
         self._decision_desk = decision_desk
@@ -113,6 +123,11 @@ class CourtNetwork:
             )
             for index, seat in enumerate(inbox.seats)
         ]
+        if try_out is not None:
+            self._desks += [
+                (session.desk(keys.request(seat, "try"), _DESK), _try_judge(inbox, try_out, index))
+                for index, seat in enumerate(inbox.seats)
+            ]
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
         if look_ahead is not None:
             judge = _outlook_judge(decision_desk, look_ahead)
@@ -299,6 +314,14 @@ class CourtNetwork:
 
 def _seat_judge(judge: Callable[[int, bytes], _Judged | _Later], seat: int) -> _Judge:
     return lambda request: judge(seat, request.payload)
+
+
+def _try_judge(inbox: Inbox, try_out: TryOut, seat: int) -> _Judge:
+    def judge(request: Request) -> Refusal | _Later:
+        asked = inbox.try_out(seat, request.payload)
+        return asked if isinstance(asked, Refusal) else try_out(seat, asked)
+
+    return judge
 
 
 def _outlook_judge(desk: DecisionDesk, look_ahead: LookAhead) -> _Judge:

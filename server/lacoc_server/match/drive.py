@@ -9,6 +9,7 @@ from typing import Literal
 
 import msgspec
 
+from lacoc_robots.robot import RobotSpec
 from lacoc_shared.gait.motion import toward
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.seat import BEAT_US
@@ -128,3 +129,10 @@ class Drive:
 
     def _index(self, count: int, length: int) -> int:
         return count % length if self._repeat else min(count, length - 1)
+
+
+def make_drive(robot: RobotSpec, gait: Gait, repeat: bool) -> Drive:
+    """Make the drive of a robot with a gait; `repeat` as in `Drive`."""
+    return Drive(
+        gait, robot.start_posture, robot.ang_min_rad_s, robot.advance, robot.hold_us, repeat
+    )

@@ -184,7 +184,8 @@ def _adjust(match: MatchState, decision: d.Adjust) -> Phrase:
     if not _is_within(points, MAX_POINTS):
         raise Illegal(say("why.bad-points", points=points, most=MAX_POINTS))
     match.adjustments[match.next_number] = (seat.index, points)
-    return say("decision.adjust", points=points, team=seat.team)
+    score = _score(match, match.scores())
+    return say("decision.adjust", points=points, team=seat.team, score=score)
 
 
 def _set(match: MatchState, decision: d.Set) -> Phrase:

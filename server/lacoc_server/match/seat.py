@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from lacoc_server.match.drive import Drive, DriveState
+from lacoc_server.match.drive import Drive, DriveState, make_drive
 from lacoc_server.match.entry import Entry
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat, KeySeat
@@ -66,15 +66,7 @@ class Seat:
             return
         self.strays = 0
         self.idle = True
-        robot = self.entry.robot
-        self.drive = Drive(
-            self.entry.gait,
-            robot.start_posture,
-            robot.ang_min_rad_s,
-            robot.advance,
-            robot.hold_us,
-            repeat,
-        )
+        self.drive = make_drive(self.entry.robot, self.entry.gait, repeat)
         self.state = self.drive.begin(level)
 
     def stand(self) -> None:

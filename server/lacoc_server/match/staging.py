@@ -73,6 +73,11 @@ class Staging:
         """Return how far a robot's centre is from where it was last put, seen from above [m]."""
         return math.dist(self._starts[seat][:2], self._bodies[seat][:2])
 
+    def centre_m(self, seat: int) -> tuple[float, float]:
+        """Return where a robot's centre is, seen from above [m]."""
+        x_m, y_m = self._bodies[seat][:2]
+        return x_m, y_m
+
     def observe(self) -> tuple[Observation, Touch | None]:
         """Observe a tick for the rules.
 

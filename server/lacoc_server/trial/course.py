@@ -8,7 +8,7 @@ import numpy as np
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.match.drive import Drive, DriveState
+from lacoc_server.match.drive import Drive, DriveState, make_drive
 from lacoc_server.match.physics import Physics
 from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.walk import Floats, Press, Sensed, Span, Walk
@@ -93,14 +93,7 @@ class Course:
             cycles: number of whole cycles to measure if `seconds` is None.
         """
         robot = self.robot
-        drive = Drive(
-            gait,
-            robot.start_posture,
-            robot.ang_min_rad_s,
-            robot.advance,
-            robot.hold_us,
-            self._repeat,
-        )
+        drive = make_drive(robot, gait, self._repeat)
         states, starts, span = plan(drive, self._level, presses, seconds, cycles)
         world = self._world
         world.load(self._start)

@@ -57,17 +57,18 @@ class World:
     Args:
         arena: the field and its game.
         entries: an entry for each seat; none for the empty field.
+        first: seat of the first entry; a robot that tries its keys stands alone in its own seat.
 
     Raises:
         UserError: if pages can't draw the field (`scene.make_scene`).
     """
 
-    def __init__(self, arena: Arena, entries: Sequence[Entry]) -> None:
+    def __init__(self, arena: Arena, entries: Sequence[Entry], first: int = 0) -> None:
         spec = mujoco.MjSpec()
         set_options(spec)
         arena.build_field(spec)
         seats = [seat.id for seat in arena.seats]
-        for index, entry in enumerate(entries):
+        for index, entry in enumerate(entries, first):
             add_robot(
                 spec,
                 entry.robot,
@@ -88,10 +89,10 @@ class World:
         buffer = np.empty(mujoco.mj_sizeModel(self.whole), np.uint8)
         mujoco.mj_saveModel(self.whole, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
-        self._made_of: tuple[Any, ...] = (arena, tuple(entries))
+        self._made_of: tuple[Any, ...] = (arena, tuple(entries), first)
         """The arguments, for a copy."""
         self.digest = bytes(8)
-        self.robots = _robots(self.model, entries, seats)
+        self.robots = _robots(self.model, entries, seats[first:])
         pose_qpos = [index for robot in self.robots for index in robot.pose_qpos]
         self._pose_qpos = np.array(pose_qpos, np.intp)
         # Views into MuJoCo's own arrays: they always show the present values.
@@ -102,12 +103,12 @@ class World:
         self._state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         self._weights = _weights(self.model)
         for seat, robot in enumerate(self.robots):
-            robot.put(self.data, arena.game.starts[seat][0])
+            robot.put(self.data, arena.game.starts[first + seat][0])
         self._keep()
         self._touch: TouchTest | None = None
         self._untouched: list[tuple[int, ...]] = [()] * len(self.robots)
         if models.touching is not None and entries:
-            robots = _robots(models.touching, entries, seats)
+            robots = _robots(models.touching, entries, seats[first:])
             self._touch = TouchTest(models.touching, self._qpos, robots, arena.game.markers)
 
     # Physics

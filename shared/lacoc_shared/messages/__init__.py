@@ -22,6 +22,13 @@ MARKER_STATES = ("neutral", "left", "right", "down")
 OUTLOOK_MOST_S = 30.0
 """Longest outlook that a referee may ask for [s]."""
 
+TRY_OUT_TICKS = 3000
+"""Longest try-out before a match [ticks]: a minute."""
+TRY_OUT_ASKED_TICKS = 150
+"""Longest part of a try-out in one reply [ticks]."""
+TRY_OUT_KEYS = 64
+"""Most keys of a try-out."""
+
 ROOT_FLOATS = 7
 """Numbers of a robot's root in `Frame.poses`: x, y, z, then its quaternion w, x, y, z."""
 
@@ -138,6 +145,63 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Sequence number of the request, from 1 in each session."""
     ready: bool = True
     mac: bytes
+
+    @property
+    def sealed(self) -> tuple[int, ...]:
+        """The numbers that the seal covers after `seq`."""
+        return (int(self.ready),)
+
+
+class TriedKey(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
+    """A key of a try-out."""
+
+    tick: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
+    """Ticks after the beginning of the try-out."""
+    level: Annotated[int, msgspec.Meta(ge=0, le=1)]
+    """`Level`."""
+    key: Annotated[int, msgspec.Meta(ge=0, le=9)]
+
+
+class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A player's question before the match: how would the robot walk, alone, with some keys?
+
+    Sealed as a `SeatRequest`, with which it shares the sequence numbers.
+    """
+
+    session: int
+    seq: int
+    drawn: bool
+    """Whether the reply needs the scene."""
+    first: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
+    """Tick of the first picture that is wanted."""
+    until: Annotated[int, msgspec.Meta(ge=0, le=TRY_OUT_TICKS)]
+    """No picture is later; at most `TRY_OUT_ASKED_TICKS` after `first`."""
+    keys: Annotated[tuple[TriedKey, ...], msgspec.Meta(max_length=TRY_OUT_KEYS)]
+    """All keys since the try-out began, in the order of their ticks; at most one in a tick."""
+    mac: bytes
+
+    @property
+    def sealed(self) -> tuple[int, ...]:
+        """The numbers that the seal covers after `seq`."""
+        pressed = [number for key in self.keys for number in (key.tick, key.level, key.key)]
+        return (int(self.drawn), self.first, self.until, *pressed)
+
+
+class TryOutReply(msgspec.Struct, frozen=True, kw_only=True):
+    """Pictures of a robot that walks alone on the field of its match."""
+
+    scene: bytes
+    """Hash of the field with this robot alone, 8 bytes."""
+    drawn: "Scene | None"
+    """That scene, if it was asked for."""
+    first: int
+    """Tick of the first picture."""
+    every: int
+    """Ticks from one picture to the next."""
+    poses: tuple[bytes, ...]
+    """Each picture in the form of `Frame.poses`, of this robot only; fewer than were asked for if
+    physics stopped.
+    """
 
 
 class Done(msgspec.Struct, frozen=True):
@@ -393,6 +457,10 @@ class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
     refused: dict[str, int]
     """Number of refusals in this match by reason, a name of `count.*`: at the court's doors and by
     the rules."""
+    walked_m: float = 0.0
+    """How far the robot has walked in PLAYING [m]; sways of less than 10 mm do not count."""
+    keys: dict[str, int] = {}
+    """How often each key took effect: level and digit ("B2"), or "x"."""
 
 
 class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):

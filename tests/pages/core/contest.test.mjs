@@ -92,6 +92,29 @@ test("a score has points of the only game, or games won, by place", () => {
   }
 });
 
+test("a drawn game is half a game for each, so two of them are a tie", () => {
+  const teams = ["Ants", "Bees"];
+  const game = (number, outcome) => ({ number, teams, scores: [3, 3], outcome });
+  const view = { stage: { settings: { games: 3 } } };
+  const score = (...outcomes) => {
+    const games = outcomes.map((outcome, index) => game(index + 1, outcome));
+    return c.score({ teams, games }, view).map(c.written);
+  };
+  assert.deepEqual(score("draw", "draw"), ["1", "1"]);
+  assert.deepEqual(score("draw"), ["½", "½"]);
+  assert.deepEqual(score("draw", "left"), ["1½", "½"]);
+  assert.deepEqual(score("left", "void"), ["1", "0"]);
+});
+
+test("the next game of a team is the one after the call that was played", () => {
+  const one = { pairing: "cup:w1.1", game: 1, teams: ["Ants", "Bees"], court: "east" };
+  const two = { pairing: "cup:w2.1", game: 1, teams: ["Cats", "Ants"], court: "west", at_ms: 5 };
+  const sheet = { running: [{ ...one, id: "c1" }], coming: [two] };
+  assert.equal(c.nextGameOf(sheet, "Ants", "c1").at_ms, 5);
+  assert.equal(c.nextGameOf(sheet, "Bees", "c1"), null);
+  assert.equal(c.nextGameOf(sheet, "Bees", "c0").court, "east");
+});
+
 test("a match says how it ended where its score does not", () => {
   const match = { state: "decided", how: "played", winner: "Ants" };
   assert.equal(c.howEnded(match), null);

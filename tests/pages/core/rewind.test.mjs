@@ -14,6 +14,7 @@ function live() {
     scene: signal(null),
     frame: signal(null),
     events: signal([]),
+    verdict: signal(null),
     sample: () => ({ beat: match.frame.value.beat }),
   };
   const frame = (beat, number = 1) => {

@@ -109,6 +109,9 @@ class Page:
             case wire.CheerAsk():
                 self._cheer(asked.symbol)
                 answers.reply(asked.id, {})
+            case wire.TryAsk():
+                self._acting()
+                answers.later(asked.id, self._seat.try_out(asked, self._courts.threads))
             case wire.EnterAsk():
                 feed, referees = self._acting()
                 _spend(self._tokens)

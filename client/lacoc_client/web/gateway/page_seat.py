@@ -2,17 +2,20 @@
 
 import asyncio
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from lacoc_client.play.controller import Controller, SeenFrame
 from lacoc_client.web.gateway import wire
-from lacoc_client.web.gateway.answers import Answers, in_loop
+from lacoc_client.web.gateway.answers import Answers, in_future, in_loop
 from lacoc_client.web.gateway.home import Prefill
 from lacoc_client.web.gateway.seat_thread import Answer, SeatThread
+from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import MOST_HZ, Viewer
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_robots.seat_files import SeatFiles, to_send
 from lacoc_shared.contest.access import Access
+from lacoc_shared.messages import TryOutReply
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
 
@@ -97,6 +100,24 @@ class PageSeat:
                 do(lambda controller: {"seq": controller.press(level, key, seen)}, answer)
             case wire.SawAsk(match=number, beat=beat):
                 do(lambda controller: _saw(controller, SeenFrame(number, beat)), answer)
+
+    async def try_out(self, asked: wire.TryAsk, threads: Threads) -> TryOutReply:
+        """Ask the court how the seat's robot would walk alone, and leave the seat's thread free.
+
+        Raises:
+            UserError: if the page has no seat, or the court refuses or does not answer.
+        """
+        if self._thread is None:
+            raise UserError(say("gateway.no-seat"))
+        sealed = asyncio.get_running_loop().create_future()
+        self._thread.do(
+            lambda controller: controller.try_out(
+                asked.keys, asked.first, asked.until, asked.drawn
+            ),
+            partial(in_future, sealed),
+        )
+        ask: Callable[[], TryOutReply] = await sealed
+        return await threads.run(ask)
 
     def leave(self) -> None:
         """Stop repeating the command when the page goes; the contestant keeps the seat."""

@@ -14,7 +14,7 @@ from lacoc_client.play.own_files import OwnFiles
 from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
-from lacoc_shared.messages import SentFile
+from lacoc_shared.messages import TRY_OUT_KEYS, TRY_OUT_TICKS, SentFile, TriedKey
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import Phrase, say
 
@@ -161,6 +161,16 @@ class CheerAsk(Ask, frozen=True, kw_only=True, tag="cheer"):
     symbol: Annotated[int, msgspec.Meta(ge=0, le=3)]
 
 
+class TryAsk(Ask, frozen=True, kw_only=True, tag="try"):
+    """Ask how the robot would walk alone with some keys, before the match."""
+
+    keys: Annotated[tuple[TriedKey, ...], msgspec.Meta(max_length=TRY_OUT_KEYS)]
+    first: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
+    until: Annotated[int, msgspec.Meta(ge=0, le=TRY_OUT_TICKS)]
+    drawn: bool = False
+    """Whether the reply needs the scene."""
+
+
 class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
     """Enter as a referee."""
 
@@ -197,6 +207,7 @@ Asked = (
     | KeyAsk
     | SawAsk
     | CheerAsk
+    | TryAsk
     | EnterAsk
     | TakeOver
     | DecideAsk

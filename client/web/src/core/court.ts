@@ -74,6 +74,10 @@ export class Court implements Match {
   readonly frame = signal<Frame | null>(null);
   readonly events = signal<readonly Event[]>([]);
   readonly health = signal<Health | null>(null);
+  readonly verdict = computed(() => {
+    const health = this.health.value;
+    return health && health.match === this.frame.value?.match ? health.verdict : null;
+  });
   readonly link = signal<Link | null>(null);
   /** What the organiser tells all; null until the gateway says so. */
   readonly notice = signal<Notice | null>(null);

@@ -1,7 +1,7 @@
-/** How a match was played, in figures that people compare: from its events alone. Pure. */
+/** How a match was played, in figures that people compare. Pure. */
 
 import { goneEvents } from "./rulings";
-import type { Event } from "./wire";
+import type { Event, HealthVerdict } from "./wire";
 
 /** The figures of one seat. */
 export interface Figures {
@@ -13,10 +13,26 @@ export interface Figures {
   largest: number;
   /** How often it was put back to its start. */
   restarts: number;
+  /** How far its robot walked [m]. */
+  walkedM: number;
+  /** How many keys took effect. */
+  keys: number;
+  /** The digits that took effect most often, as level and digit ("B2"), and how often. */
+  often: readonly (readonly [key: string, times: number])[];
 }
 
-/** The figures of each seat; what the referee took back does not count. */
-export function figures(events: readonly Event[], seats: number): Figures[] {
+const OFTEN = 3;
+
+/**
+ * The figures of each seat; what the referee took back does not count.
+ *
+ * @param verdict Has the walks and the keys; null, or of an older court: nobody counted them.
+ */
+export function figures(
+  events: readonly Event[],
+  seats: number,
+  verdict: HealthVerdict | null = null,
+): Figures[] {
   const standing = scored(events);
   return Array.from({ length: seats }, (_, seat) => {
     const points = standing.filter((event) => event.seat === seat).map(pointsOf);
@@ -25,8 +41,19 @@ export function figures(events: readonly Event[], seats: number): Figures[] {
       points: points.reduce((sum, one) => sum + one, 0),
       largest: Math.max(0, ...points),
       restarts: events.filter(({ kind, seat: own }) => kind === "restart" && own === seat).length,
+      ...walkOf(verdict?.seats[seat]),
     };
   });
+}
+
+function walkOf(seat: HealthVerdict["seats"][number] | undefined) {
+  const digits = Object.entries(seat?.keys ?? {}).filter(([key]) => key !== "x");
+  const often = digits.sort(([, one], [, other]) => other - one).slice(0, OFTEN);
+  return {
+    walkedM: seat?.walked_m ?? 0,
+    keys: digits.reduce((sum, [, times]) => sum + times, 0),
+    often,
+  };
 }
 
 /**

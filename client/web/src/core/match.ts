@@ -2,7 +2,15 @@
 
 import { computed, type ReadonlySignal } from "@preact/signals";
 import type { Moment } from "./timeline";
-import { type Event, type Frame, Phase, type Scene, type Sheet, unpackStates } from "./wire";
+import {
+  type Event,
+  type Frame,
+  type HealthVerdict,
+  Phase,
+  type Scene,
+  type Sheet,
+  unpackStates,
+} from "./wire";
 
 /** A match that every view can show. */
 export interface Match {
@@ -11,6 +19,8 @@ export interface Match {
   readonly scene: ReadonlySignal<Scene | null>;
   readonly frame: ReadonlySignal<Frame | null>;
   readonly events: ReadonlySignal<readonly Event[]>;
+  /** How the match has been held so far; null: nothing is known of that. */
+  readonly verdict: ReadonlySignal<HealthVerdict | null>;
   /** What to draw at a time of `performance.now()`; null before the first frame. */
   sample(nowMs: number): Moment | null;
 }

@@ -11,6 +11,7 @@ import {
   BEAT_NS,
   type Event,
   type Header,
+  type HealthVerdict,
   RECORD_FORMAT,
   RECORD_PROFILE,
   type Result,
@@ -45,6 +46,8 @@ export interface MatchRecord {
   sheets: Since<Sheet>[];
   scenes: Since<Scene>[];
   result: Result | null;
+  /** How the match was held, at its end; null: nothing is known of that. */
+  verdict: HealthVerdict | null;
   frames: PackedFrames;
   /** Where the scores changed, and to what. */
   scores: Since<readonly number[]>[];
@@ -104,6 +107,7 @@ interface Segment {
   sheets: Since<Sheet>[];
   scenes: Since<Scene>[];
   results: Result[];
+  verdict: HealthVerdict | null;
   frames: FrameBytes[];
   lastBeat: number;
   note: Note | null;
@@ -139,6 +143,7 @@ export function readRecord(files: readonly RecordFile[]): MatchRecord {
     sheets: joined.sheets,
     scenes: joined.scenes,
     result: joined.results.at(-1) ?? null,
+    verdict: joined.verdict,
     frames: pack(joined.frames),
     ...changes(joined.frames),
     lastBeat: joined.lastBeat,
@@ -199,6 +204,7 @@ function begin(file: string, data: Uint8Array, budget: Budget): Segment {
     sheets: [],
     scenes: [],
     results: [],
+    verdict: null,
     frames: [],
     lastBeat: header.first_beat - 1,
     note: null,
@@ -226,6 +232,9 @@ function take(
       break;
     case "/lacoc/scene":
       segment.scenes.push({ beat, value: budget.read<Scene>(data) });
+      break;
+    case "/lacoc/health":
+      segment.verdict = budget.read<HealthVerdict>(data);
       break;
     case "/lacoc/result":
       segment.results.push(budget.read<Result>(data));
@@ -257,6 +266,7 @@ function join(segments: readonly Segment[]): Omit<Segment, "file" | "header" | "
     sheets: [],
     scenes: [],
     results: [],
+    verdict: null,
     frames: [],
     lastBeat: -1,
   };
@@ -273,6 +283,7 @@ function join(segments: readonly Segment[]): Omit<Segment, "file" | "header" | "
     all.sheets.push(...segment.sheets);
     all.scenes.push(...segment.scenes);
     all.results.push(...segment.results);
+    all.verdict = segment.verdict ?? all.verdict;
     all.frames = all.frames.concat(segment.frames);
     all.lastBeat = segment.lastBeat;
   }

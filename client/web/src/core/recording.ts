@@ -5,7 +5,15 @@ import { recoloured } from "./colours";
 import type { Match } from "./match";
 import type { MatchRecord, PackedFrames, Since } from "./record";
 import type { Moment } from "./timeline";
-import { type Event, type Frame, Phase, readFrame, type Scene, type Sheet } from "./wire";
+import {
+  type Event,
+  type Frame,
+  type HealthVerdict,
+  Phase,
+  readFrame,
+  type Scene,
+  type Sheet,
+} from "./wire";
 
 /** Before the countdown: the robots are seen standing. */
 const LEAD_IN_BEATS = 150;
@@ -20,6 +28,7 @@ export class Recording implements Match {
   readonly scene: ReadonlySignal<Scene | null>;
   /** Those that have happened. */
   readonly events: ReadonlySignal<readonly Event[]>;
+  readonly verdict: ReadonlySignal<HealthVerdict | null>;
   /** The beat that is shown, with its fraction. */
   readonly beat = signal(0);
   /** Where play begins and ends: without the wait in the lobby, and without what came after. */
@@ -39,6 +48,7 @@ export class Recording implements Match {
     this.scene = computed(() => newest(record.scenes, whole.value));
     const happened = computed(() => countUntil(record.events, whole.value));
     this.events = computed(() => record.events.slice(0, happened.value));
+    this.verdict = signal(record.verdict);
     this.seek(this.firstBeat);
   }
 

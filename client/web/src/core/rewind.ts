@@ -5,7 +5,14 @@ import type { Match } from "./match";
 import { Playback } from "./playback";
 import { countUntil } from "./recording";
 import { type Moment, momentAt } from "./timeline";
-import { BEATS_PER_S, type Event, type Frame, type Scene, type Sheet } from "./wire";
+import {
+  BEATS_PER_S,
+  type Event,
+  type Frame,
+  type HealthVerdict,
+  type Scene,
+  type Sheet,
+} from "./wire";
 
 /** How long frames are kept: the memory of a page is bounded, however long a match lasts. */
 const KEPT_BEATS = 120 * BEATS_PER_S;
@@ -18,6 +25,7 @@ export class Rewind implements Match {
   readonly frame: ReadonlySignal<Frame | null>;
   /** Those that have happened at the moment shown. */
   readonly events: ReadonlySignal<readonly Event[]>;
+  readonly verdict: ReadonlySignal<HealthVerdict | null>;
   /** Whether something is shown that has passed. */
   readonly isBack = signal(false);
   /** How long ago the moment shown was [s]; 0: it is live. */
@@ -30,6 +38,7 @@ export class Rewind implements Match {
   constructor(private readonly live: Match) {
     this.sheet = live.sheet;
     this.scene = live.scene;
+    this.verdict = live.verdict;
     const whole = computed(() => Math.floor(this.beat.value));
     this.frame = computed(() => {
       const newest = live.frame.value;

@@ -13,6 +13,9 @@ export const SILENT_AFTER_S = 1;
 export const RESTART_KEY = 10;
 export const RECORDED = "-";
 export const ROOT_FLOATS = 7;
+export const TRY_OUT_TICKS = 3000;
+export const TRY_OUT_ASKED_TICKS = 150;
+export const TRY_OUT_KEYS = 64;
 export const HASH_BYTES = 8;
 export const JOIN_MAX_BYTES = 65536;
 export const NAME_MAX = 24;
@@ -234,6 +237,8 @@ export interface LinkVerdict {
   expected: number;
   arrived: number;
   refused: Record<string, number>;
+  walked_m: number;
+  keys: Record<string, number>;
 }
 
 export interface HealthVerdict {
@@ -263,6 +268,14 @@ export interface Health {
   sheet: Uint8Array;
   gains: Gains[];
   moves: string[][];
+}
+
+export interface TryOutReply {
+  scene: Uint8Array;
+  drawn: Scene | null;
+  first: number;
+  every: number;
+  poses: Uint8Array[];
 }
 
 export interface DecisionReply {

@@ -248,6 +248,7 @@ export type Request =
   | "key"
   | "saw"
   | "cheer"
+  | "try"
   | "enter"
   | "take_over"
   | "outlook"

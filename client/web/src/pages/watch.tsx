@@ -33,6 +33,7 @@ import { Cheers, CheersSetting, Watching } from "./watch/cheers";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
 import { EventCard, useBetween } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
+import { NextOfTeams } from "./watch/next";
 import "./watch/frame.css";
 
 const WIDE_PX = 1280;
@@ -136,6 +137,7 @@ function Hud() {
             match={shown}
             withReplay
             isLast={!court.live.value}
+            next={court.welcome.value?.desk ? <NextOfTeams court={court} /> : undefined}
             onClose={() => {
               putAway.value = match;
             }}

@@ -31,8 +31,8 @@ const MARGIN_M = 0.15;
 export class Model {
   readonly fk: ForwardKinematics;
   readonly field: Field;
-  /** By seat; empty while there are no robots on the field. */
-  robots: Robot[] = [];
+  /** By seat; empty while no robot is on the field. In a try-out only one seat has its robot. */
+  robots: (Robot | undefined)[] = [];
   /** State of each marker. */
   states: readonly number[];
   phase: number = Phase.CREATED;

@@ -55,7 +55,7 @@ export function pick(
 export function pickFlat(model: Model, x_m: number, y_m: number): Hit {
   const at = { x_m, y_m };
   for (const [seat, robot] of model.robots.entries()) {
-    if (Math.hypot(robot.x - x_m, robot.y - y_m) < ROBOT_REACH_M) return { ...at, seat };
+    if (robot && Math.hypot(robot.x - x_m, robot.y - y_m) < ROBOT_REACH_M) return { ...at, seat };
   }
   const marker = markerAt(model, x_m, y_m, 0.045);
   return marker === null ? at : { ...at, marker };
@@ -83,6 +83,7 @@ function nearestRobot(
   let nearest = Number.POSITIVE_INFINITY;
   const length = Math.hypot(...ray);
   for (const [seat, robot] of model.robots.entries()) {
+    if (!robot) continue;
     const to = [robot.x - eye[0], robot.y - eye[1], ROBOT_HEIGHT_M - eye[2]] as const;
     const along = (to[0] * ray[0] + to[1] * ray[1] + to[2] * ray[2]) / length;
     const off = Math.sqrt(Math.max(0, to[0] ** 2 + to[1] ** 2 + to[2] ** 2 - along ** 2));

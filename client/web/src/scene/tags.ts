@@ -14,6 +14,15 @@ export type Placing = (
   z: number,
 ) => { x: number; y: number; far: number } | null;
 
+/** A place in the picture [px]. */
+export interface Spot {
+  x: number;
+  y: number;
+}
+
+/** Half the height of what stands at a spot. */
+const SPOT_PX = 14;
+
 /** The reader's own robot. */
 export interface OwnSeat {
   seat: number;
@@ -54,8 +63,8 @@ export class Tags {
     this.layer.replaceChildren(...this.tags);
   }
 
-  /** Put the names where the robots are; null hides them. */
-  draw(model: Model | null, place: Placing): void {
+  /** Put the names where the robots are, above `spots` that they would hide; null hides them. */
+  draw(model: Model | null, place: Placing, spots: readonly Spot[]): void {
     for (const [seat, tag] of this.tags.entries()) {
       const robot = model?.robots[seat];
       const at = robot ? place(robot.x, robot.y, robot.z + ABOVE_M) : null;
@@ -63,7 +72,16 @@ export class Tags {
       if (!at) continue;
       // On whole pixels: letters stay crisp, and the same moment is always drawn the same.
       const x = Math.round(at.x - tag.offsetWidth / 2);
-      const y = Math.round(at.y - tag.offsetHeight);
+      const right = x + tag.offsetWidth;
+      const hidden = spots.filter(
+        (spot) =>
+          x - SPOT_PX < spot.x &&
+          spot.x < right + SPOT_PX &&
+          at.y - tag.offsetHeight - SPOT_PX < spot.y &&
+          spot.y < at.y + SPOT_PX,
+      );
+      const foot = Math.min(at.y, ...hidden.map((spot) => spot.y - SPOT_PX));
+      const y = Math.round(foot - tag.offsetHeight);
       tag.style.transform = `translate(${x}px, ${y}px)`;
     }
   }

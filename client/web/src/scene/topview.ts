@@ -93,7 +93,9 @@ export class TopView {
     if (near?.marks) drawMarks(context, near.marks);
     if (near) {
       if (model.robots.length) drawLinks(context, model, near.lit);
-    } else for (const seat of model.robots.keys()) this.robot(seat, model, letters[seat] ?? "");
+    } else
+      for (const seat of model.robots.keys())
+        if (model.robots[seat]) this.robot(seat, model, letters[seat] ?? "");
     if (ring) {
       context.lineWidth = 0.012;
       context.strokeStyle = LIGHT;

@@ -12,7 +12,7 @@ import { type Hit, pick, pickFlat, project, rayAt } from "./picking";
 import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
 import type { Exposed, Shutter } from "./shutter";
 import type { Ring, Stage } from "./stage";
-import { type OwnSeat, Tags } from "./tags";
+import { type OwnSeat, type Placing, Tags } from "./tags";
 import { type Plan, planOf, TopView } from "./topview";
 import { type Worth, Worths } from "./worths";
 
@@ -391,10 +391,11 @@ export class Viewer implements Exposed {
         : [];
     }
     const named = this.options.labels ? model : null;
-    this.tags.draw(named, (x, y, z) => this.place(x, y, z));
+    const place: Placing = (x, y, z) => this.place(x, y, z);
+    const spots = this.worths.draw(model, this.options.worth, place);
+    this.tags.draw(named, place, spots);
     // The map has them in its drawing.
-    this.labels.draw(this.map ? null : named, (x, y, z) => this.place(x, y, z));
-    this.worths.draw(model, this.options.worth, (x, y, z) => this.place(x, y, z));
+    this.labels.draw(this.map ? null : named, place);
   }
 
   /** The robots of the other trial now; null without one, and where it belongs to another scene. */

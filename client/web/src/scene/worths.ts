@@ -2,7 +2,7 @@
 
 import { put } from "./labels";
 import type { Model } from "./model";
-import type { Placing } from "./tags";
+import type { Placing, Spot } from "./tags";
 
 /** Points by the marker's name. */
 export type Worth = Readonly<Record<string, number>>;
@@ -20,11 +20,15 @@ export class Worths {
     host.append(this.layer);
   }
 
-  /** Put them where the markers are; null hides them. */
-  draw(model: Model | null, worth: Worth | null, place: Placing): void {
+  /** Put them where the markers are, null hides them; return where they are in the picture. */
+  draw(model: Model | null, worth: Worth | null, place: Placing): Spot[] {
     const sheet = model?.sheet ?? null;
     if (worth !== this.shown || sheet !== this.sheet) this.show(worth, sheet);
-    for (const { tag, x, y } of this.tags) put(tag, place(x, y, 0));
+    return this.tags.flatMap(({ tag, x, y }) => {
+      const at = place(x, y, 0);
+      put(tag, at);
+      return at ? [at] : [];
+    });
   }
 
   end(): void {

@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
-import { decisive, figures } from "../core/figures";
+import { decisive, type Figures, figures } from "../core/figures";
 import { type Match, phaseOf, scoresOf } from "../core/match";
 import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedTicks } from "../core/rulings";
@@ -25,18 +25,26 @@ interface Props {
   withReplay?: boolean;
   /** Whether no other match follows, because the court has closed. */
   isLast?: boolean;
+  /** What comes after the official result, as the page knows it. */
+  next?: ComponentChildren;
   /** Further buttons. */
   children?: ComponentChildren;
 }
 
-/** What comes next; in a contest the office opens the matches. */
-function nextOf(phase: number, inContest: boolean): MessageName {
-  if (phase === Phase.FINISHED) return "hint.finished";
-  return inContest ? "result.nextOfOffice" : "result.next";
+/** What comes next at a court without an office; in a contest only the office knows. */
+function nextAt({ fixture, settings }: Sheet): string {
+  if (fixture) return "";
+  return t(isJudged(settings) ? "result.next" : "result.nextByItself");
+}
+
+/** Whether a referee starts and ends the matches. */
+function isJudged(settings: Sheet["settings"]): boolean {
+  return (settings.match as { start?: string } | undefined)?.start !== "ready";
 }
 
 /** Nothing until the match is over. */
-export function ResultCard({ match, own = -1, onClose, withReplay, isLast, children }: Props) {
+export function ResultCard(props: Props) {
+  const { match, own = -1, onClose, withReplay, isLast, next, children } = props;
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const scores = useMemo(() => scoresOf(match), [match]).value;
   const sheet = match.sheet.value;
@@ -85,7 +93,11 @@ export function ResultCard({ match, own = -1, onClose, withReplay, isLast, child
       )}
       <Explained match={match} />
       {!isVoid && <Compared match={match} winner={winnerIndex} withReplay={withReplay} />}
-      {!isLast && <p class="next">{t(nextOf(phase, !!sheet.fixture))}</p>}
+      {!isLast && (
+        <div class="next">
+          {phase === Phase.FINISHED ? t("hint.finished") : (next ?? nextAt(sheet))}
+        </div>
+      )}
       <p class="row">
         {withReplay && <ReplayLink match={match} />}
         {children}
@@ -106,27 +118,44 @@ interface ComparedProps {
   withReplay: boolean | undefined;
 }
 
-const FIGURES = ["moves", "largest", "restarts"] as const;
+/** How each figure is written; "" where there is none. */
+const FIGURES = {
+  moves: ({ moves }: Figures) => moves || "",
+  largest: ({ largest }: Figures) => largest || "",
+  restarts: ({ restarts }: Figures) => restarts || "",
+  walked: ({ walkedM }: Figures) => walkedM && `${walkedM.toFixed(2)} m`,
+  keys: ({ keys }: Figures) => keys || "",
+  often: ({ often }: Figures, sheet: Sheet) => often.map((one) => pressed(one, sheet)).join(" · "),
+};
+/** A key and how often it was pressed: with its level where there are two. */
+function pressed([key, times]: readonly [string, number], { levels }: Sheet): string {
+  return `${levels.length > 1 ? key : key.slice(1)} ×${times}`;
+}
+
+const FIGURE_NAMES = Object.keys(FIGURES) as (keyof typeof FIGURES)[];
 
 /** What people compare: figures of both teams, and the decisive moment. */
 function Compared({ match, winner, withReplay }: ComparedProps) {
   const sheet = match.sheet.value!;
   const events = match.events.value;
-  const each = figures(events, sheet.seats.length);
+  const each = figures(events, sheet.seats.length, match.verdict.value);
   const [left, right] = each;
   const moment = decisive(events, winner);
   if (!left || !right) return null;
   return (
     <>
-      <table class="figures">
+      <table class="compared">
         <tbody>
-          {FIGURES.filter((one) => left[one] || right[one]).map((one) => (
-            <tr key={one}>
-              <td>{left[one]}</td>
-              <th scope="row">{t(`result.figure.${one}`)}</th>
-              <td>{right[one]}</td>
-            </tr>
-          ))}
+          {FIGURE_NAMES.map((one) => {
+            const values = [left, right].map((figures) => FIGURES[one](figures, sheet) || 0);
+            return values.some(Boolean) ? (
+              <tr key={one}>
+                <td>{values[0]}</td>
+                <th scope="row">{t(`result.figure.${one}`)}</th>
+                <td>{values[1]}</td>
+              </tr>
+            ) : null;
+          })}
         </tbody>
       </table>
       {moment && (

@@ -96,8 +96,9 @@ class Teller:
             self.pace = ContestPace(now_ms, usual_ms, self._least_rest_ms)
             coming = foreseen(contest, FORMATS)
             begins = dict(starts(contest, coming, seen, self.pace))
+            held = contest.day.paused  # nobody knows for how long
             self.expected = {
-                pairing: (start.court, full_minute(start.at_ms))
+                pairing: (start.court, 0 if held else full_minute(start.at_ms))
                 for pairing, start in begins.items()
             }
             found = whereabouts(contest, SeenCourts(seen, self._addresses), self.pace, begins)

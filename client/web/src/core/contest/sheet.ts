@@ -100,6 +100,12 @@ export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
   }));
 }
 
+/** The next game of a team after the one of a call; null if none is known. */
+export function nextGameOf(sheet: ContestSheet, team: string, call: string): NextGame | null {
+  const games = nextGames(sheet, Number.POSITIVE_INFINITY);
+  return games.find((one) => one.teams.includes(team) && (!one.call || one.call !== call)) ?? null;
+}
+
 /** The teams with which a team shares its rank because all tie-breaks left them equal. */
 export function equals(table: Table, { team, rank, shares }: Standing): string[] {
   if (!shares) return [];
@@ -180,7 +186,11 @@ export function countsGames(match: ContestMatch, view: StageView): boolean {
   return (view.stage.settings.games ?? 1) > 1 || (match.games?.length ?? 0) > 1;
 }
 
-/** The score of a match, by place; null before the first game. */
+/**
+ * The score of a match, by place; null before the first game.
+ *
+ * Where games are counted, a drawn one is half a game for each.
+ */
 export function score(match: ContestMatch, view: StageView): [number, number] | null {
   const games = match.games ?? [];
   if (!games.length) return null;
@@ -188,10 +198,19 @@ export function score(match: ContestMatch, view: StageView): [number, number] | 
     const team = match.teams[place];
     const winner = (game: (typeof games)[number]) =>
       game.outcome === "left" ? game.teams[0] : game.outcome === "right" ? game.teams[1] : null;
-    if (countsGames(match, view)) return games.filter((game) => winner(game) === team).length;
+    if (countsGames(match, view)) {
+      const drawn = games.filter((game) => game.outcome === "draw").length;
+      return games.filter((game) => winner(game) === team).length + drawn / 2;
+    }
     return games[0]!.scores[games[0]!.teams[0] === team ? 0 : 1];
   };
   return [points(0), points(1)];
+}
+
+/** A number of a score as it is written: 1½. */
+export function written(points: number): string {
+  const whole = Math.floor(points);
+  return points === whole ? String(points) : `${whole || ""}½`;
 }
 
 /** How a match ended, where its score does not say it: name of a message `contest.how.…`. */

@@ -12,6 +12,7 @@ import {
   origin,
   type StageView,
   score,
+  written,
 } from "../../core/contest/sheet";
 import { replayAddress } from "../../core/record_files";
 import { t } from "../../i18n";
@@ -124,7 +125,7 @@ function MatchBox({ sheet, view, box }: BoxProps) {
           x={BOX.width - POINTS_WIDTH / 2}
           y={lineY(place)}
         >
-          {points[place]}
+          {written(points[place])}
         </text>
       ))}
     </>

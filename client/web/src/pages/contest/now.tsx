@@ -3,7 +3,7 @@
 import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import { LiveScores } from "../../core/contest/live";
-import { type ContestSheet, found, running, score } from "../../core/contest/sheet";
+import { type ContestSheet, found, running, score, written } from "../../core/contest/sheet";
 import type { CourtScore } from "../../core/desk.gen";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
@@ -103,7 +103,7 @@ function Sides({ teams: [left, right], stands = null }: SidesProps) {
   return (
     <p class="sides">
       <TeamLink name={left} />
-      <span class="between">{stands ? `${stands[0]} : ${stands[1]}` : "–"}</span>
+      <span class="between">{stands ? stands.map(written).join(" : ") : "–"}</span>
       <TeamLink name={right} />
     </p>
   );

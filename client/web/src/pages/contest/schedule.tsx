@@ -11,6 +11,7 @@ import {
   type StageView,
   score,
   seating,
+  written,
 } from "../../core/contest/sheet";
 import { t } from "../../i18n";
 import { addressed, chosenTeam, GameScore, matchId, TeamLink } from "./parts";
@@ -92,7 +93,7 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
       <span class="label">{label ?? (group || numberTitle(view, match))}</span>
       <Place sheet={sheet} match={match} place={one} />
       <span class="score">
-        {points && many && `${points[one]} : ${points[other]}`}
+        {points && many && `${written(points[one])} : ${written(points[other])}`}
         {points && !many && <Single match={match} swapped={one === 1} />}
         {!points && "–"}
       </span>

@@ -7,9 +7,11 @@ import { Court } from "../../core/court";
 import { download } from "../../core/files";
 import type { Pressed } from "../../core/keys";
 import { phaseOf } from "../../core/match";
+import type { Phrase } from "../../core/phrase";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
 import { Team } from "../../core/team";
+import { TryOut } from "../../core/try_out";
 import {
   Level,
   MOST_HZ,
@@ -26,6 +28,7 @@ import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
 import { useDrop } from "../../ui/drop";
 import { hideKeys, KeyHelp, showKeys } from "../../ui/key_help";
+import { later } from "../../ui/later";
 import { Settings } from "../../ui/settings";
 import { Toasts, toast } from "../../ui/toasts";
 import { Entrance } from "./card";
@@ -37,17 +40,18 @@ import { keyRows } from "./key_rows";
 import { useKeyboard, useWindowFocus } from "./keyboard";
 import { KeyTest } from "./keytest";
 import { Leaving, LeavingBar } from "./leaving";
-import { LinkTestDialog } from "./link_test";
 import { LEVEL_LETTERS } from "./pad";
 import { Rail } from "./rail";
 import "./player.css";
+
+const LinkTestDialog = later(() => import("./link_test").then((it) => it.LinkTestDialog));
 
 const POS_DATA = "Pos-data.txt";
 
 type Open = "" | "leave" | "files" | "settings" | "linktest";
 
 export function Cockpit({ alone }: { alone: boolean }) {
-  const { court, player, team } = useMemo(() => begin(alone), [alone]);
+  const { court, player, team, tryOut } = useMemo(() => begin(alone), [alone]);
   const view = useSignal<ViewName>("arena");
   const open = useSignal<Open>("");
   const hasFocus = useSignal(true);
@@ -86,7 +90,10 @@ export function Cockpit({ alone }: { alone: boolean }) {
   const openLinkTest = () => {
     open.value = "linktest";
   };
-  const press = (key: number, atMs: number) => void player.press(key, atMs);
+  const press = (key: number, atMs: number) => {
+    if (tryOut?.isOpen.peek()) tryOut.press(player.level.peek(), key);
+    else void player.press(key, atMs);
+  };
   const changeLevel = (to?: number) => {
     player.changeLevel(to);
     toast(t("toast.level", { level: LEVEL_LETTERS[player.level.peek()] ?? "" }));
@@ -170,7 +177,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
     <main class={`player${isIn ? "" : " outside"}`} data-standing={standing}>
       <LinkBanner court={court} />
       <Field
-        {...{ court, player, alone, view, hasFocus, hasInputMethod, field }}
+        {...{ court, player, alone, tryOut, view, hasFocus, hasInputMethod, field }}
         onView={nextView}
         onSave={() => saveData(player)}
       />
@@ -178,7 +185,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
       {isIn ? (
         <>
           {court.sheet.value && <h1 class="hidden-text">{played(court.sheet.value)}</h1>}
-          <Rail {...{ court, player, alone }} {...controls} onLinkTest={openLinkTest} />
+          <Rail {...{ court, player, alone, tryOut }} {...controls} onLinkTest={openLinkTest} />
           <Footer
             court={court}
             player={player}
@@ -221,18 +228,21 @@ export function Cockpit({ alone }: { alone: boolean }) {
       )}
       {open.value === "linktest" && <LinkTestDialog court={court} onClose={close} />}
       <KeyHelp rows={() => keyRows(court.sheet.value, alone)} onClose={focusField} />
-      {isIn && <Heard court={court} player={player} alone={alone} />}
+      {isIn && <Heard {...{ court, player, alone, tryOut }} />}
       <Toasts />
     </main>
   );
 }
 
-function begin(alone: boolean): { court: Court; player: Player; team: Team | null } {
+function begin(alone: boolean) {
   const court = new Court(MOST_HZ);
   followColours(court);
   const player = new Player(court, speak, alone);
   window.__lacoc = Object.assign(window.__lacoc ?? {}, { posData });
-  return { court, player, team: alone ? null : new Team(court, player) };
+  const say = (why: Phrase) => toast(sentence(why), "no");
+  return alone
+    ? { court, player, team: null, tryOut: null }
+    : { court, player, team: new Team(court, player), tryOut: new TryOut(court, player, say) };
 }
 
 /** For tests: Pos-data.txt of any frames, and what the page says of it. */

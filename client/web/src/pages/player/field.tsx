@@ -7,6 +7,7 @@ import type { Court } from "../../core/court";
 import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
 import { quality } from "../../core/settings";
+import type { TryOut } from "../../core/try_out";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { View } from "../../scene/View";
@@ -16,7 +17,7 @@ import { ScoreBug } from "../../ui/score";
 import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
 import { Brief } from "./brief";
-import { nextStep } from "./steps";
+import { nextStep, official } from "./steps";
 
 export const VIEWS = ["arena", "top", "chase"] as const;
 export type ViewName = (typeof VIEWS)[number];
@@ -31,6 +32,8 @@ interface Props {
   court: Court;
   player: Player;
   alone: boolean;
+  /** null: practice has none. */
+  tryOut: TryOut | null;
   view: Signal<ViewName>;
   hasFocus: Signal<boolean>;
   hasInputMethod: Signal<boolean>;
@@ -40,15 +43,7 @@ interface Props {
 }
 
 export function Field(props: Props) {
-  const { court, player, alone, view, field, onView } = props;
-  const source = useMemo(
-    () => ({
-      sheet: court.sheet,
-      scene: court.scene,
-      sample: (nowMs: number) => court.timeline.sample(nowMs),
-    }),
-    [court],
-  );
+  const { court, player, alone, tryOut, view, field, onView } = props;
   const isNarrow = useSignal(NARROW.matches);
   useEffect(() => {
     const look = () => {
@@ -71,7 +66,7 @@ export function Field(props: Props) {
         aria-label={t(hasLevels ? "field.labelLevels" : "field.label")}
       >
         <View
-          source={source}
+          source={tryOut ?? court}
           camera={isIn ? view : "arena"}
           seat={Math.max(0, player.index.value)}
           quality={quality}
@@ -88,12 +83,18 @@ export function Field(props: Props) {
         <>
           <div class="on-stage">
             <ScoreBug match={court} />
-            <NextStep {...props} />
-            {!alone && <Brief court={court} player={player} />}
+            <NextStep {...props} isNarrow={isNarrow.value} />
+            {!alone && !tryOut?.standing.value && <Brief court={court} player={player} />}
             {!alone && <Countdown match={court} />}
             {!alone && <Sound match={court} own={player.index.value} />}
             {!alone && (
-              <ResultCard match={court} own={player.index.value} withReplay isLast>
+              <ResultCard
+                match={court}
+                own={player.index.value}
+                withReplay
+                isLast={isNarrow.value}
+                next={official(player)}
+              >
                 {player.data && player.data.length > 0 && (
                   <button class="button" type="button" onClick={props.onSave}>
                     {t("end.save")}
@@ -115,13 +116,15 @@ export function Field(props: Props) {
   );
 }
 
-function NextStep({ court, player, alone }: Props) {
+function NextStep({ court, player, alone, tryOut, isNarrow }: Props & { isNarrow: boolean }) {
   const text = useComputed(() => {
-    const step = nextStep(court, player, alone);
+    const step = nextStep(court, player, alone, tryOut?.isOpen.value);
     return `${step.tone}|${step.text}`;
   }).value;
   const [tone, ...words] = text.split("|");
-  if (alone && tone === "do") return null; // the coach says it
+  const isOver = useMemo(() => phaseOf(court), [court]).value >= Phase.FINISHED;
+  // The coach says it, or the result card does where it has room for that.
+  if (alone ? tone === "do" : isOver && !isNarrow) return null;
   return <p class={`next ${tone}`}>{words.join("|")}</p>;
 }
 

@@ -5,6 +5,7 @@ import { useMemo, useRef } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { part, scoresOf } from "../../core/match";
 import type { Player } from "../../core/player";
+import type { TryOut } from "../../core/try_out";
 import { BEATS_PER_S, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { clockTicks, team } from "../../i18n/words";
@@ -20,11 +21,13 @@ interface Props {
   court: Court;
   player: Player;
   alone: boolean;
+  tryOut: TryOut | null;
 }
 
-export function Heard({ court, player, alone }: Props) {
+export function Heard(props: Props) {
+  const { court } = props;
   const lines = useMemo(() => new Lines(), []);
-  useStep(court, player, alone, lines);
+  useStep(props, lines);
   useEvents(court, lines);
   useScore(court, lines);
   useTime(court, lines);
@@ -48,11 +51,11 @@ class Lines {
 }
 
 /** What to do next, but not where one could score: that changes with each step of the robot. */
-function useStep(court: Court, player: Player, alone: boolean, lines: Lines): void {
+function useStep({ court, player, alone, tryOut }: Props, lines: Lines): void {
   const before = useRef("");
   useSignalEffect(() => {
     const isPlaying = court.frame.value?.phase === Phase.PLAYING;
-    const { text, tone } = nextStep(court, player, alone);
+    const { text, tone } = nextStep(court, player, alone, tryOut?.isOpen.value);
     const now = isPlaying && tone === "do" ? "" : text;
     if (now && now !== before.current) lines.tell(now);
     before.current = now;

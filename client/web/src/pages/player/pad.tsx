@@ -5,6 +5,7 @@ import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { ARROWS } from "../../core/keys";
 import type { Player } from "../../core/player";
+import type { TryOut } from "../../core/try_out";
 import { Level, Phase, RESTART_KEY, SeatFlag } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { BEATS_PER_S } from "../../i18n/words";
@@ -26,6 +27,7 @@ export const ARROW_OF = new Map(
 interface Props {
   court: Court;
   player: Player;
+  tryOut: TryOut | null;
   /** A key that is shown as the next one. */
   hinted: number | null;
   onKey: (key: number, atMs: number) => void;
@@ -35,9 +37,12 @@ interface Props {
 }
 
 export function Pad(props: Props) {
-  const { court, player, onView, onLeave } = props;
-  const standing = useStanding(player);
-  const isOn = useComputed(() => court.frame.value?.phase === Phase.PLAYING).value;
+  const { court, player, tryOut, onView, onLeave } = props;
+  const played = useStanding(player);
+  const standing = tryOut?.standing.value ?? played;
+  const isOn = useComputed(
+    () => court.frame.value?.phase === Phase.PLAYING || tryOut?.isOpen.value,
+  ).value;
   const canSteer = player.canSteer.value;
   return (
     <section
@@ -71,6 +76,7 @@ interface Standing {
   level: number;
   key: number;
   posture: number;
+  /** Postures of the key; 0: not known. */
   count: number;
   begun: boolean;
 }
@@ -97,7 +103,9 @@ function StandingLine({ standing }: { standing: Standing }) {
     ? t("pad.none")
     : count > 1
       ? t("pad.stands", { level: letter, key, posture: posture + 1, count })
-      : t("pad.standsOne", { level: letter, key });
+      : count
+        ? t("pad.standsOne", { level: letter, key })
+        : `${letter} ${key}`;
   return <p class="stands">{text}</p>;
 }
 

@@ -5,18 +5,24 @@ import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
+import type { TryOut } from "../../core/try_out";
 import { type Event, Level, Phase, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";
 import { Board } from "../../ui/board";
+import { later } from "../../ui/later";
 import { EventLog } from "../../ui/log";
-import { Coach, useLessons } from "./coach";
 import { FilesChanged } from "./files";
+import { useLessons } from "./lessons";
 import { Pad } from "./pad";
+
+/** Only practice has it. */
+const Coach = later(() => import("./coach").then((it) => it.Coach));
 
 interface Props {
   court: Court;
   player: Player;
   alone: boolean;
+  tryOut: TryOut | null;
   onKey: (key: number, atMs: number) => void;
   onLevel: (level: number) => void;
   onView: () => void;

@@ -13,7 +13,7 @@ export interface Step {
 }
 
 /** The next step; for a `computed`: it reads the newest frame. */
-export function nextStep(court: Court, player: Player, alone: boolean): Step {
+export function nextStep(court: Court, player: Player, alone: boolean, canTry = false): Step {
   const frame = court.frame.value;
   const sheet = court.sheet.value;
   const index = player.index.value;
@@ -28,7 +28,9 @@ export function nextStep(court: Court, player: Player, alone: boolean): Step {
   switch (frame.phase) {
     case Phase.LOBBY:
       if (alone) return { text: t("next.practice"), tone: "wait" };
-      if (!(seat.flags & SeatFlag.READY)) return { text: t("next.ready"), tone: "do" };
+      if (!(seat.flags & SeatFlag.READY)) {
+        return { text: t(canTry ? "next.tryOut" : "next.ready"), tone: "do" };
+      }
       return { text: othersMissing(court, index), tone: "wait" };
     case Phase.READY:
       return { text: t(alone ? "next.practice" : "next.start"), tone: "wait" };
@@ -54,9 +56,11 @@ export function nextStep(court: Court, player: Player, alone: boolean): Step {
   }
 }
 
-function official(player: Player): string {
+/** What comes after the official result. */
+export function official(player: Player): string {
   const next = player.next.value;
-  return next ? said(next) : t("next.official");
+  if (next) return said(next);
+  return t(player.court.sheet.value?.call ? "next.byOffice" : "next.official");
 }
 
 function othersMissing(court: Court, index: number): string {

@@ -148,8 +148,9 @@ export function adjust(court: Court, seat: number, points: number): Draft {
       whole: true,
       usual: [-5, -1, 1, 5],
       shows: (value) => {
-        const score = court.frame.value?.seats[seat]?.score ?? 0;
-        return `${score} → ${score + value}`;
+        const now = court.frame.value?.seats.map(({ score }) => score) ?? [];
+        const then = now.map((score, index) => (index === seat ? score + value : score));
+        return `${now.join(" : ")} → ${then.join(" : ")}`;
       },
     },
     build: (value) => ({ type: "adjust", seat: id, points: value }),

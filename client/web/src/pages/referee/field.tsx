@@ -1,18 +1,19 @@
 /** The field: the drawing from above or the 3D view; what is clicked on it can be acted on. */
 
-import { type Signal, signal, useSignal } from "@preact/signals";
-import { useEffect, useMemo } from "preact/hooks";
+import { type Signal, useSignal } from "@preact/signals";
+import { useMemo } from "preact/hooks";
 import { quality, remembered } from "../../core/settings";
 import { t } from "../../i18n";
-import type { Hit, View } from "../../scene/View";
+import type { Hit } from "../../scene/View";
 import { Board } from "../../ui/board";
+import { later } from "../../ui/later";
 import type { Desk } from "./desk";
 import { type Picked, PickPopover } from "./pick";
 
 /** The drawing is the first choice: it costs a slow machine nothing, and every disc is in sight. */
 const shown = remembered<"board" | "3d">("referee.view", "board");
 /** The 3D view is loaded only where it is wanted. */
-const loaded = signal<typeof View | null>(null);
+const View = later(() => import("../../scene/View").then((it) => it.View));
 
 interface Props {
   desk: Desk;
@@ -80,11 +81,6 @@ export function FieldCard({ desk, picked }: Props) {
 
 function Scene({ desk, onPick }: { desk: Desk; onPick: (hit: Hit) => void }) {
   const { court } = desk;
-  useEffect(() => {
-    import("../../scene/View").then((module) => {
-      loaded.value = module.View;
-    });
-  }, []);
   const source = useMemo(
     () => ({
       sheet: court.sheet,
@@ -93,9 +89,8 @@ function Scene({ desk, onPick }: { desk: Desk; onPick: (hit: Hit) => void }) {
     }),
     [court],
   );
-  const Loaded = loaded.value;
-  return Loaded ? (
-    <Loaded
+  return (
+    <View
       source={source}
       camera="arena"
       quality={quality}
@@ -104,5 +99,5 @@ function Scene({ desk, onPick }: { desk: Desk; onPick: (hit: Hit) => void }) {
       onPick={onPick}
       label={t("board.title")}
     />
-  ) : null;
+  );
 }

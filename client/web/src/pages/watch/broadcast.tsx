@@ -24,6 +24,9 @@ const WIDTH_PX = 1920;
 const HEIGHT_PX = 1080;
 /** In a tall window the score is as wide as the window: so many of these pixels. */
 const SCORE_PX = 1560;
+/** In a phone's window, smaller letters could not be read: what lies over the picture has this width. */
+const PHONE_PX = 780;
+const PHONE_SCALE = 0.5;
 
 /** How a broadcast is shown. */
 export interface Style {
@@ -62,6 +65,7 @@ export function scaleOfWindow(): number {
   return Math.max(
     Math.min(width / WIDTH_PX, height / HEIGHT_PX),
     Math.min(width, height) / SCORE_PX,
+    width < height ? Math.min(width / PHONE_PX, PHONE_SCALE) : 0,
   );
 }
 

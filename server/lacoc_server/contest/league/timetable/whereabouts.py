@@ -175,7 +175,7 @@ def _waits(
     if start is None:
         said = say("team.awaits-opponent", fixture=about)
         return Whereabouts(team=team, state="waits", said=said, opponent=opponent, fixture=about)
-    about_s = _rounded_s(start.at_ms - pace.now_ms)
+    about_s = None if contest.day.paused else _rounded_s(start.at_ms - pace.now_ms)
     if opponent:
         said = say("team.next", court=start.court, when=_when(about_s), opponent=opponent)
     else:
@@ -244,7 +244,8 @@ def starts(
     """Estimate when and where each match to come begins; yield its pairing's id and its start.
 
     The matches are given to the courts in their order. A court that has been silent for `LOST_MS`
-    gets none. A pause without an end is taken as over now.
+    gets none. Nobody knows when a pause without an end is over: these are the times if it was over
+    now, for organisers.
 
     Args:
         contest: the contest.
@@ -348,7 +349,10 @@ def _rounded_s(time_ms: int) -> int:
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
 
 
-def _when(about_s: int) -> Phrase:
+def _when(about_s: int | None) -> Phrase:
+    """Say when a match begins; None: after a pause without an end."""
+    if about_s is None:
+        return say("when.after-pause")
     if about_s <= _MOMENT_S:
         return say("when.moment")
     return say("when.minutes", minutes=max(1, round(about_s / 60)))
