@@ -1,15 +1,23 @@
-"""How far a student is in the six phases."""
+"""How far a student is in the phases."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from lacoc_client.workshop.phases.evidence import Coached, Evidence, Hand, JoinedClass, WentToPhase
+from lacoc_client.workshop.phases.evidence import (
+    Coached,
+    Evidence,
+    Hand,
+    JoinedClass,
+    TookStep,
+    WentToPhase,
+)
 from lacoc_client.workshop.phases.phases import PHASES
 from lacoc_client.workshop.phases.predicates import Outcome
 
-_UNCOUNTED = (JoinedClass, WentToPhase, Hand)
-"""Evidence that no task asks for: a page may send much of it, so it must cost little."""
+_UNCOUNTED = (JoinedClass, Hand)
+"""Evidence that no task asks for: a page may send much of it, so it must cost little. Nor does a
+task ask for a way to a phase where the student was before."""
 
 State = Literal["open", "met", "skipped"]
 """A phase is "skipped" if the student went on without doing its task. The student can come back at
@@ -18,18 +26,20 @@ any time, and the phase is "met" as soon as the evidence shows it."""
 
 @dataclass(frozen=True)
 class StudentProgress:
-    """How far a student is in the six phases."""
+    """How far a student is in the phases."""
 
     phase: int
-    """Number of the phase that the student is at, from 1."""
+    """Number of the phase that the student is at."""
     states: tuple[State, ...]
-    """State of each phase."""
+    """State of each phase, from phase 0."""
     outcomes: tuple[Outcome, ...]
     """For each phase, the share that is done and what is missing."""
     hand_up: bool
     """Whether the student asks for help now."""
     coached: bool
     """Whether the student has ever taken over changes of the coach."""
+    lesson_step: int
+    """The step of the lesson of one leg to which the student came last; 0: none yet."""
     seen: int
     """Number of pieces of evidence from which this was computed."""
 
@@ -45,23 +55,30 @@ def progress(
             not looked at again, because a task that was met stays met.
     """
     visited = [one.phase for one in evidence if isinstance(one, WentToPhase)]
-    visited = [number for number in visited if 1 <= number <= len(PHASES)]
+    visited = [number for number in visited if 0 <= number < len(PHASES)]
+    steps = [one.step for one in evidence if isinstance(one, TookStep)]
     hands = [one.up for one in evidence if isinstance(one, Hand)]
     known = before.outcomes if before is not None else (None,) * len(PHASES)
-    new = evidence[before.seen :] if before is not None else evidence
-    counts = any(not isinstance(one, _UNCOUNTED) for one in new)
+    old_count = before.seen if before is not None else 0
+    begun = {one.phase for one in evidence[:old_count] if isinstance(one, WentToPhase)}
+    counts = any(
+        one.phase not in begun if isinstance(one, WentToPhase) else not isinstance(one, _UNCOUNTED)
+        for one in evidence[old_count:]
+    )
     outcomes = tuple(
         old if old is not None and (old.met or not counts) else phase.look(evidence)
         for phase, old in zip(PHASES, known, strict=True)
     )
-    farthest = max(visited, default=1)
+    nearest, farthest = min(visited, default=1), max(visited, default=1)
     return StudentProgress(
         phase=visited[-1] if visited else 1,
         states=tuple(
-            _state(outcome, number < farthest) for number, outcome in enumerate(outcomes, start=1)
+            _state(outcome, min(1, nearest) <= number < farthest)
+            for number, outcome in enumerate(outcomes)
         ),
         outcomes=outcomes,
         hand_up=bool(hands) and hands[-1],
+        lesson_step=steps[-1] if steps else 0,
         coached=any(isinstance(one, Coached) for one in evidence),
         seen=len(evidence),
     )

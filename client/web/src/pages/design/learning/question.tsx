@@ -1,0 +1,48 @@
+/** The question that a phase asks before it is done, and what came of the last answer. */
+
+import type { PhaseState } from "../../../core/wire";
+import { said, t } from "../../../i18n";
+import { classes } from "../names";
+import type { Learning } from "./learning";
+
+interface Props {
+  learning: Learning;
+  phase: PhaseState;
+}
+
+export function Question({ learning, phase: { number, asked } }: Props) {
+  const answer = learning.answer.value;
+  const told = answer?.phase === number ? answer : null;
+  return (
+    <>
+      {asked && (
+        <fieldset class="phase-question">
+          <legend>{said(asked.ask)}</legend>
+          {asked.choices.map((choice, index) => (
+            <button
+              key={`${asked.name} ${index}`}
+              class="button"
+              type="button"
+              onClick={() => void learning.say(number, asked.name, index)}
+            >
+              {said(choice)}
+            </button>
+          ))}
+        </fieldset>
+      )}
+      <p
+        role="status"
+        class={classes("verdict", "phase-verdict", told && (told.right ? "right" : "wrong"))}
+      >
+        {told && !asked && (
+          <>
+            {t(told.right ? "design.question.right" : "design.question.wrong", {
+              was: told.was.map(said).join(t("design.question.or")),
+            })}{" "}
+            {said(told.because)}
+          </>
+        )}
+      </p>
+    </>
+  );
+}
