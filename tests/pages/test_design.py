@@ -150,6 +150,9 @@ def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> D
     else:
         page.press("Control+z")
     page.until("window.__studio.files.isSaved.value")
+    if page.page.evaluate("window.__studio.files.file.value.name") == "":  # it was in no file
+        page.page.evaluate("window.__studio.files.open('Loco-data.txt')")
+    page.until("window.__studio.files.file.value.name")
     return page
 
 

@@ -166,7 +166,7 @@ def test_a_student_of_a_class_comes_back_to_where_she_was(
         learner.goes_on()
         learner.guesses("35.0 mm")
         learner.goes_on()
-        teacher.until(lambda: teacher.card("Mia")["lesson_step"] == 3)
+        teacher.until(lambda: teacher.card("Mia").get("lesson_step") == 3)
         assert teacher.card("Mia")["in_lesson"]
 
         back.click()

@@ -193,7 +193,7 @@ class Pupil:
 
     async def steps(self, step: int, robot: str = "hexapod", **fields: Any) -> None:
         """Come to a step of the lesson, or answer a question there."""
-        await self._learner.stepped(requests.StepAsk(id=0, step=step, robot=robot, **fields))
+        await self._learner.stepped(requests.LessonAsk(id=0, step=step, robot=robot, **fields))
 
     def _reload(self) -> None:
         self._learner = Learner(Student("", self.diary, lambda: FREE), self._sample_trial)

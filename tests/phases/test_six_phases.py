@@ -110,9 +110,9 @@ def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> 
     seen = [guess("up", 0), guess("up", 1), guess("up", 1), guess("up", 2, 15.0)]
     evidence += seen
     assert codes(evidence, 1) == {"phases.more-guesses", "phases.more-right-guesses"}
-    evidence += [guess("down", 2), guess("down", 3)]
+    evidence += [guess("down", 3), guess("down", 4)]
     assert codes(evidence, 1) == {"phases.more-right-guesses"}
-    evidence += [guess("up", 4), guess("up", 5)]
+    evidence += [guess("up", 5), guess("up", 5, -30.0)]
     assert codes(evidence, 1) == {"phases.answer"}
     assert progress([*evidence, ANSWER]).states == ("open", "met", *["open"] * 5)
 

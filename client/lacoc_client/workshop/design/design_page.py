@@ -133,7 +133,7 @@ class DesignPage:
                 | requests.CheckAsk()
                 | requests.PhaseAsk()
                 | requests.AnswerAsk()
-                | requests.StepAsk()
+                | requests.LessonAsk()
                 | requests.NameAsk()
                 | requests.VoteAsk()
                 | requests.HandAsk()
@@ -223,7 +223,7 @@ class DesignPage:
             case requests.AnswerAsk():
                 _must_be_open(learner, asked.phase)
                 value = await learner.answered(asked)
-            case requests.StepAsk():
+            case requests.LessonAsk():
                 await learner.stepped(asked)
             case requests.NameAsk():
                 await diary.add(Named(word=asked.word))

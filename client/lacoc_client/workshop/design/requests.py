@@ -174,7 +174,7 @@ class AnswerAsk(Ask, frozen=True, kw_only=True, tag="answer"):
     choice: _Small
 
 
-class StepAsk(Ask, frozen=True, kw_only=True, tag="step"):
+class LessonAsk(Ask, frozen=True, kw_only=True, tag="step"):
     """Come to a step of the lesson of one leg, or answer a question of it."""
 
     step: Annotated[int, msgspec.Meta(ge=1, le=LESSON_STEPS)]
@@ -278,7 +278,7 @@ Asked = (
     | HandOnAsk
     | PhaseAsk
     | AnswerAsk
-    | StepAsk
+    | LessonAsk
     | NameAsk
     | VoteAsk
     | HandAsk

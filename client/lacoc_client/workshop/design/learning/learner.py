@@ -207,7 +207,7 @@ class Learner:
         was = tuple(question.choices[place] for place in sorted(question.right))
         return AnswerReply(right=is_right, was=was, because=question.because)
 
-    async def stepped(self, asked: requests.StepAsk) -> None:
+    async def stepped(self, asked: requests.LessonAsk) -> None:
         """Take in what the student does in the lesson of one leg; what is known is not kept twice.
 
         The first answer to a question counts for the question's step, a later one as new work.
