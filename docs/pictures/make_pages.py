@@ -95,7 +95,7 @@ def design(folder: Path, open_page: Open) -> None:
         page.page.goto(f"{url}/design#key={key}")
         page.sees("#gait-grid td")
         page.press("Control+Enter")
-        page.sees(".result .tiles")
+        page.sees(".trial-result .tiles")
         page.page.click("#cell-1-4")
         page.page.keyboard.type("-20")
         page.press("Enter", "Control+Enter")

@@ -149,6 +149,7 @@ def test_six_phases_are_done_by_keyboard(
         page.is_done(3)
 
         page.goes_to(4)
+        page.chooses(".tools-button")
         page.chooses(".tools button:has-text('Make the other half')")
         page.steers(2)
         page.answers("from row 4 to row 1")

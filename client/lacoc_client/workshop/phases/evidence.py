@@ -17,8 +17,9 @@ SAMPLE = "sample"
 LESSON_STEPS = 8
 """Number of steps of the lesson of one leg; the last one has no question."""
 
-By = Literal["hand", "tool", "paste", "coach"]
-"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others."""
+By = Literal["hand", "tool", "paste", "coach", "lesson"]
+"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others; the
+lesson of one leg gives the three numbers of a leg."""
 Rows = Mapping[tuple[int, int], Sequence[float]]
 """A table: (key, index in the key's sequence) -> (joints,) angles [deg], by joint id."""
 

@@ -1,9 +1,10 @@
 """Which numbers of a table are a student's own, and have changed since a phase began.
 
 A number is *typed* if the student typed it by hand into its cell, before the same number came
-there in another way. It is *made* if a tool or a paste brought it, and the student had typed it
-for such a joint before. Any other number is *foreign*: it was pasted, or it came with a file, from
-the coach, or from the teacher. Numbers of the robot's start posture are none of these.
+there in another way. It is *made* if it came from the lesson of one leg, or if a tool or a paste
+brought it and the student had typed it for such a joint before. Any other number is *foreign*: it
+was pasted, or it came with a file, from the coach, or from the teacher. Numbers of the robot's
+start posture are none of these.
 """
 
 from collections.abc import Sequence
@@ -101,7 +102,8 @@ class _Cells:
     def _source(self, edit: Edited, level: int, angle: float) -> _Source:
         if edit.by == "hand":
             return "typed"
-        return "made" if edit.by in _COPIES and (level, angle) in self._typed else "foreign"
+        is_copy = edit.by in _COPIES and (level, angle) in self._typed
+        return "made" if is_copy or edit.by == "lesson" else "foreign"
 
 
 @dataclass(frozen=True)

@@ -126,13 +126,13 @@ class TrialWork:
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return the outcome of the best trial; for another question one new number is enough."""
-        wanted = 1 if again else self.numbers
         trials = own_trials(evidence, start)
-        outcomes = [self._judged(one, wanted) for one in reversed(trials)]
-        none = Outcome(0.0, (_more_numbers(wanted), _TRY))
-        return max(outcomes, key=lambda outcome: outcome.share, default=none)
+        outcomes = [self._judged(one, again) for one in reversed(trials)]
+        lacks = (_one_more(1),) if again else (_more_numbers(self.numbers), _TRY)
+        return max(outcomes, key=lambda outcome: outcome.share, default=Outcome(0.0, lacks))
 
-    def _judged(self, one: OwnTrial, wanted: int) -> Outcome:
+    def _judged(self, one: OwnTrial, again: bool) -> Outcome:
+        wanted, lacks = (1, _one_more) if again else (self.numbers, _more_numbers)
         own = one.typed + (one.made if self.tools else 0)
         foreign = Bound(
             lambda facts: one.foreign,
@@ -140,7 +140,7 @@ class TrialWork:
             most=0.0,
         )
         bounds = [bound.look(one.tried.facts) for bound in (foreign, *self.bounds)]
-        return every([counted(own, wanted, _more_numbers), *bounds])
+        return every([counted(own, wanted, lacks), *bounds])
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class VersionWork:
         trials = own_trials(evidence, start)
         if again:
             own = max((one.typed for one in trials), default=0)
-            return counted(min(own, 1), 1, lambda left: say("phases.try-again"))
+            return counted(min(own, 1), 1, _one_more)
         typed: dict[str, int] = {}
         for one in trials:
             typed[one.tried.version] = max(one.typed, typed.get(one.tried.version, 0))
@@ -176,6 +176,10 @@ class VersionWork:
 
 def _more_right(left: int) -> Phrase:
     return say("phases.more-right-guesses")
+
+
+def _one_more(left: int) -> Phrase:
+    return say("phases.try-again")
 
 
 def _more_numbers(left: int) -> Phrase:

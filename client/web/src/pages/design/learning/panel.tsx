@@ -64,11 +64,12 @@ export function PhasePanel(props: Props) {
       <h3>
         {number}. {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
       </h3>
+      <Question learning={learning} phase={phase} />
       {isFirst && explanation}
       <p class="learn-task">{said(phase.task)}</p>
       <p>{said(phase.question)}</p>
       {number === LESSON && (
-        <a class="button strong" href="leg">
+        <a class={classes("button", !phase.asked && "strong")} href="leg">
           {now.lesson_step
             ? t("design.lesson.goOn", { step: now.lesson_step })
             : t("design.lesson.begin")}
@@ -105,7 +106,6 @@ export function PhasePanel(props: Props) {
           <CourtButton court={court} />
         </>
       )}
-      <Question learning={learning} phase={phase} />
       {phase.missing.some(({ code }) => code === FOREIGN) && (
         <button class="button" type="button" onClick={() => files.takeNew()}>
           {t("design.phase.newTable")}

@@ -1,5 +1,6 @@
 /** The question that a phase asks before it is done, and what came of the last answer. */
 
+import { useId } from "preact/hooks";
 import type { PhaseState } from "../../../core/wire";
 import { said, t } from "../../../i18n";
 import { classes } from "../names";
@@ -12,12 +13,13 @@ interface Props {
 
 export function Question({ learning, phase: { number, asked } }: Props) {
   const answer = learning.answer.value;
+  const title = useId();
   const told = answer?.phase === number ? answer : null;
   return (
     <>
       {asked && (
-        <fieldset class="phase-question">
-          <legend>{said(asked.ask)}</legend>
+        <section class="phase-question" aria-labelledby={title}>
+          <p id={title}>{said(asked.ask)}</p>
           {asked.choices.map((choice, index) => (
             <button
               key={`${asked.name} ${index}`}
@@ -28,7 +30,7 @@ export function Question({ learning, phase: { number, asked } }: Props) {
               {said(choice)}
             </button>
           ))}
-        </fieldset>
+        </section>
       )}
       <p
         role="status"
