@@ -4,7 +4,8 @@ import os
 import signal
 import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from contextlib import suppress
 
 import msgspec
 import numpy as np
@@ -83,8 +84,12 @@ class Asker:
 
     def workers(self) -> list[psutil.Process]:
         """Return the child processes of the studio that run trials."""
-        children = psutil.Process(self.process.pid).children()
-        return [one for one in children if "spawn_main" in " ".join(one.cmdline())]
+        found = []
+        for one in psutil.Process(self.process.pid).children():
+            with suppress(psutil.NoSuchProcess):  # it was killed, and ends at this moment
+                if "spawn_main" in " ".join(one.cmdline()):
+                    found.append(one)
+        return found
 
 
 @pytest.fixture(scope="module")
@@ -237,8 +242,10 @@ def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
     assert len({one.pid for one in asker.workers()} & before) == 1
 
     questions = [asker.begin("trial", long) for _ in range(2)]
+    killed: set[int] = set()
     for _ in range(2):
-        for one in until_busy(asker):
+        for one in until_busy(asker, killed):
+            killed.add(one.pid)
             os.kill(one.pid, signal.SIGKILL)
     for question in questions:
         with pytest.raises(Refused) as refused:
@@ -249,10 +256,14 @@ def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
     assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
 
 
-def until_busy(asker: Asker) -> list[psutil.Process]:
-    """Wait until both processes for trials compute, and return them."""
-    until(lambda: len([one for one in asker.workers() if one.is_running()]) == 2)
-    busy = asker.workers()
+def until_busy(asker: Asker, killed: Collection[int] = ()) -> list[psutil.Process]:
+    """Wait until two processes for trials compute, and return them; `killed` are none of them."""
+
+    def found() -> list[psutil.Process]:
+        return [one for one in asker.workers() if one.pid not in killed]
+
+    until(lambda: len(found()) == 2)
+    busy = found()
     used = [sum(one.cpu_times()[:2]) for one in busy]
     until(
         lambda: all(sum(one.cpu_times()[:2]) > u + 0.1 for one, u in zip(busy, used, strict=True))
