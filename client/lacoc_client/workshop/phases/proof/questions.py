@@ -58,7 +58,7 @@ class PhaseQuestion:
 
 
 def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where a foot is, at angles that differ from student to student."""
+    """Ask where a foot is, at angles that follow from what the student answered in the lesson."""
     seed = crc32(repr((turn, [one for one in seen if isinstance(one, TookStep)])).encode())
     first = _FIRST_DEG[seed % len(_FIRST_DEG)]
     second = _SECOND_DEG[seed // len(_FIRST_DEG) % len(_SECOND_DEG)]
