@@ -159,7 +159,7 @@ LISTS = st.lists(EVIDENCE, max_size=30)
 def test_evidence_takes_nothing_back(evidence: list[Evidence]) -> None:
     """One more piece of evidence never makes the share of any phase smaller."""
     for phase in PHASES:
-        shares = [phase.look(evidence[:count]).share for count in range(len(evidence) + 1)]
+        shares = [phase.look(evidence[:count])[0].share for count in range(len(evidence) + 1)]
         assert shares == sorted(shares)
 
 
@@ -167,7 +167,7 @@ def test_evidence_takes_nothing_back(evidence: list[Evidence]) -> None:
 def test_every_outcome_is_whole(evidence: list[Evidence]) -> None:
     """A phase's share is from 0 to 1, and 1 only if nothing is missing. All phrases have texts."""
     for phase in PHASES:
-        outcome, question = phase.look(evidence), phase.asked(evidence)
+        outcome, question = phase.look(evidence)
         assert 0 <= outcome.share <= 1
         assert (question is not None) == (outcome.missing == (Phrase("phases.answer"),))
         if question is not None:
@@ -306,3 +306,9 @@ def test_an_edit_is_what_differs_between_two_tables() -> None:
     assert added is not None
     assert [(leg.leg, leg.before_deg) for leg in added.legs] == [(n, ()) for n in range(4)]
     assert edited(after, {}, "4", "tool") is None
+
+
+@given(LISTS, st.integers(0, 30))
+def test_progress_can_go_on_from_an_earlier_one(evidence: list[Evidence], seen: int) -> None:
+    """Progress that goes on from that of earlier evidence equals progress computed anew."""
+    assert progress(evidence, progress(evidence[:seen])) == progress(evidence)

@@ -136,7 +136,7 @@ def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
     assert codes([made, go, on_three], 2) == {"phases.more-numbers"}
     assert codes([go, on_three, made], 2) == {"phases.more-numbers", "phases.foreign"}
     assert codes([go, made, on_three], 2) == {"phases.answer"}
-    assert THREE_LEGS.look([go, made, on_three, msgspec.structs.replace(ANSWER, phase=2)]).met
+    assert THREE_LEGS.look([go, made, on_three, msgspec.structs.replace(ANSWER, phase=2)])[0].met
 
 
 def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sample) -> None:
@@ -224,7 +224,7 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
         others = [one for index, one in enumerate(tries) if index != key]
         assert codes([*begun, checked, *others], 6) == {f"phases.key-{name}"}
     posture = tried(try_gait(sample, "A2", 1.0), sample, [2])
-    assert len(CREATIVE.look([*begun, checked, posture]).missing) == 4  # each key is named once
+    assert len(CREATIVE.look([*begun, checked, posture])[0].missing) == 4  # each key is named once
     wrong = CheckedGait(version="1", keys=4, mistakes=2)
     assert codes([*begun, wrong, *tries], 6) == {"phases.check"}
     old = CheckedGait(version="2", keys=4, mistakes=0)

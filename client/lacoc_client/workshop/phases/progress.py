@@ -8,16 +8,13 @@ from lacoc_client.workshop.phases.evidence import (
     Coached,
     Evidence,
     Hand,
-    JoinedClass,
     TookStep,
     WentToPhase,
 )
 from lacoc_client.workshop.phases.phases import PHASES
 from lacoc_client.workshop.phases.predicates import Outcome
-
-_UNCOUNTED = (JoinedClass, Hand)
-"""Evidence that no task asks for: a page may send much of it, so it must cost little. Nor does a
-task ask for a way to a phase where the student was before."""
+from lacoc_client.workshop.phases.proof.phase import WorkshopPhase
+from lacoc_client.workshop.phases.proof.questions import PhaseQuestion
 
 State = Literal["open", "met", "skipped"]
 """A phase is "skipped" if the student went on without doing its task. The student can come back at
@@ -34,6 +31,8 @@ class StudentProgress:
     """State of each phase, from phase 0."""
     outcomes: tuple[Outcome, ...]
     """For each phase, the share that is done and what is missing."""
+    questions: tuple[PhaseQuestion | None, ...]
+    """For each phase, the question that waits for an answer."""
     hand_up: bool
     """Whether the student asks for help now."""
     coached: bool
@@ -58,17 +57,14 @@ def progress(
     visited = [number for number in visited if 0 <= number < len(PHASES)]
     steps = [one.step for one in evidence if isinstance(one, TookStep)]
     hands = [one.up for one in evidence if isinstance(one, Hand)]
-    known = before.outcomes if before is not None else (None,) * len(PHASES)
-    old_count = before.seen if before is not None else 0
-    begun = {one.phase for one in evidence[:old_count] if isinstance(one, WentToPhase)}
-    counts = any(
-        one.phase not in begun if isinstance(one, WentToPhase) else not isinstance(one, _UNCOUNTED)
-        for one in evidence[old_count:]
-    )
-    outcomes = tuple(
-        old if old is not None and (old.met or not counts) else phase.look(evidence)
-        for phase, old in zip(PHASES, known, strict=True)
-    )
+    new = evidence[before.seen :] if before is not None else evidence
+    found = [
+        phase.look(evidence)
+        if before is None or _may_change(phase, before, new)
+        else (before.outcomes[phase.number], before.questions[phase.number])
+        for phase in PHASES
+    ]
+    outcomes = tuple(outcome for outcome, _ in found)
     nearest, farthest = min(visited, default=1), max(visited, default=1)
     return StudentProgress(
         phase=visited[-1] if visited else 1,
@@ -77,11 +73,18 @@ def progress(
             for number, outcome in enumerate(outcomes)
         ),
         outcomes=outcomes,
+        questions=tuple(question for _, question in found),
         hand_up=bool(hands) and hands[-1],
         lesson_step=steps[-1] if steps else 0,
         coached=any(isinstance(one, Coached) for one in evidence),
         seen=len(evidence),
     )
+
+
+def _may_change(phase: WorkshopPhase, before: StudentProgress, new: Sequence[Evidence]) -> bool:
+    """Return whether new evidence may change a phase: a page may send much that does not."""
+    is_met = before.outcomes[phase.number].met  # then it stays met
+    return not is_met and phase.may_change(before.questions[phase.number], new)
 
 
 def _state(outcome: Outcome, is_behind: bool) -> State:

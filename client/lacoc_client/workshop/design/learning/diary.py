@@ -84,8 +84,6 @@ class Diary:
         self._is_read = False
         self._evidence: list[Evidence] = []
         self._progress: StudentProgress | None = None
-        self._questions: dict[int, tuple[int, PhaseQuestion | None]] = {}
-        """For phases their question, with the count of evidence that it was made from."""
         self._reading = asyncio.Lock()
         self._is_forgotten = False
         self.draft: Draft | None = None
@@ -227,12 +225,7 @@ class Diary:
 
     def question(self, phase: int) -> PhaseQuestion | None:
         """Return the question of a phase that waits for an answer; None: none does."""
-        if self.progress.outcomes[phase].met:
-            return None
-        seen = len(self._evidence)
-        if phase not in self._questions or self._questions[phase][0] != seen:
-            self._questions[phase] = seen, PHASES[phase].asked(self._evidence)
-        return self._questions[phase][1]
+        return self.progress.questions[phase]
 
     def _asked(self, phase: int) -> AskedQuestion | None:
         found = self.question(phase)

@@ -39,37 +39,40 @@ class WorkshopPhase:
     """Makes the question from the evidence with which the work was done; the number says how many
     questions of the phase were answered wrong."""
 
-    def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return how far a student is; `evidence` is all evidence of the student, in order."""
-        return self._look(evidence)[0]
+    def look(self, evidence: Sequence[Evidence]) -> tuple[Outcome, PhaseQuestion | None]:
+        """Return how far a student is, and the question that waits for an answer, if one does.
 
-    def asked(self, evidence: Sequence[Evidence]) -> PhaseQuestion | None:
-        """Return the question that waits for an answer; None: none does."""
-        return self._look(evidence)[1]
-
-    def _look(self, evidence: Sequence[Evidence]) -> tuple[Outcome, PhaseQuestion | None]:
+        Args:
+            evidence: all evidence of the student, in order.
+        """
         start, wrong = self._begins(evidence), 0
         if start is None:
             return Outcome(0.0, (say("phases.go-to", number=self.number),)), None
-        while True:
-            is_again = wrong > 0
-            work = self.work.look(evidence, start, is_again)
-            if not work.met:
-                share = _ASKED_SHARE if is_again else _WORK_SHARE * work.share
-                return Outcome(share, work.missing), None
-            done = self._done(evidence, start, is_again)
-            answers = (
-                (at, one.right)
-                for at, one in enumerate(evidence[done:], start=done)
-                if isinstance(one, Answered) and one.phase == self.number
-            )
-            at, is_right = next(answers, (None, False))
-            if at is None:
-                question = self.asks(evidence[:done], wrong)
-                return Outcome(_ASKED_SHARE, (say("phases.answer"),)), question
-            if is_right:
-                return MET, None
-            start, wrong = at + 1, wrong + 1
+        for at in range(start, len(evidence)):
+            one = evidence[at]
+            if not isinstance(one, Answered) or one.phase != self.number:
+                continue
+            if self.work.look(evidence[:at], start, wrong > 0).met:  # else nothing was asked
+                if one.right:
+                    return MET, None
+                start, wrong = at + 1, wrong + 1
+        work = self.work.look(evidence, start, wrong > 0)
+        if not work.met:
+            share = _ASKED_SHARE if wrong else _WORK_SHARE * work.share
+            return Outcome(share, work.missing), None
+        question = self.asks(evidence[: self._done(evidence, start, wrong > 0)], wrong)
+        return Outcome(_ASKED_SHARE, (say("phases.answer"),)), question
+
+    def may_change(self, known: PhaseQuestion | None, new: Sequence[Evidence]) -> bool:
+        """Return whether new evidence may change what `look` returns; `known` is its question."""
+        if known is not None:
+            return any(isinstance(one, Answered) and one.phase == self.number for one in new)
+        return any(
+            one.phase == self.number
+            if isinstance(one, WentToPhase | Answered)
+            else isinstance(one, self.work.kinds)
+            for one in new
+        )
 
     def _begins(self, evidence: Sequence[Evidence]) -> int | None:
         """Return the index of the first evidence that belongs to the phase; None: not there yet."""

@@ -2,16 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from lacoc_client.workshop.phases.conditions import foot_guess
 from lacoc_client.workshop.phases.evidence import (
     LESSON_STEPS,
     CheckedGait,
     Compared,
+    Edited,
     Evidence,
+    Guessed,
+    Named,
     TookStep,
     Tried,
+    Voted,
 )
 from lacoc_client.workshop.phases.predicates import (
     All,
@@ -37,6 +41,10 @@ _TRY = say("phases.try")
 class Work(Protocol):
     """What a student must do before the question of a phase is asked."""
 
+    @property
+    def kinds(self) -> tuple[type, ...]:
+        """The kinds of evidence that may change how much is done, when they are the newest."""
+
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return how much of the work is done. More evidence never makes it less.
 
@@ -51,6 +59,8 @@ class Work(Protocol):
 
 class LessonWork:
     """Answer each question of the lesson of one leg, for one robot, and come to its end."""
+
+    kinds = (TookStep,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Count the steps that are done; for another question one new answer is enough."""
@@ -85,6 +95,7 @@ class LegWork:
     guesses: int
     right: int
     """How many of `guesses` guesses in a row must be right."""
+    kinds: ClassVar = (Edited, Guessed)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Count joints, postures and guesses; for another question one right guess is enough."""
@@ -123,6 +134,7 @@ class TrialWork:
     """How many numbers must be new since the phase began."""
     tools: bool = False
     """Whether numbers count that a tool made from own ones."""
+    kinds: ClassVar = (Tried,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return the outcome of the best trial; for another question one new number is enough."""
@@ -151,6 +163,7 @@ class VersionWork:
     numbers: int
     beside: tuple[Predicate, ...] = ()
     """Rules that have nothing to do with a version of the table."""
+    kinds: ClassVar = (Tried, CheckedGait, Compared, Named, Voted)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return the outcome of the best version; for another question a new trial is enough."""
