@@ -5,7 +5,7 @@ from pathlib import Path
 
 _HELPERS = (
     *("common", "processes", "played", "league", "network", "server", "contest"),
-    *("client", "gateway", "classroom", "design", "pages", "pages/core"),
+    *("client", "gateway", "classroom", "design", "phases", "pages", "pages/core"),
 )
 _FOLDERS = [str(Path(__file__).parent / name) for name in _HELPERS]
 sys.path += [folder for folder in _FOLDERS if folder not in sys.path]

@@ -36,7 +36,7 @@ from lacoc_client.workshop.classroom import cards, tournament
 from lacoc_client.workshop.design import folder, requests
 from lacoc_client.workshop.design.learning import diary, draft, learner, rules
 from lacoc_client.workshop.design.table import FileRow, FileTable
-from lacoc_client.workshop.phases import facts
+from lacoc_client.workshop.phases import evidence, facts
 from lacoc_server.contest.league import (
     contest,
     decided,
@@ -129,9 +129,11 @@ STRUCTS = (
     FileTable,
     folder.FolderFile,
     rules.StudentRules,
+    diary.AskedQuestion,
     diary.PhaseState,
     diary.Phases,
     draft.Draft,
+    evidence.TookStep,
     cards.Card,
     tournament.ClassMatch,
     simulation.PlayerStanding,
@@ -139,6 +141,7 @@ STRUCTS = (
     tournament.TournamentState,
     learner.Judged,
     learner.EditReply,
+    learner.AnswerReply,
     learner.CheckReply,
     PiecesNow,
 )

@@ -32,6 +32,7 @@ from venue import REFEREE, TOKENS, Venue
 
 from lacoc_arenas import arena as arenas
 from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_robots.library import sample_gait_files
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.record.schema import Setup
 
@@ -86,12 +87,15 @@ def practice(folder: Path, open_page: Open) -> None:
 
 def design(folder: Path, open_page: Open) -> None:
     """Take the picture of two trials that are compared."""
+    postures = sample_gait_files("hexapod").postures
+    assert postures is not None
+    (folder / postures.name).write_bytes(postures.data)
     with own_page(folder, "design") as (url, key):
         page = Contestant(open_page, url, viewport=LAPTOP)
         page.page.goto(f"{url}/design#key={key}")
         page.sees("#gait-grid td")
         page.press("Control+Enter")
-        page.sees(".result .tiles")
+        page.sees(".trial-result .tiles")
         page.page.click("#cell-1-4")
         page.page.keyboard.type("-20")
         page.press("Enter", "Control+Enter")

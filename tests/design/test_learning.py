@@ -1,11 +1,11 @@
-"""Tests of the six phases with a real gateway, a real studio and a real evidence file."""
+"""Tests of the phases with a real gateway, a real studio and a real evidence file."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from design_client import DesignClient
+from design_client import DesignClient, Refused
 from processes import cut_power
 from test_design_page import Gateway, sample
 
@@ -24,6 +24,8 @@ from lacoc_client.workshop.phases.store import ClassStore
 pytestmark = pytest.mark.slow
 
 SEQUENCES = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
+UP = 2
+"""Index of "up" among the directions of a foot."""
 Table = dict[str, Any]
 
 
@@ -68,6 +70,12 @@ def changed(table: Table, key: int, joint: int, angle_deg: float) -> Table:
     return {**table, "rows": rows}
 
 
+def standing(table: Table) -> Table:
+    """Return the table in which all rows stand as row 0 does."""
+    first = table["rows"][0]
+    return {**table, "rows": [{**first, "key": row["key"]} for row in table["rows"]]}
+
+
 def states(page: DesignClient) -> list[str]:
     return [phase["state"] for phase in page.phases["phases"]]
 
@@ -77,36 +85,53 @@ def test_two_phases_are_done_and_survive_a_kill(
 ) -> None:
     """A page completes phases 1 and 2; a gateway that is killed then loses no progress."""
     gateway, page = starts()
-    table = sample(page)
+    table = standing(sample(page))
     assert not (folder / EVIDENCE_FILE).exists()
     page.ask("edit", table=table)
-    assert states(page) == ["open"] * 6
+    assert states(page) == ["open"] * 7
 
     guesses = []
     for joint, angle_deg, guess in (
         (0, -30.0, "back"),
         (0, 30.0, "back"),
-        (0, -20.0, "back"),
-        (6, 40.0, None),
+        (6, 60.0, "up"),
         (12, 40.0, None),
+        (6, 40.0, None),
         (12, 20.0, None),
     ):
-        table = changed(table, 0, joint, angle_deg)
+        table = changed(table, 1, joint, angle_deg)
         said = page.ask("edit", table=table, sequences=SEQUENCES, by="hand", guess=guess)["guess"]
         guesses.append(said and said["right"])
     assert guesses == [True, False, True, None, None, None]
-    page.until(lambda: states(page)[0] == "met")
+    page.until(lambda: page.phases["phases"][1]["asked"])
+    asked = page.phases["phases"][1]["asked"]
+    assert asked["name"] == "other-side"
+    reply = page.ask("answer", phase=1, question="other-side", choice=UP)
+    assert reply["right"]
+    page.until(lambda: states(page)[1] == "met")
+    with pytest.raises(Refused):
+        page.ask("answer", phase=1, question="other-side", choice=UP)
 
     page.ask("phase", number=2)
     page.until(lambda: page.phases["phase"] == 2)
+    for joint in (12, 14, 16):
+        table = changed(table, 1, joint, 45.0)
+        page.ask("edit", table=table, sequences=SEQUENCES, by="hand")
+    for joint, angle_deg in ((0, 0.0), (3, 0.0), (6, 20.0)):
+        table = changed(table, 1, joint, angle_deg)
+        page.ask("edit", table=table, sequences=SEQUENCES, by="hand")
     page.ask("trial", table=table, sequences=SEQUENCES, keys="A1", seconds=3.0)
-    page.until(lambda: states(page)[1] == "met")
+    page.until(lambda: page.phases["phases"][2]["asked"])
+    asked = page.phases["phases"][2]["asked"]
+    choice = [one["code"] for one in asked["choices"]].index("phases.margin-edge")
+    assert page.ask("answer", phase=2, question=asked["name"], choice=choice)["right"]
+    page.until(lambda: states(page)[2] == "met")
     page.ask("phase", number=3)
     before = page.phases
 
     cut_power(gateway.process)
     _, again = starts()
-    assert states(again)[:3] == ["met", "met", "open"]
+    assert states(again)[:4] == ["open", "met", "met", "open"]
     assert again.phases["phase"] == before["phase"] == 3
 
 
@@ -130,6 +155,7 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     slow = {**own, "rows": halves}
     page.ask("edit", table=own, sequences=SEQUENCES)
     page.ask("trial", table=own, sequences=SEQUENCES, keys="2")
+    page.ask("phase", number=5)
     page.ask("edit", table=slow, sequences=SEQUENCES, by="tool")
     guesses = [{"about": "pace", "said": "slower"}, {"about": "way", "said": "left"}]
     page.ask("trial", table=slow, sequences=SEQUENCES, keys="2", guesses=guesses)
@@ -139,7 +165,7 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     page.ask("vote", choice="A")
     checked = page.ask("check", table=slow, sequences=SEQUENCES)
     wrong = page.ask("check", table=changed(slow, 1, 0, 170.0), sequences=SEQUENCES)
-    page.until(lambda: states(page)[4] == "met" or not page.phases["phases"][4]["missing"][1:])
+    page.until(lambda: not page.phases["phases"][5]["missing"][1:])
     page.close()
     gateway.close()
 
@@ -165,6 +191,6 @@ def test_a_file_that_cannot_be_kept_is_told_and_disturbs_nobody(
         table = sample(page)
         page.ask("edit", table=table)
         page.ask("edit", table=changed(table, 1, 0, 20.0), by="hand", guess="forward")
-        page.until(lambda: page.phases["phases"][0]["share"] > 0)
+        page.until(lambda: page.phases["phases"][1]["share"] > 0)
 
         assert page.phases["trouble"]["code"] == "database.in-use"

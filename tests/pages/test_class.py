@@ -129,7 +129,7 @@ def test_the_teacher_sets_rules_hands_out_and_takes_home(
     cem = comes(closing, room, "Cem")
     desk = Desk(open_page, room.url, viewport={"width": 1280, "height": 720})
     desk.begin(room.key)
-    desk.find(".phases input").nth(4).uncheck()
+    desk.find(".phases input").nth(5).uncheck()
     desk.find("select[name=coach]").select_option("none")
     desk.find("input[name=explain-first]").check()
     rules = {"closed": [5], "coach": "none", "explain_first": True}

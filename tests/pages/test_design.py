@@ -150,6 +150,9 @@ def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> D
     else:
         page.press("Control+z")
     page.until("window.__studio.files.isSaved.value")
+    if page.page.evaluate("window.__studio.files.file.value.name") == "":  # it was in no file
+        page.page.evaluate("window.__studio.files.open('Loco-data.txt')")
+    page.until("window.__studio.files.file.value.name")
     return page
 
 
@@ -222,7 +225,7 @@ def test_a_beginner_s_first_gait(
     click("text=Make the other half")
     page.cell_is(3, 13, "40")
     click(".try")
-    page.sees(".result .tiles")
+    page.sees(".trial-result .tiles")
     figures = page.page.evaluate("window.__studio.showing.shown.value.trial.reply.figures")
     assert figures["cycles"] == 5
     assert figures["speed_mm_s"] * figures["seconds"] > 100
@@ -283,7 +286,7 @@ def test_other_gaits_are_watched_and_taken(
     page.find(".map-grid .has-gait").first.click()
     name = page.find(".other-gait").get_attribute("aria-label")
     page.page.click(".other-gait >> text=Watch")
-    page.sees(".result h2", name)
+    page.sees(".trial-result h2", name)
     assert page.page.evaluate("window.__studio.trials.all.value.length") == 0
     page.page.click(".coach >> text=Six variants")
     cards = page.find(".variants li")
@@ -297,7 +300,7 @@ def test_other_gaits_are_watched_and_taken(
     page.sees(".variants", "Round 1")
     assert cards.first.inner_text() == first
     page.page.click("[aria-label='Take it: Variant 1.1']")
-    page.sees(".result h2", "Trial 1")
+    page.sees(".trial-result h2", "Trial 1")
     page.sees(".coach", "The table has changed")
     page.page.click("[aria-label*='Variant 1.1'][title*='Ctrl+Z']")  # one step
     page.sees(".bar .name small", "saved")
@@ -351,7 +354,7 @@ def test_predict_compare_and_the_way_back(
     page.page.locator(".foretell label", has_text="straight on").locator("input").check(force=True)
     page.page.locator(".foretell label", has_text="faster").locator("input").check(force=True)
     page.page.click(".foretell .strong")
-    expect(page.find(".result .verdict")).to_have_count(2)
+    expect(page.find(".trial-result .verdict")).to_have_count(2)
     page.page.click(".acts >> text=Compare")
     page.sees(".differences tbody tr", "Forward")
     page.sees(".shows", "pale: trial 1")

@@ -2,12 +2,16 @@
 
 import re
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import pytest
 from chromium import OpenPage
+from class_room import ClassRoom
 from own_page import OwnPage
 from playwright.sync_api import Locator, Page, expect
+from processes import cut_power
 from show import violations
 from test_design import Designer, write_sample
 
@@ -129,6 +133,66 @@ def test_a_foot_is_dragged_by_touch_on_a_phone(own: OwnPage, open_page: OpenPage
                 link.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
             link.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
             expect(handle).not_to_have_attribute("aria-valuetext", before or "")
+
+
+def test_a_student_of_a_class_comes_back_to_where_she_was(
+    open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
+) -> None:
+    """In a class the lesson is phase 0: the teacher sees the step; a restart keeps the place."""
+    console.expect_a_break()
+    room = ClassRoom(tmp_path)
+    with ExitStack() as closing:
+        closing.callback(lambda: room.close())
+        teacher = room.teacher()
+        pupil = Designer(open_page, room.url, viewport={"width": 1280, "height": 800})
+        page = pupil.page
+        pupil.open("/design")
+        pupil.sees(".join form")
+        page.keyboard.type(room.code)
+        pupil.press("Tab")
+        page.keyboard.type("Mia")
+        pupil.press("Enter")
+        pupil.sees("#gait-grid td")
+        pupil.cell_is(0, 0, "45")
+        page.click(".phase-dots button:nth-child(1)")
+        pupil.sees(".learn h3", "0.")
+        page.click("text=Begin the lesson")
+        expect(page.locator(".told h2")).to_contain_text("1.")
+        back = page.get_by_role("link", name="Back to my table")
+        expect(back).to_be_visible()
+        learner = Learner(page, room.url)
+        learner.guesses("leg R,F, 1st")
+        learner.guesses("leg R,C, 2nd", 1)
+        learner.goes_on()
+        learner.guesses("35.0 mm")
+        learner.goes_on()
+        teacher.until(lambda: teacher.card("Mia").get("lesson_step") == 3)
+        assert teacher.card("Mia")["in_lesson"]
+
+        back.click()
+        pupil.sees("#gait-grid td")
+        page.click("#tab-phase")
+        pupil.sees(".learn", "step 3")
+        pupil.sees(".learn-missing", "6 steps")
+        teacher.until(lambda: not teacher.card("Mia")["in_lesson"])
+        teacher.close()
+        cut_power(room.process)
+        again = ClassRoom(tmp_path, room.listen)
+        room.process = again.process
+        closing.callback(again.close)
+        page.click("text=Go on with the lesson")
+        expect(page.locator(".told h2")).to_contain_text("3.")
+        page.get_by_role("button", name="Back", exact=True).click()
+        expect(learner.question()).to_contain_text("Right!")
+        page.reload()
+        expect(page.locator(".told h2")).to_contain_text("2.")
+        expect(learner.question()).to_contain_text("Right!")
+        page.get_by_role("button", name="Ask again").click()
+        expect(learner.question()).to_contain_text("Guess first")
+        desk = again.teacher()
+        closing.callback(desk.close)
+        assert desk.card("Mia")["states"][0] == "open"
+        assert violations(page) == []
 
 
 def test_the_worksheet_has_answers_only_for_the_teacher(own: OwnPage, open_page: OpenPage) -> None:

@@ -32,20 +32,22 @@ def sample() -> dict[int, Posture]:
 def ask_trial() -> Asks:
     """Give a function that tries postures or sequences on the workshop's robot.
 
-    A trial of postures has two keys at level B: 0 stands in posture 0; 1 repeats postures 1 to 4.
+    Unless `sequences` says otherwise, a trial of postures has two keys at level B: 0 stands in
+    posture 0; 1 repeats postures 1 to 4.
     """
     answers: dict[bytes, TrialReply] = {}
 
     def ask(
-        gait: dict[int, Posture] | LocomotionTable, keys: str, seconds: float | None = None
+        gait: dict[int, Posture] | LocomotionTable,
+        keys: str,
+        seconds: float | None = None,
+        sequences: tuple[tuple[int, ...], ...] = ((0,), (1, 2, 3, 4)),
     ) -> TrialReply:
         if isinstance(gait, LocomotionTable):
             files = GaitFiles(locomotion=SentFile("LocoTra-data.txt", write_gait(gait, LEGS)))
         else:
             data = write_gait(PostureTable(gait), LEGS)
-            files = GaitFiles(
-                postures=SentFile("Loco-data.txt", data), sequences=((0,), (1, 2, 3, 4))
-            )
+            files = GaitFiles(postures=SentFile("Loco-data.txt", data), sequences=sequences)
         request = TrialRequest(protocol=PROTOCOL, files=files, keys=keys, seconds=seconds)
         asked = encode(request)
         if asked not in answers:

@@ -1,12 +1,15 @@
-"""Tests of the six phases with facts of real trials: each task is met, or something is missing."""
+"""Tests of the phases with facts of real trials: each task is met, or something is missing."""
 
 import math
 from collections.abc import Callable, Sequence
 
+import msgspec
 import pytest
+from pupil import QUESTIONS, START
 
 from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
+    Answered,
     By,
     CheckedGait,
     Coached,
@@ -16,26 +19,23 @@ from lacoc_client.workshop.phases.evidence import (
     Hand,
     Named,
     Rows,
+    TookStep,
     Tried,
+    TriedNumber,
     Voted,
     WentToPhase,
     edited,
 )
 from lacoc_client.workshop.phases.facts import TrialFacts, differences
-from lacoc_client.workshop.phases.phases import (
-    A_CYCLE,
-    CONCEPT,
-    CREATIVE,
-    HALF_CYCLE,
-    PHASES,
-    THREE_LEGS,
-)
+from lacoc_client.workshop.phases.phases import CREATIVE, PHASES, THREE_LEGS
 from lacoc_client.workshop.phases.progress import progress
 from lacoc_shared.gait.tables import SAMPLE_KEYS, Posture, PostureTable, to_locomotion
 from lacoc_shared.words import faults, render
 
 Tries = Callable[..., TrialFacts]
 Sample = dict[int, Posture]
+
+ANSWER = Answered(phase=1, question="other-side", said=0, right=True)
 
 pytestmark = pytest.mark.slow
 
@@ -52,6 +52,17 @@ def edit(before: dict[int, Posture], after: dict[int, Posture], by: By = "hand")
     return change
 
 
+def tried(facts: TrialFacts, table: Sample, keys: Sequence[int], version: str = "1") -> Tried:
+    """Return the evidence of a trial of some rows of a table."""
+    numbers = [
+        TriedNumber(key, 0, joint % 6, joint // 6, math.degrees(angle), START[joint])
+        for key in keys
+        for joint, angle in enumerate(table[key])
+        if abs(math.degrees(angle) - START[joint]) > 0.01
+    ]
+    return Tried(version=version, facts=facts, rows=tuple(keys), numbers=tuple(numbers))
+
+
 def standing(sample: Sample, keys: Sequence[int]) -> dict[int, Posture]:
     """Return a table in which all keys have the standing posture of key 0."""
     return dict.fromkeys(keys, sample[0])
@@ -59,11 +70,29 @@ def standing(sample: Sample, keys: Sequence[int]) -> dict[int, Posture]:
 
 def codes(evidence: Sequence[Evidence], phase: int) -> set[str]:
     """Return the codes of the phrases that say what a phase still lacks."""
-    return {phrase.code for phrase in progress(evidence).outcomes[phase - 1].missing}
+    return {phrase.code for phrase in progress(evidence).outcomes[phase].missing}
+
+
+def test_phase_0_needs_all_steps_of_the_lesson() -> None:
+    """Phase 0 needs an answer to each question of the lesson, and its last step."""
+    steps: list[Evidence] = [
+        TookStep(step=step, robot="hexapod", question=question, of=of, choice=0)
+        for step, of in enumerate(QUESTIONS, start=1)
+        for question in range(of)
+    ]
+    end = TookStep(step=len(QUESTIONS), robot="hexapod")
+
+    assert codes([], 0) == {"phases.go-to"}
+    assert codes(steps, 0) == codes([*steps[1:], end], 0) == {"phases.more-steps"}
+    assert codes([*steps, end], 0) == {"phases.answer"}
+    assert progress([*steps, end]).lesson_step == len(QUESTIONS)
 
 
 def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> None:
-    """Phase 1 needs six postures of a leg, all three joints, and two right guesses of three."""
+    """Phase 1 needs six postures of a leg, all three joints, and two right guesses of three.
+
+    A guess counts only for a move that was not seen before.
+    """
     table = {1: list(sample[0])}
     evidence: list[Evidence] = []
     for step in range(6):
@@ -74,76 +103,108 @@ def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> 
             assert "phases.more-leg-postures" in codes(evidence, 1)
     assert codes(evidence, 1) == {"phases.more-guesses", "phases.more-right-guesses"}
 
-    evidence += [Guessed(about="foot", said="up", was=("forward",))] * 2
+    def guess(said: str, leg: int, after_deg: float = 30.0) -> Guessed:
+        angles = {"before_deg": 10.0, "after_deg": after_deg}
+        return Guessed(about="foot", said=said, was=("up",), leg=leg, level=1, of_legs=6, **angles)
+
+    seen = [guess("up", 0), guess("up", 1), guess("up", 1), guess("up", 2, 15.0)]
+    evidence += seen
     assert codes(evidence, 1) == {"phases.more-guesses", "phases.more-right-guesses"}
-    evidence += [Guessed(about="foot", said="up", was=("forward", "up"))] * 2
-    assert progress(evidence).states == ("met", *["open"] * 5)
+    evidence += [guess("down", 3), guess("down", 4)]
+    assert codes(evidence, 1) == {"phases.more-right-guesses"}
+    evidence += [guess("up", 5), guess("up", 5, -30.0)]
+    assert codes(evidence, 1) == {"phases.answer"}
+    assert progress([*evidence, ANSWER]).states == ("open", "met", *["open"] * 5)
 
 
 def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
-    """Phase 2 needs a trial on three feet, after the student has made the posture by hand."""
+    """Phase 2 needs a trial on three feet, of a posture that the student typed in the phase."""
     start = standing(sample, range(5))
     own = start | {1: sample[1]}
-    on_six = Tried(version="1", facts=try_gait(start, "A1", 3.0))
-    on_three = Tried(version="2", facts=try_gait(own, "A1", 3.0))
+    go = WentToPhase(phase=2)
+    on_six = tried(try_gait(start, "A1", 3.0), start, [1])
+    on_three = tried(try_gait(own, "A1", 3.0), own, [1])
     made = edit(start, own)
 
-    assert codes([made, on_six], 2) == {"phases.stand-longer"}
-    assert codes([on_three], 2) == {"phases.more-cells"}
-    assert codes([edit(start, own, "paste"), on_three], 2) == {"phases.more-cells"}
-    assert codes([on_three, made], 2) == {"phases.try"}
-    assert THREE_LEGS.look([made, on_three]).met
+    assert codes([made, on_three], 2) == {"phases.go-to"}
+    assert codes([go, made, on_six], 2) == {"phases.more-numbers", "phases.stand-longer"}
+    assert codes([go, on_three], 2) == {"phases.more-numbers", "phases.foreign"}
+    assert codes([go, edit(start, own, "paste"), on_three], 2) == {
+        "phases.more-numbers",
+        "phases.foreign",
+    }
+    assert codes([made, go, on_three], 2) == {"phases.more-numbers"}
+    assert codes([go, on_three, made], 2) == {"phases.more-numbers", "phases.foreign"}
+    assert codes([go, made, on_three], 2) == {"phases.answer"}
+    assert THREE_LEGS.look([go, made, on_three, msgspec.structs.replace(ANSWER, phase=2)])[0].met
 
 
 def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sample) -> None:
-    """Phase 3 is met if two postures move the robot forward while the same feet stay down."""
+    """Phase 3 asks once two postures move the robot forward while the same feet stay down."""
     table = {key: sample[key] for key in range(5)}
-    made = edit(standing(sample, range(5)), table)
+    made = [WentToPhase(phase=3), edit(standing(sample, range(5)), table)]
 
-    def missing(keys: str) -> set[str]:
-        return codes([made, Tried(version="1", facts=try_gait(table, keys, 1.5))], 3)
+    def missing(keys: str, *rows: int) -> set[str]:
+        return codes([*made, tried(try_gait(table, keys, 1.5), table, rows)], 3)
 
-    assert missing("A1:1, A2") == set()
-    assert HALF_CYCLE.look([made, Tried(version="1", facts=try_gait(table, "A3:1, A4", 1.5))]).met
-    assert missing("A2:1, A1") == {"phases.farther"}
-    assert missing("A2:1, A3") == {"phases.farther", "phases.same-feet"}
-    assert missing("A2") == {"phases.two-postures"}
+    assert missing("A1:1, A2", 1, 2) == {"phases.answer"}
+    assert missing("A3:1, A4", 3, 4) == {"phases.answer"}
+    assert missing("A2:1, A1", 2, 1) == {"phases.farther"}
+    assert missing("A2:1, A3", 2, 3) == {"phases.farther", "phases.same-feet"}
+    assert missing("A2", 2) == {"phases.two-postures"}
 
 
 def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sample) -> None:
-    """Phase 4 is met by the sample's walk, made by hand; not by standing or by turning."""
+    """Phase 4 asks once the sample's walk was typed by hand; not by standing or by turning."""
     start = standing(sample, range(5))
     own = {key: sample[key] for key in range(5)}
     turning = {0: sample[0], **{key: sample[key + 4] for key in range(1, 5)}}
-    made = edit(start, own)
+    go = WentToPhase(phase=4)
 
     def missing(table: dict[int, Posture]) -> set[str]:
-        return codes([made, Tried(version="1", facts=try_gait(table, "B1"))], 4)
+        made = [edit(start, table)] if table is not start else []
+        return codes([go, *made, tried(try_gait(table, "B1"), table, [1, 2, 3, 4])], 4)
 
-    assert missing(own) == set()
-    assert missing(start) == {"phases.farther"}
+    assert missing(own) == {"phases.answer"}
+    assert missing(start) == {"phases.more-numbers", "phases.farther"}
     assert missing(turning) == {"phases.farther", "phases.turns"}
-    assert not A_CYCLE.look([Tried(version="1", facts=try_gait(own, "B1"))]).met
+    walk = tried(try_gait(own, "B1"), own, [1, 2, 3, 4])
+    assert codes([go, walk], 4) == {"phases.more-numbers", "phases.foreign"}
+
+
+def test_a_tool_helps_from_phase_4_on(try_gait: Tries, sample: Sample) -> None:
+    """The second half of a gait may be made with a tool from numbers that were typed."""
+    start = standing(sample, range(5))
+    half = start | {1: sample[1], 2: sample[2]}
+    own = {key: sample[key] for key in range(5)}
+    walk = tried(try_gait(own, "B1"), own, [1, 2, 3, 4])
+    typed, made = edit(start, half), edit(half, own, "tool")
+
+    assert codes([typed, WentToPhase(phase=4), made, walk], 4) == {"phases.answer"}
+    assert codes([WentToPhase(phase=4), made, walk], 4) == {"phases.more-numbers", "phases.foreign"}
 
 
 def test_phase_5_needs_another_walk_a_word_and_a_vote(try_gait: Tries, sample: Sample) -> None:
-    """Phase 5 needs a walk that differs from the sample, a word and a vote."""
+    """Phase 5 needs a walk of one's own that differs from the sample, a word and a vote."""
     calm = {key: tuple(0.6 * angle for angle in angles) for key, angles in sample.items()}
     walk, known = try_gait(calm, "B1"), try_gait(sample, "B1")
     differs = differences(walk, known)
-    tried = [
-        Tried(version="1", facts=walk),
-        Compared(version="1", against=SAMPLE, differs=differs),
-    ]
-    agreed = [Named(word="calm"), Voted(poll="calm")]
+    begun: list[Evidence] = [WentToPhase(phase=5), edit(sample, calm)]
+    trial = tried(walk, calm, [1, 2, 3, 4])
+    shown: list[Evidence] = [trial, Compared(version="1", against=SAMPLE, differs=differs)]
+    agreed: list[Evidence] = [Named(word="calm"), Voted(poll="calm")]
 
     assert len(differs) >= 2
-    assert CONCEPT.look([*agreed, *tried]).met
-    assert codes(tried, 5) == {"phases.name-word", "phases.vote"}
+    assert codes([*begun, *agreed, *shown], 5) == {"phases.answer"}
+    assert codes([*begun, *shown], 5) == {"phases.name-word", "phases.vote"}
+    assert codes([begun[0], *agreed, *shown], 5) == {"phases.more-numbers"}
+    assert codes([begun[0], edit(sample, calm, "coach"), *agreed, *shown], 5) == {
+        "phases.more-numbers"
+    }
     same = Compared(version="1", against=SAMPLE, differs=differences(known, known))
-    assert codes([*agreed, tried[0], same], 5) == {"phases.more-different"}
+    assert codes([*begun, *agreed, trial, same], 5) == {"phases.more-different"}
     other = Compared(version="1", against="2", differs=differs)
-    assert codes([*agreed, tried[0], other], 5) == {"phases.more-different"}
+    assert codes([*begun, *agreed, trial, other], 5) == {"phases.more-different"}
 
 
 def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
@@ -152,26 +213,34 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
     """Phase 6 needs a check without mistakes, and a trial of each of the four keys of that file."""
     file = to_locomotion(PostureTable(sample), SAMPLE_KEYS)
     checked = CheckedGait(version="1", keys=4, mistakes=0)
-    tries = [Tried(version="1", facts=try_gait(file, f"B{key}")) for key in range(4)]
+    other = dict.fromkeys(sample, (0.0,) * 18)
+    begun: list[Evidence] = [WentToPhase(phase=6), edit(other, sample)]
+    tries = [tried(try_gait(file, f"B{key}"), sample, SAMPLE_KEYS[key]) for key in range(4)]
     names = ["stand", "left", "forward", "right"]
 
-    assert CREATIVE.look([checked, *tries]).met
+    assert codes([*begun, checked, *tries], 6) == {"phases.answer"}
+    assert codes([begun[0], checked, *tries], 6) == {"phases.more-numbers"}
     for key, name in enumerate(names):
         others = [one for index, one in enumerate(tries) if index != key]
-        assert codes([checked, *others], 6) == {f"phases.key-{name}"}
-    posture = Tried(version="1", facts=try_gait(sample, "A2", 1.0))
-    assert len(CREATIVE.look([checked, posture]).missing) == 4  # each key is named once
-    assert codes([CheckedGait(version="1", keys=4, mistakes=2), *tries], 6) == {"phases.check"}
-    assert codes([CheckedGait(version="2", keys=4, mistakes=0), *tries], 6) == {"phases.check"}
+        assert codes([*begun, checked, *others], 6) == {f"phases.key-{name}"}
+    posture = tried(try_gait(sample, "A2", 1.0), sample, [2])
+    assert len(CREATIVE.look([*begun, checked, posture])[0].missing) == 4  # each key is named once
+    wrong = CheckedGait(version="1", keys=4, mistakes=2)
+    assert codes([*begun, wrong, *tries], 6) == {"phases.check"}
+    old = CheckedGait(version="2", keys=4, mistakes=0)
+    assert codes([*begun, old, *tries], 6) == {"phases.check"}
 
 
 def test_a_student_may_skip_and_come_back() -> None:
-    """A student who goes to phase 4 skips phases 1 to 3, and may go back to phase 2."""
+    """A student who goes to phase 4 skips phases 1 to 3, and may go back to phase 2.
+
+    Phase 0 can be left out: it is skipped only if the student was there.
+    """
     evidence = [WentToPhase(phase=4), WentToPhase(phase=2), Hand(up=True)]
     now = progress(evidence)
 
     assert now.phase == 2
-    assert now.states == ("skipped", "skipped", "skipped", "open", "open", "open")
+    assert now.states == ("open", "skipped", "skipped", "skipped", "open", "open", "open")
     assert (now.hand_up, now.coached) == (True, False)
     later = progress([*evidence, Hand(up=False), Coached(version="2", size="cell")])
     assert (later.hand_up, later.coached) == (False, True)
@@ -183,7 +252,7 @@ def test_all_texts_are_in_both_languages() -> None:
         for phrase in (phase.title, phase.task, phase.question, phase.hint, phase.explanation):
             assert not faults(phrase)
             assert render(phrase, "ja") != render(phrase, "en")
-    assert [phase.number for phase in PHASES] == [1, 2, 3, 4, 5, 6]
+    assert [phase.number for phase in PHASES] == [0, 1, 2, 3, 4, 5, 6]
 
 
 def test_evidence_that_no_task_asks_for_changes_no_task() -> None:

@@ -295,7 +295,7 @@ def test_evidence_as_a_table_for_a_spreadsheet(path: Path) -> None:
     assert {line["time"] for line in lines} == {"2023-11-14T22:13:20.250+00:00"}
     assert (lines[0]["kind"], lines[0]["was"], lines[0]["right"]) == ("guessed", "up out", "True")
     assert lines[1]["word"] == "'-calm, or so"
-    assert lines[2]["legs"] == "[1,0,2,[0],[10.0,20.0,30.0]]"
+    assert lines[2]["legs"] == "[1,0,2,[0],[10.0,20.0,30.0],[]]"
 
 
 def test_tables_as_an_archive() -> None:

@@ -63,6 +63,17 @@ def test_a_job_has_a_time_limit() -> None:
         workers.submit(time.sleep, 60).result()
 
 
+def test_a_job_of_a_lost_process_is_given_to_another_one() -> None:
+    """With `again` a job whose process stops or dies is done by a new process, so often only."""
+    with Workers(1, limit_s=2.0, again=1) as workers:
+        first = workers.submit(os.getpid).result()
+        os.kill(first, signal.SIGSTOP)  # as while a computer sleeps
+        assert workers.submit(os.getpid).result() != first
+        with pytest.raises(WorkerDied):
+            workers.submit(os._exit, 3).result()
+        assert workers.submit(os.getpid).result() != first
+
+
 def test_jobs_that_wait_can_be_cancelled(workers: Workers) -> None:
     """A cancelled job never runs; the job after it does."""
     first = workers.submit(os.getpid)

@@ -2,6 +2,7 @@
 
 import os
 import threading
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -19,8 +20,12 @@ pytestmark = [
 
 
 def _children() -> list[psutil.Process]:
-    found = psutil.Process().children()
-    return [one for one in found if "lacoc_shared" in " ".join(one.cmdline())]
+    found = []
+    for one in psutil.Process().children():
+        with suppress(psutil.NoSuchProcess):  # it was killed, and ends at this moment
+            if "lacoc_shared" in " ".join(one.cmdline()):
+                found.append(one)
+    return found
 
 
 def test_a_process_that_is_killed_while_it_starts_is_started_again(tmp_path: Path) -> None:

@@ -63,14 +63,22 @@ class Workers:
         jobs: number of processes; None: one for each core.
         background: whether these processes give way to all others.
         limit_s: longest time for a job [s]; after this its process is ended.
+        again: how often a job whose process was lost is given to a new one: for jobs that give the
+            same result each time.
     """
 
     def __init__(
-        self, jobs: int | None = None, *, background: bool = False, limit_s: float = 60.0
+        self,
+        jobs: int | None = None,
+        *,
+        background: bool = False,
+        limit_s: float = 60.0,
+        again: int = 0,
     ) -> None:
         self.count = jobs or os.cpu_count() or 1
         self._background = background
         self._limit_s = limit_s
+        self._again = again
         self._jobs: SimpleQueue[_WorkerJob | None] = SimpleQueue()
         self._closing = False
         self._children: set[_WorkerProcess] = set()
@@ -125,6 +133,14 @@ class Workers:
             if self._closing or not job.result.set_running_or_notify_cancel():
                 job.result.cancel()
                 continue
+            child = self._do(job, child)
+        self._children.discard(child)
+        child.end()
+
+    def _do(self, job: _WorkerJob, child: "_WorkerProcess") -> "_WorkerProcess":
+        """Run a job in a process, and set its result; return the process for the next job."""
+        left = self._again
+        while True:
             try:
                 if not child.process.is_alive():  # the process died between two jobs
                     child = self._replaced(child)
@@ -132,14 +148,16 @@ class Workers:
             except WorkerDied as error:
                 if not self._closing:
                     child = self._replaced(child)
-                job.result.set_exception(error)
+                if left == 0 or self._closing or error.last_words is not None:
+                    job.result.set_exception(error)
+                    return child
+                left -= 1
                 continue
             if right:
                 job.result.set_result(found)
             else:
                 job.result.set_exception(WorkerFailed(found))
-        self._children.discard(child)
-        child.end()
+            return child
 
     def _replaced(self, child: "_WorkerProcess") -> "_WorkerProcess":
         self._children.discard(child)

@@ -119,7 +119,7 @@ class Searches:
                     return
                 search = self._running = self._waiting.popleft()
                 if self._workers is None:
-                    self._workers = Workers(self._jobs, background=True, limit_s=600.0)
+                    self._workers = Workers(self._jobs, background=True, limit_s=600.0, again=1)
             try:
                 answer = self._answer(search, self._workers)
             except Exception as error:

@@ -40,7 +40,8 @@ class Studio:
         self._keys = keys = StudioKeys(name)
         self._log = log.get(studio=name)
         self._session = session = open_studio(listen)
-        self._workers = Workers(jobs)
+        # A computer that slept may have lost the processes, and a trial is the same each time.
+        self._workers = Workers(jobs, again=1)
         for _ in range(self._workers.count):  # so that the first student does not wait for MuJoCo
             self._workers.submit(answered, "robot", encode(RobotRequest(protocol=PROTOCOL)))
         self._searches = Searches(jobs, self._told, self._failed)

@@ -34,6 +34,11 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     """Time when the student last did something, in seconds since 1970 (UTC)."""
     phase: int
     states: tuple[State, ...]
+    """State of each phase, from phase 0."""
+    lesson_step: int
+    """The step of the lesson of one leg to which the student came last; 0: none yet."""
+    in_lesson: bool
+    """Whether a page of the lesson is open."""
     share: float
     """How much of the phase that the student is at is done, from 0 to 1."""
     missing: Phrase | None
@@ -65,6 +70,7 @@ class SeenStudent(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     online: bool = False
+    in_lesson: bool = False
     seen_s: float = 0.0
     hand_up_s: float | None = None
     trial: TrialReply | None = None
@@ -84,7 +90,7 @@ def card(
     """
     tries = [one.facts for one in evidence if isinstance(one, Tried)]
     speeds = [facts.speed_mm_s for facts in tries if _FORWARD in facts.keys and _walks(facts)]
-    outcome = progress.outcomes[progress.phase - 1]
+    outcome = progress.outcomes[progress.phase]
     failed = stuck(tries)
     hand_up_s = (seen.hand_up_s or seen.seen_s) if progress.hand_up else None
     need: Need = ""
@@ -102,6 +108,8 @@ def card(
         seen_s=seen.seen_s,
         phase=progress.phase,
         states=progress.states,
+        lesson_step=progress.lesson_step,
+        in_lesson=seen.in_lesson,
         share=outcome.share,
         missing=next(iter(outcome.missing), None),
         tries=len(tries),

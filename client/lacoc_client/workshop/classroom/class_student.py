@@ -48,7 +48,7 @@ class ClassStudent(Student):
     def is_idle(self) -> bool:
         """Whether the student has no page open, and has never done more than come in."""
         did = any(not isinstance(one, JoinedClass) for one in self.diary.evidence)
-        return not (self.viewers or did or self.diary.draft)
+        return not (self.viewers or self.lessons or did or self.diary.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
         """Note that the student did something; if it was a trial, `trial` is its reply."""
@@ -68,7 +68,8 @@ class ClassStudent(Student):
         """Return the student's card."""
         seen = SeenStudent(
             name=self.name,
-            online=bool(self.viewers),
+            online=bool(self.viewers or self.lessons),
+            in_lesson=bool(self.lessons),
             seen_s=self.seen_s,
             hand_up_s=self.hand_up_s,
             trial=self._trial,

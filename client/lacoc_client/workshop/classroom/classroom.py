@@ -144,11 +144,10 @@ class Classroom:
             raise UserError(say("class.enter"))  # forgotten while it came in
         return LetIn(student, token)
 
-    def greet(self, student: Student, viewer: Viewer) -> None:
+    def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
         """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
-        student.send_away()
-        student.viewers[viewer] = None
+        student.greet(viewer, lesson)
         student.seen_s = time.time()
         viewer.send(folder_message("", None))
         viewer.send(studio_message(self.studios))
@@ -160,7 +159,7 @@ class Classroom:
     def leave(self, student: Student, viewer: Viewer) -> None:
         """Remove a page that has gone, and tell the teacher (`Host.leave`)."""
         assert isinstance(student, ClassStudent)
-        student.viewers.pop(viewer, None)
+        student.leave(viewer)
         self._tell_card(student)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:

@@ -94,11 +94,13 @@ class DesignPage:
             "robot": self._host.robot,
             "student": student.name or None,
             "token": entered.token,
-            "draft": student.diary.draft,
+            "draft": None if hello.lesson else student.diary.draft,
+            "earned": student.diary.has_earned_sample,
+            "steps": student.diary.lesson,
             "court": _court(self._host),
         }
         self._answers.reply(hello.id, value)
-        self._host.greet(student, self._viewer)
+        self._host.greet(student, self._viewer, hello.lesson)
 
     def _leave(self) -> None:
         if self._learner is not None:
@@ -130,6 +132,8 @@ class DesignPage:
                 requests.EditAsk()
                 | requests.CheckAsk()
                 | requests.PhaseAsk()
+                | requests.AnswerAsk()
+                | requests.LessonAsk()
                 | requests.NameAsk()
                 | requests.VoteAsk()
                 | requests.HandAsk()
@@ -214,9 +218,13 @@ class DesignPage:
             case requests.CheckAsk():
                 value = await learner.checked(asked)
             case requests.PhaseAsk():
-                if asked.number in student.rules.closed:
-                    raise UserError(say("class.phase-closed", number=asked.number))
+                _must_be_open(learner, asked.number)
                 await diary.add(WentToPhase(phase=asked.number))
+            case requests.AnswerAsk():
+                _must_be_open(learner, asked.phase)
+                value = await learner.answered(asked)
+            case requests.LessonAsk():
+                await learner.stepped(asked)
             case requests.NameAsk():
                 await diary.add(Named(word=asked.word))
             case requests.VoteAsk():
@@ -285,6 +293,16 @@ def _must_allow(learner: Learner, size: str | None) -> None:
     """
     if not learner.student.rules.allows(size):
         raise UserError(say("class.coach-closed"))
+
+
+def _must_be_open(learner: Learner, phase: int) -> None:
+    """Check that the teacher has not closed a phase.
+
+    Raises:
+        UserError: if the phase is closed.
+    """
+    if phase in learner.student.rules.closed:
+        raise UserError(say("class.phase-closed", number=phase))
 
 
 def _court(host: Host) -> str | None:

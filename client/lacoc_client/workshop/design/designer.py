@@ -70,17 +70,16 @@ class Designer:
             raise UserError(say("design.wrong-key"))
         return LetIn(self._student)
 
-    def greet(self, student: Student, viewer: Viewer) -> None:
+    def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
         """Tell a page what it shows first, and stop the other pages; see `Host.greet`."""
-        student.send_away()
-        student.viewers[viewer] = None
+        student.greet(viewer, lesson)
         viewer.send(self._folder_message(()))
         viewer.send(studio_message(self.studios))
         viewer.send(student.phases_message())
 
     def leave(self, student: Student, viewer: Viewer) -> None:
         """Remove a page that has gone; see `Host.leave`."""
-        student.viewers.pop(viewer, None)
+        student.leave(viewer)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
         """Tell all pages how far the student is; see `Host.learned`."""

@@ -38,8 +38,14 @@ class Host(Protocol):
     def leave(self, student: Student, viewer: Viewer) -> None:
         """Remove a page that has gone."""
 
-    def greet(self, student: Student, viewer: Viewer) -> None:
-        """Send a page all that it needs when it has been let in."""
+    def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
+        """Send a page all that it needs when it has been let in.
+
+        Args:
+            student: whose page it is.
+            viewer: the page.
+            lesson: whether it is a page of the lesson of one leg.
+        """
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
         """Tell all who must know that a student did something.

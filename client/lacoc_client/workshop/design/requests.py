@@ -7,7 +7,7 @@ import msgspec
 from lacoc_client.web.gateway.wire import Ask, Ping, Unreadable, do_of, too_long
 from lacoc_client.workshop.design.saving.robot_edit import RobotEntry
 from lacoc_client.workshop.design.table import FileTable
-from lacoc_client.workshop.phases.evidence import By
+from lacoc_client.workshop.phases.evidence import LESSON_STEPS, By
 from lacoc_client.workshop.phases.facts import FootWay, Pace, Way
 from lacoc_shared.gait.workbook.content import MAX_BYTES
 from lacoc_shared.messages import SentFile
@@ -23,6 +23,8 @@ MESSAGE_BYTES = 16 << 20
 
 _T = TypeVar("_T")
 Name = Annotated[str, msgspec.Meta(max_length=200)]
+_PhaseNumber = Annotated[int, msgspec.Meta(ge=0, le=6)]
+_Small = Annotated[int, msgspec.Meta(ge=0, le=9)]
 _Job = Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,15}$")]
 Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
 
@@ -37,6 +39,8 @@ class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
     """Nickname in the class."""
     token: Name = ""
     """What the class gave this browser before."""
+    lesson: bool = False
+    """Whether it is the page of the lesson of one leg, which works beside a page of /design."""
 
 
 class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
@@ -158,7 +162,29 @@ class HandOnAsk(PlayAsk, frozen=True, kw_only=True, tag="hand_on"):
 class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
     """Go to a phase, forward or back."""
 
-    number: Annotated[int, msgspec.Meta(ge=1, le=6)]
+    number: _PhaseNumber
+
+
+class AnswerAsk(Ask, frozen=True, kw_only=True, tag="answer"):
+    """Answer the question that a phase asks."""
+
+    phase: _PhaseNumber
+    question: Name
+    """Its name: an answer that comes too late, to another question, is refused."""
+    choice: _Small
+
+
+class LessonAsk(Ask, frozen=True, kw_only=True, tag="step"):
+    """Come to a step of the lesson of one leg, or answer a question of it."""
+
+    step: Annotated[int, msgspec.Meta(ge=1, le=LESSON_STEPS)]
+    robot: Annotated[str, msgspec.Meta(max_length=40)]
+    question: _Small | None = None
+    """Index of the question; None: the student came to the step."""
+    of: _Small = 0
+    """Number of questions of the step."""
+    choice: _Small = 0
+    right: bool = False
 
 
 class NameAsk(Ask, frozen=True, kw_only=True, tag="name"):
@@ -251,6 +277,8 @@ Asked = (
     | PlayAsk
     | HandOnAsk
     | PhaseAsk
+    | AnswerAsk
+    | LessonAsk
     | NameAsk
     | VoteAsk
     | HandAsk

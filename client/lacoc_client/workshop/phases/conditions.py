@@ -3,43 +3,15 @@
 import math
 from collections.abc import Callable, Iterator
 
-from lacoc_client.workshop.phases.evidence import SAMPLE, Compared, Edited, Evidence, Guessed
+from lacoc_client.workshop.phases.evidence import SAMPLE, Compared, Evidence, Guessed
 from lacoc_client.workshop.phases.facts import TrialFacts
-from lacoc_client.workshop.phases.predicates import Bound, Different, Predicate, TriedWhere
+from lacoc_client.workshop.phases.predicates import Bound, Predicate, TriedWhere
 from lacoc_shared.words import Phrase, say
 
-_OWN = ("hand", "tool")
 _UPRIGHT = 0.8
 """A robot has tipped over if its `upright` is below this (docs/studio.md 3)."""
 _BELLY = 0.05
 """A robot does not act on its feet if its body rests on the floor for a larger share of time."""
-
-
-def own_cells(cells: int) -> Different:
-    """Make the rule that the student changed `cells` different cells without coach or paste."""
-    return Different(_cells, cells, lambda left: say("phases.more-cells", left=left))
-
-
-def _cells(one: Evidence) -> Iterator[tuple[None, tuple[int, ...]]]:
-    if isinstance(one, Edited) and one.by in _OWN:
-        for leg in one.legs:
-            for level in leg.changed:
-                yield None, (leg.key, leg.posture, leg.leg, level)
-
-
-def leg_postures(one: Evidence) -> Iterator[tuple[int, tuple[float, ...]]]:
-    """Yield each leg that the student changed, with its angles after the edit."""
-    if isinstance(one, Edited) and one.by in _OWN:
-        for leg in one.legs:
-            yield leg.leg, leg.angles_deg
-
-
-def leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
-    """Yield each joint that the student changed: its leg, and its place in the leg (0, 1 or 2)."""
-    if isinstance(one, Edited) and one.by in _OWN:
-        for leg in one.legs:
-            for level in leg.changed:
-                yield leg.leg, level
 
 
 def foot_guess(one: Evidence) -> bool | None:

@@ -14,8 +14,12 @@ from lacoc_shared.gait.tables import JOINTS_PER_LEG
 SAMPLE = "sample"
 """Name of the version that is the sample gait of the robot."""
 
-By = Literal["hand", "tool", "paste", "coach"]
-"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others."""
+LESSON_STEPS = 8
+"""Number of steps of the lesson of one leg; the last one has no question."""
+
+By = Literal["hand", "tool", "paste", "coach", "lesson"]
+"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others; the
+lesson of one leg gives the three numbers of a leg."""
 Rows = Mapping[tuple[int, int], Sequence[float]]
 """A table: (key, index in the key's sequence) -> (joints,) angles [deg], by joint id."""
 
@@ -35,7 +39,23 @@ class WentToPhase(_EvidenceKind, frozen=True, kw_only=True, tag="moved"):
     """The student went to a phase, forward or back."""
 
     phase: int
-    """From 1 to 6."""
+    """From 0 to 6."""
+
+
+class TookStep(_EvidenceKind, frozen=True, kw_only=True, tag="step"):
+    """The student came to a step of the lesson of one leg, or answered a question of it."""
+
+    step: int
+    """From 1 to 8 (`LESSON_STEPS`)."""
+    robot: _Word
+    """Name of the robot whose leg was shown."""
+    question: int = -1
+    """Index of the question in the step; -1: the student came to the step."""
+    of: int = 0
+    """Number of questions of the step."""
+    choice: int = -1
+    """Index of the chosen answer."""
+    right: bool = False
 
 
 class LegEdit(msgspec.Struct, frozen=True, array_like=True):
@@ -50,6 +70,8 @@ class LegEdit(msgspec.Struct, frozen=True, array_like=True):
     """Levels of the joints that were changed: 0 is root, 1 is 1st, 2 is 2nd."""
     angles_deg: tuple[float, ...]
     """(3,) angles of the leg after the edit."""
+    before_deg: tuple[float, ...] = ()
+    """(3,) angles of the leg before the edit; empty: the row is new."""
 
 
 class Edited(_EvidenceKind, frozen=True, kw_only=True, tag="edited"):
@@ -71,6 +93,16 @@ class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
     """The student's answer."""
     was: tuple[_Word, ...]
     """All right answers."""
+    leg: int = -1
+    """If the guess was about a foot, and one number moved it: the index of the leg."""
+    level: int = -1
+    """Level of the joint that moved it: 0 is root, 1 is 1st, 2 is 2nd."""
+    before_deg: float = 0.0
+    """Angle of the joint before the change."""
+    after_deg: float = 0.0
+    """Angle of the joint after the change."""
+    of_legs: int = 0
+    """Number of legs of the robot."""
 
     @property
     def right(self) -> bool:
@@ -78,11 +110,29 @@ class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
         return self.said in self.was
 
 
+class TriedNumber(msgspec.Struct, frozen=True, array_like=True):
+    """A number of a tried table that differs from the robot's start posture."""
+
+    key: int
+    posture: int
+    """Index in the key's sequence; 0 in a table of postures."""
+    leg: int
+    level: int
+    """0 is root, 1 is 1st, 2 is 2nd."""
+    angle_deg: float
+    start_deg: float
+    """Angle of the joint in the robot's start posture."""
+
+
 class Tried(_EvidenceKind, frozen=True, kw_only=True, tag="tried"):
     """The student let the robot walk."""
 
     version: _Word
     facts: TrialFacts
+    rows: tuple[int, ...] = ()
+    """The rows of the measured key in order: their digits, or 1, 2 ... in a table of level B."""
+    numbers: tuple[TriedNumber, ...] = ()
+    """The numbers of all rows of the pressed keys that differ from the robot's start posture."""
 
 
 class CheckedGait(_EvidenceKind, frozen=True, kw_only=True, tag="checked"):
@@ -126,6 +176,18 @@ class Coached(_EvidenceKind, frozen=True, kw_only=True, tag="coached"):
     """How much the coach was allowed to change: one number, three, or all."""
 
 
+class Answered(_EvidenceKind, frozen=True, kw_only=True, tag="answered"):
+    """The student answered the question that a phase asks before it is done."""
+
+    phase: int
+    """From 0 to 6."""
+    question: _Word
+    """Name of the question, such as "margin"."""
+    said: int
+    """Index of the chosen answer."""
+    right: bool
+
+
 class Hand(_EvidenceKind, frozen=True, kw_only=True, tag="hand"):
     """The student raised a hand to ask for help, or took it down."""
 
@@ -135,6 +197,7 @@ class Hand(_EvidenceKind, frozen=True, kw_only=True, tag="hand"):
 Evidence = (
     JoinedClass
     | WentToPhase
+    | TookStep
     | Edited
     | Guessed
     | Tried
@@ -143,6 +206,7 @@ Evidence = (
     | Named
     | Voted
     | Coached
+    | Answered
     | Hand
 )
 
@@ -195,4 +259,6 @@ def _legs(place: tuple[int, int], before: Rows, angles: Sequence[float]) -> Iter
             if old is None or not known or old[joint] != angles[joint]
         )
         if changed:
-            yield LegEdit(*place, leg, changed, tuple(angles[joint] for joint in joints))
+            before_deg = tuple(old[joint] for joint in joints) if old and known else ()
+            angles_deg = tuple(angles[joint] for joint in joints)
+            yield LegEdit(*place, leg, changed, angles_deg, before_deg)

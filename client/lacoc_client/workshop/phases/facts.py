@@ -63,6 +63,8 @@ class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
     """Largest jump of a joint from the last posture back to the first; 0: no joint jumps."""
     stopped: bool
     """Whether physics stopped before the end of the trial."""
+    stood: tuple[int, ...] = ()
+    """Indices of the legs of the half that was down for `same_feet_share`."""
 
 
 class _FactFigures(msgspec.Struct, frozen=True, kw_only=True):
@@ -97,6 +99,8 @@ def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
     postures = _array(reply.posture, "u1", reply.ticks)[reply.first : reply.end]
     tripod = np.where(_counts(feet) == feet_of_half(len(figures.duty)), feet, 0)
     firm = np.where(margins_m >= TRIPOD_MARGIN_M, tripod, 0)  # no margin is NaN: not firm
+    half, ticks = _most_common(tripod)
+    share = ticks / len(tripod) if len(tripod) else 0.0
     jumps = [
         said.said.values.get("jump_deg") for said in reply.explained if said.said.code == _SEAM
     ]
@@ -115,7 +119,8 @@ def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
         clearance_mm=_short(figures.clearance_mm),
         duty=tuple(map(_short, figures.duty)),
         tripod_s=round(_longest_run(firm) * BEAT_S, 2),
-        same_feet_share=_short(_most_common(tripod) / len(tripod) if len(tripod) else 0.0),
+        same_feet_share=_short(share),
+        stood=tuple(leg for leg in range(len(figures.duty)) if half >> leg & 1),
         seam_deg=max(
             (_short(jump) for jump in jumps if isinstance(jump, float | int)), default=0.0
         ),
@@ -217,10 +222,13 @@ def _longest_run(values: npt.NDArray[Any]) -> int:
     return max(runs, default=0)
 
 
-def _most_common(values: npt.NDArray[Any]) -> int:
-    """Return how often the most common value occurs; zeros do not count."""
-    _, counts = np.unique(values[values != 0], return_counts=True)
-    return int(counts.max(initial=0))
+def _most_common(values: npt.NDArray[Any]) -> tuple[int, int]:
+    """Return the most common value, and how often it occurs; zeros do not count."""
+    found, counts = np.unique(values[values != 0], return_counts=True)
+    if not len(found):
+        return 0, 0
+    most = int(counts.argmax())
+    return int(found[most]), int(counts[most])
 
 
 def _pressed(keys: str, reply: TrialReply) -> tuple[str, ...]:

@@ -1,7 +1,4 @@
-"""The six phases of workshop 4-2 as tasks with evidence (docs/studio.md 7 has the thresholds)."""
-
-from collections.abc import Sequence
-from dataclasses import dataclass
+"""The phases of workshop 3-1 and 4-2, as tasks with evidence (docs/studio.md 7)."""
 
 from lacoc_client.workshop.phases.conditions import (
     IS_UPRIGHT,
@@ -9,53 +6,50 @@ from lacoc_client.workshop.phases.conditions import (
     acts,
     are_two_postures,
     differs_from_sample,
-    foot_guess,
-    leg_joints,
-    leg_postures,
-    own_cells,
     within,
 )
-from lacoc_client.workshop.phases.evidence import CheckedGait, Evidence, Named, Voted
+from lacoc_client.workshop.phases.evidence import CheckedGait, Named, Voted
 from lacoc_client.workshop.phases.facts import STRAIGHT_DEG_S, TRIPOD_MARGIN_M
 from lacoc_client.workshop.phases.predicates import (
-    After,
     All,
     Bound,
     Different,
-    LastOf,
-    OneVersion,
-    Outcome,
-    Predicate,
-    Times,
     TriedWhere,
     once,
 )
-from lacoc_shared.words import Phrase, say
+from lacoc_client.workshop.phases.proof.phase import WorkshopPhase
+from lacoc_client.workshop.phases.proof.questions import (
+    TURNS_DEG_S,
+    differs_question,
+    keys_question,
+    leg_question,
+    lesson_question,
+    push_question,
+    seam_question,
+    tripod_question,
+)
+from lacoc_client.workshop.phases.proof.work import (
+    LegWork,
+    LessonWork,
+    TrialWork,
+    VersionWork,
+)
+from lacoc_shared.words import say
 
-_TURNS_DEG_S, _WALKS_MM_S, _STILL_MM = 5.0, 15.0, 10.0
+_WALKS_MM_S, _STILL_MM = 15.0, 10.0
 
 
-@dataclass(frozen=True)
-class WorkshopPhase:
-    """One step of the workshop."""
-
-    number: int
-    """From 1 to 6."""
-    id: str
-    title: Phrase
-    task: Phrase
-    question: Phrase
-    """A question that makes a student think before trying."""
-    hint: Phrase
-    explanation: Phrase
-    """What a student should have understood after the task."""
-    shown: tuple[Predicate, ...]
-    """The rules that the evidence must meet, all of them, in any order."""
-
-    def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return how far a student is; `evidence` is all evidence of the student, in order."""
-        return All(*self.shown).look(evidence)
-
+LESSON = WorkshopPhase(
+    number=0,
+    id="lesson",
+    title=say("phases.lesson"),
+    task=say("phases.lesson-task"),
+    question=say("phases.lesson-question"),
+    hint=say("phases.lesson-hint"),
+    explanation=say("phases.lesson-explanation"),
+    work=LessonWork(),
+    asks=lesson_question,
+)
 
 ONE_LEG = WorkshopPhase(
     number=1,
@@ -65,16 +59,8 @@ ONE_LEG = WorkshopPhase(
     question=say("phases.one-leg-question"),
     hint=say("phases.one-leg-hint"),
     explanation=say("phases.one-leg-explanation"),
-    shown=(
-        Different(leg_joints, 3, lambda left: say("phases.more-joints", left=left)),
-        Different(leg_postures, 6, lambda left: say("phases.more-leg-postures", left=left)),
-        Times(
-            lambda one: foot_guess(one) is not None,
-            3,
-            lambda left: say("phases.more-guesses", left=left),
-        ),
-        LastOf(foot_guess, 2, 3, lambda left: say("phases.more-right-guesses")),
-    ),
+    work=LegWork(joints=3, postures=6, guesses=3, right=2),
+    asks=leg_question,
 )
 
 _STAND_S = 2.0
@@ -87,32 +73,28 @@ THREE_LEGS = WorkshopPhase(
     question=say("phases.three-legs-question"),
     hint=say("phases.three-legs-hint"),
     explanation=say("phases.three-legs-explanation"),
-    shown=(
-        After(
-            own_cells(3),
-            TriedWhere(
-                (
-                    Bound(
-                        lambda facts: facts.tripod_s,
-                        lambda found: say(
-                            "phases.stand-longer",
-                            found_s=found,
-                            least_s=_STAND_S,
-                            margin_mm=1000 * TRIPOD_MARGIN_M,
-                        ),
-                        least=_STAND_S,
-                    ),
-                    Bound(
-                        lambda facts: facts.belly_share,
-                        lambda found: say("phases.belly", percent=100 * found),
-                        most=0.0,
-                    ),
-                    NOT_STOPPED,
+    work=TrialWork(
+        (
+            Bound(
+                lambda facts: facts.tripod_s,
+                lambda found: say(
+                    "phases.stand-longer",
+                    found_s=found,
+                    least_s=_STAND_S,
+                    margin_mm=1000 * TRIPOD_MARGIN_M,
                 ),
-                say("phases.try"),
+                least=_STAND_S,
             ),
+            Bound(
+                lambda facts: facts.belly_share,
+                lambda found: say("phases.belly", percent=100 * found),
+                most=0.0,
+            ),
+            NOT_STOPPED,
         ),
+        numbers=3,
     ),
+    asks=tripod_question,
 )
 
 _HALF_CYCLE_MM = 15.0
@@ -126,30 +108,24 @@ HALF_CYCLE = WorkshopPhase(
     question=say("phases.half-cycle-question"),
     hint=say("phases.half-cycle-hint"),
     explanation=say("phases.half-cycle-explanation"),
-    shown=(
-        After(
-            own_cells(3),
-            TriedWhere(
-                (
-                    Bound(are_two_postures, lambda found: say("phases.two-postures"), least=1.0),
-                    Bound(
-                        lambda facts: facts.forward_mm,
-                        lambda found: say(
-                            "phases.farther", found_mm=found, least_mm=_HALF_CYCLE_MM
-                        ),
-                        least=_HALF_CYCLE_MM,
-                    ),
-                    Bound(
-                        lambda facts: facts.same_feet_share,
-                        lambda found: say("phases.same-feet", percent=100 * found),
-                        least=_SAME_FEET,
-                    ),
-                    NOT_STOPPED,
-                ),
-                say("phases.try"),
+    work=TrialWork(
+        (
+            Bound(are_two_postures, lambda found: say("phases.two-postures"), least=1.0),
+            Bound(
+                lambda facts: facts.forward_mm,
+                lambda found: say("phases.farther", found_mm=found, least_mm=_HALF_CYCLE_MM),
+                least=_HALF_CYCLE_MM,
             ),
+            Bound(
+                lambda facts: facts.same_feet_share,
+                lambda found: say("phases.same-feet", percent=100 * found),
+                least=_SAME_FEET,
+            ),
+            NOT_STOPPED,
         ),
+        numbers=3,
     ),
+    asks=push_question,
 )
 
 _CYCLES, _CYCLES_MM, _POSTURES = 5, 100.0, 4
@@ -162,48 +138,43 @@ A_CYCLE = WorkshopPhase(
     question=say("phases.cycle-question"),
     hint=say("phases.cycle-hint"),
     explanation=say("phases.cycle-explanation"),
-    shown=(
-        After(
-            own_cells(6),
-            TriedWhere(
-                (
-                    Bound(
-                        lambda facts: facts.cycles,
-                        lambda found: say("phases.more-cycles", found=found, least=_CYCLES),
-                        least=_CYCLES,
-                    ),
-                    Bound(
-                        lambda facts: facts.postures,
-                        lambda found: say("phases.four-postures", found=found, least=_POSTURES),
-                        least=_POSTURES,
-                    ),
-                    IS_UPRIGHT,
-                    Bound(
-                        lambda facts: facts.forward_mm,
-                        lambda found: say("phases.farther", found_mm=found, least_mm=_CYCLES_MM),
-                        least=_CYCLES_MM,
-                    ),
-                    Bound(
-                        lambda facts: abs(facts.drift_deg_s),
-                        lambda found: say(
-                            "phases.turns", found_deg_s=found, most_deg_s=STRAIGHT_DEG_S
-                        ),
-                        most=STRAIGHT_DEG_S,
-                    ),
-                    Bound(
-                        lambda facts: facts.seam_deg,
-                        lambda found: say("phases.seam", jump_deg=found),
-                        most=0.0,
-                    ),
-                    NOT_STOPPED,
-                ),
-                say("phases.try"),
+    work=TrialWork(
+        (
+            Bound(
+                lambda facts: facts.cycles,
+                lambda found: say("phases.more-cycles", found=found, least=_CYCLES),
+                least=_CYCLES,
             ),
+            Bound(
+                lambda facts: facts.postures,
+                lambda found: say("phases.four-postures", found=found, least=_POSTURES),
+                least=_POSTURES,
+            ),
+            IS_UPRIGHT,
+            Bound(
+                lambda facts: facts.forward_mm,
+                lambda found: say("phases.farther", found_mm=found, least_mm=_CYCLES_MM),
+                least=_CYCLES_MM,
+            ),
+            Bound(
+                lambda facts: abs(facts.drift_deg_s),
+                lambda found: say("phases.turns", found_deg_s=found, most_deg_s=STRAIGHT_DEG_S),
+                most=STRAIGHT_DEG_S,
+            ),
+            Bound(
+                lambda facts: facts.seam_deg,
+                lambda found: say("phases.seam", jump_deg=found),
+                most=0.0,
+            ),
+            NOT_STOPPED,
         ),
+        numbers=6,
+        tools=True,
     ),
+    asks=seam_question,
 )
 
-_DIFFERENCES = 2
+_DIFFERENCES, _NUMBERS = 2, 3
 
 CONCEPT = WorkshopPhase(
     number=5,
@@ -213,20 +184,22 @@ CONCEPT = WorkshopPhase(
     question=say("phases.concept-question"),
     hint=say("phases.concept-hint"),
     explanation=say("phases.concept-explanation"),
-    shown=(
-        once(lambda one: isinstance(one, Named), say("phases.name-word")),
-        OneVersion(
-            All(
-                Different(
-                    differs_from_sample,
-                    _DIFFERENCES,
-                    lambda left: say("phases.more-different", left=left),
-                ),
-                TriedWhere((IS_UPRIGHT, NOT_STOPPED), say("phases.try")),
-            )
+    work=VersionWork(
+        All(
+            Different(
+                differs_from_sample,
+                _DIFFERENCES,
+                lambda left: say("phases.more-different", left=left),
+            ),
+            TriedWhere((IS_UPRIGHT, NOT_STOPPED), say("phases.try")),
         ),
-        once(lambda one: isinstance(one, Voted), say("phases.vote")),
+        numbers=_NUMBERS,
+        beside=(
+            once(lambda one: isinstance(one, Named), say("phases.name-word")),
+            once(lambda one: isinstance(one, Voted), say("phases.vote")),
+        ),
     ),
+    asks=differs_question,
 )
 
 _STAND, _FORWARD = say("phases.key-stand"), say("phases.key-forward")
@@ -241,38 +214,33 @@ CREATIVE = WorkshopPhase(
     question=say("phases.creative-question"),
     hint=say("phases.creative-hint"),
     explanation=say("phases.creative-explanation"),
-    shown=(
-        OneVersion(
-            All(
-                once(
-                    lambda one: (
-                        isinstance(one, CheckedGait) and not one.mistakes and one.keys >= _KEYS
-                    ),
-                    say("phases.check"),
-                ),
-                acts(
-                    within(lambda facts: facts.forward_mm, _STAND, -_STILL_MM, _STILL_MM),
-                    within(lambda facts: facts.left_mm, _STAND, -_STILL_MM, _STILL_MM),
-                    within(lambda facts: facts.drift_deg_s, _STAND, -1.0, 1.0),
-                    lacks=_STAND,
-                ),
-                acts(
-                    within(lambda facts: facts.speed_mm_s, _FORWARD, least=_WALKS_MM_S),
-                    within(
-                        lambda facts: facts.drift_deg_s, _FORWARD, -STRAIGHT_DEG_S, STRAIGHT_DEG_S
-                    ),
-                    lacks=_FORWARD,
-                ),
-                acts(
-                    within(lambda facts: facts.drift_deg_s, _RIGHT, most=-_TURNS_DEG_S),
-                    lacks=_RIGHT,
-                ),
-                acts(
-                    within(lambda facts: facts.drift_deg_s, _LEFT, least=_TURNS_DEG_S), lacks=_LEFT
-                ),
-            )
+    work=VersionWork(
+        All(
+            once(
+                lambda one: isinstance(one, CheckedGait) and not one.mistakes and one.keys >= _KEYS,
+                say("phases.check"),
+            ),
+            acts(
+                within(lambda facts: facts.forward_mm, _STAND, -_STILL_MM, _STILL_MM),
+                within(lambda facts: facts.left_mm, _STAND, -_STILL_MM, _STILL_MM),
+                within(lambda facts: facts.drift_deg_s, _STAND, -1.0, 1.0),
+                lacks=_STAND,
+            ),
+            acts(
+                within(lambda facts: facts.speed_mm_s, _FORWARD, least=_WALKS_MM_S),
+                within(lambda facts: facts.drift_deg_s, _FORWARD, -STRAIGHT_DEG_S, STRAIGHT_DEG_S),
+                lacks=_FORWARD,
+            ),
+            acts(
+                within(lambda facts: facts.drift_deg_s, _RIGHT, most=-TURNS_DEG_S),
+                lacks=_RIGHT,
+            ),
+            acts(within(lambda facts: facts.drift_deg_s, _LEFT, least=TURNS_DEG_S), lacks=_LEFT),
         ),
+        numbers=_NUMBERS,
     ),
+    asks=keys_question,
 )
 
-PHASES = (ONE_LEG, THREE_LEGS, HALF_CYCLE, A_CYCLE, CONCEPT, CREATIVE)
+PHASES = (LESSON, ONE_LEG, THREE_LEGS, HALF_CYCLE, A_CYCLE, CONCEPT, CREATIVE)
+"""All phases; each stands at the index that is its number."""

@@ -5,20 +5,12 @@ met once stays met. A test checks this for all phases.
 """
 
 import math
-from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from lacoc_client.workshop.phases.evidence import (
-    CheckedGait,
-    Coached,
-    Compared,
-    Edited,
-    Evidence,
-    Tried,
-)
+from lacoc_client.workshop.phases.evidence import Evidence, Tried
 from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_shared.words import Phrase
 
@@ -67,7 +59,7 @@ class Times:
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Count the evidence that passes the test."""
-        return _counted(sum(map(self.test, evidence)), self.times, self.lacks)
+        return counted(sum(map(self.test, evidence)), self.times, self.lacks)
 
 
 def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
@@ -91,7 +83,7 @@ class Different:
         for one in evidence:
             for group, thing in self.things(one):
                 groups[group].add(thing)
-        return _counted(max(map(len, groups.values()), default=0), self.count, self.lacks)
+        return counted(max(map(len, groups.values()), default=0), self.count, self.lacks)
 
 
 @dataclass(frozen=True)
@@ -109,7 +101,7 @@ class LastOf:
         """Find the `last` answers in a row of which the most are right; return their outcome."""
         answers = [right for one in evidence if (right := self.answer(one)) is not None]
         runs = (answers[start : start + self.last] for start in range(len(answers)))
-        return _counted(max(map(sum, runs), default=0), self.right, self.lacks)
+        return counted(max(map(sum, runs), default=0), self.right, self.lacks)
 
 
 @dataclass(frozen=True)
@@ -150,7 +142,7 @@ class TriedWhere:
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Return the outcome of the trial with the largest share; of equal ones, of the last."""
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
-        best = [_all([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
+        best = [every([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
         return max(best, key=_share, default=Outcome(0.0, (self.none,)))
 
 
@@ -166,53 +158,20 @@ class All:
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Look at each rule; the share is the mean of their shares."""
-        return _all([part.look(evidence) for part in self.parts])
-
-
-@dataclass(frozen=True)
-class After:
-    """A rule that a first rule must be met, and then a second one by later evidence alone."""
-
-    first: Predicate
-    then: Predicate
-
-    def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Find when the rule `first` was met, and look at the later evidence with `then`."""
-        start = self.first.look(evidence)
-        if not start.met:
-            return Outcome(start.share / 2, start.missing)
-        # A rule that is met stays met, so bisection finds when it was met first.
-        counts = range(len(evidence) + 1)
-        shown = bisect_left(counts, True, key=lambda count: self.first.look(evidence[:count]).met)
-        rest = self.then.look(evidence[shown:])
-        return MET if rest.met else Outcome(0.5 + rest.share / 2, rest.missing)
-
-
-@dataclass(frozen=True)
-class OneVersion:
-    """A rule that another rule must be met by evidence of a single version of the table."""
-
-    shown: Predicate
-
-    def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the version with the largest share; of equal ones, of the last."""
-        versions: dict[str, list[Evidence]] = {}
-        for one in evidence:
-            if isinstance(one, Edited | Tried | CheckedGait | Compared | Coached):
-                versions.setdefault(one.version, []).append(one)
-        found = [self.shown.look(seen) for seen in reversed(versions.values())]
-        return max(found, key=_share, default=self.shown.look(()))
+        return every([part.look(evidence) for part in self.parts])
 
 
 def _share(outcome: Outcome) -> float:
     return outcome.share
 
 
-def _counted(found: int, wanted: int, lacks: Lacks) -> Outcome:
+def counted(found: int, wanted: int, lacks: Lacks) -> Outcome:
+    """Return the outcome of a rule that asks for `wanted` things."""
     return MET if found >= wanted else Outcome(found / wanted, (lacks(wanted - found),))
 
 
-def _all(outcomes: Sequence[Outcome]) -> Outcome:
+def every(outcomes: Sequence[Outcome]) -> Outcome:
+    """Return the outcome of a rule that asks for all of several rules."""
     missing = tuple(dict.fromkeys(phrase for outcome in outcomes for phrase in outcome.missing))
     if not missing:
         return MET

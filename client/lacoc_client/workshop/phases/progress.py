@@ -1,15 +1,20 @@
-"""How far a student is in the six phases."""
+"""How far a student is in the phases."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from lacoc_client.workshop.phases.evidence import Coached, Evidence, Hand, JoinedClass, WentToPhase
+from lacoc_client.workshop.phases.evidence import (
+    Coached,
+    Evidence,
+    Hand,
+    TookStep,
+    WentToPhase,
+)
 from lacoc_client.workshop.phases.phases import PHASES
 from lacoc_client.workshop.phases.predicates import Outcome
-
-_UNCOUNTED = (JoinedClass, WentToPhase, Hand)
-"""Evidence that no task asks for: a page may send much of it, so it must cost little."""
+from lacoc_client.workshop.phases.proof.phase import WorkshopPhase
+from lacoc_client.workshop.phases.proof.questions import PhaseQuestion
 
 State = Literal["open", "met", "skipped"]
 """A phase is "skipped" if the student went on without doing its task. The student can come back at
@@ -18,18 +23,22 @@ any time, and the phase is "met" as soon as the evidence shows it."""
 
 @dataclass(frozen=True)
 class StudentProgress:
-    """How far a student is in the six phases."""
+    """How far a student is in the phases."""
 
     phase: int
-    """Number of the phase that the student is at, from 1."""
+    """Number of the phase that the student is at."""
     states: tuple[State, ...]
-    """State of each phase."""
+    """State of each phase, from phase 0."""
     outcomes: tuple[Outcome, ...]
     """For each phase, the share that is done and what is missing."""
+    questions: tuple[PhaseQuestion | None, ...]
+    """For each phase, the question that waits for an answer."""
     hand_up: bool
     """Whether the student asks for help now."""
     coached: bool
     """Whether the student has ever taken over changes of the coach."""
+    lesson_step: int
+    """The step of the lesson of one leg to which the student came last; 0: none yet."""
     seen: int
     """Number of pieces of evidence from which this was computed."""
 
@@ -45,26 +54,37 @@ def progress(
             not looked at again, because a task that was met stays met.
     """
     visited = [one.phase for one in evidence if isinstance(one, WentToPhase)]
-    visited = [number for number in visited if 1 <= number <= len(PHASES)]
+    visited = [number for number in visited if 0 <= number < len(PHASES)]
+    steps = [one.step for one in evidence if isinstance(one, TookStep)]
     hands = [one.up for one in evidence if isinstance(one, Hand)]
-    known = before.outcomes if before is not None else (None,) * len(PHASES)
     new = evidence[before.seen :] if before is not None else evidence
-    counts = any(not isinstance(one, _UNCOUNTED) for one in new)
-    outcomes = tuple(
-        old if old is not None and (old.met or not counts) else phase.look(evidence)
-        for phase, old in zip(PHASES, known, strict=True)
-    )
-    farthest = max(visited, default=1)
+    found = [
+        phase.look(evidence)
+        if before is None or _may_change(phase, before, new)
+        else (before.outcomes[phase.number], before.questions[phase.number])
+        for phase in PHASES
+    ]
+    outcomes = tuple(outcome for outcome, _ in found)
+    nearest, farthest = min(visited, default=1), max(visited, default=1)
     return StudentProgress(
         phase=visited[-1] if visited else 1,
         states=tuple(
-            _state(outcome, number < farthest) for number, outcome in enumerate(outcomes, start=1)
+            _state(outcome, min(1, nearest) <= number < farthest)
+            for number, outcome in enumerate(outcomes)
         ),
         outcomes=outcomes,
+        questions=tuple(question for _, question in found),
         hand_up=bool(hands) and hands[-1],
+        lesson_step=steps[-1] if steps else 0,
         coached=any(isinstance(one, Coached) for one in evidence),
         seen=len(evidence),
     )
+
+
+def _may_change(phase: WorkshopPhase, before: StudentProgress, new: Sequence[Evidence]) -> bool:
+    """Return whether new evidence may change a phase: a page may send much that does not."""
+    is_met = before.outcomes[phase.number].met  # then it stays met
+    return not is_met and phase.may_change(before.questions[phase.number], new)
 
 
 def _state(outcome: Outcome, is_behind: bool) -> State:

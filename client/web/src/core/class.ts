@@ -5,7 +5,11 @@ import type { Card, StudentRules } from "./wire";
 /** The reasons for help, the most urgent first. */
 const NEEDS: readonly Card["need"][] = ["hand", "stuck", "quiet", ""];
 
-export const PHASES = [1, 2, 3, 4, 5, 6] as const;
+/** The numbers of the phases; 0 is the lesson of one leg. */
+export const PHASES = [0, 1, 2, 3, 4, 5, 6] as const;
+
+/** How many steps the lesson has. */
+export const LESSON_STEPS = 8;
 
 /** What a coach may do, the least first. */
 export const COACHES = ["none", "matters", "cell", "three", "table"] as const;

@@ -550,6 +550,12 @@ export interface StudentRules {
   explain_first: boolean;
 }
 
+export interface AskedQuestion {
+  name: string;
+  ask: Phrase;
+  choices: Phrase[];
+}
+
 export interface PhaseState {
   number: number;
   state: "open" | "met" | "skipped";
@@ -560,6 +566,7 @@ export interface PhaseState {
   hint: Phrase;
   explanation: Phrase;
   missing: Phrase[];
+  asked: AskedQuestion | null;
 }
 
 export interface Phases {
@@ -567,6 +574,7 @@ export interface Phases {
   word: string;
   hand_up: boolean;
   trouble: Phrase | null;
+  lesson_step: number;
   phases: PhaseState[];
   rules: StudentRules;
 }
@@ -581,12 +589,24 @@ export interface Draft {
   robot_version: string | null;
 }
 
+export interface TookStep {
+  kind: "step";
+  step: number;
+  robot: string;
+  question: number;
+  of: number;
+  choice: number;
+  right: boolean;
+}
+
 export interface Card {
   name: string;
   online: boolean;
   seen_s: number;
   phase: number;
   states: ("open" | "met" | "skipped")[];
+  lesson_step: number;
+  in_lesson: boolean;
   share: number;
   missing: Phrase | null;
   tries: number;
@@ -643,6 +663,12 @@ export interface Judged {
 
 export interface EditReply {
   guess: Judged | null;
+}
+
+export interface AnswerReply {
+  right: boolean;
+  was: Phrase[];
+  because: Phrase;
 }
 
 export interface CheckReply {

@@ -260,6 +260,8 @@ export type Request =
 /** What a page of /design asks for. */
 type DesignRequest =
   | "hello"
+  | "answer"
+  | "step"
   | "read"
   | "sample"
   | "parse"

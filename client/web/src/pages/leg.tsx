@@ -6,6 +6,7 @@ import { flag } from "../core/address";
 import { SAMPLES } from "../core/leg/samples.gen";
 import { t } from "../i18n";
 import { Settings } from "../ui/settings";
+import { Attendance } from "./leg/attendance";
 import { Lesson } from "./leg/lesson";
 import { Ask } from "./leg/question";
 import { Sheet } from "./leg/sheet";
@@ -18,10 +19,14 @@ const hasSettings = signal(false);
 
 export default function LegPage() {
   const lesson = useMemo(() => new Lesson(), []);
+  const attendance = useMemo(() => new Attendance(lesson), [lesson]);
   const title = t("leg.title");
   useEffect(() => {
     document.title = `${title} – LACOC`;
   }, [title]);
+  useEffect(() => {
+    if (!isPrinted) void attendance.begin();
+  }, [attendance]);
   useEffect(() => {
     const follow = () => lesson.follow();
     addEventListener("hashchange", follow);
@@ -29,7 +34,7 @@ export default function LegPage() {
   }, [lesson]);
   return (
     <main class={isPrinted ? "leg printed" : "leg"}>
-      <Head lesson={lesson} />
+      <Head lesson={lesson} attendance={attendance} />
       {isPrinted ? (
         <Sheet robot={lesson.robot.value} hasAnswers={hasAnswers.value} />
       ) : (
@@ -46,7 +51,7 @@ export default function LegPage() {
   );
 }
 
-function Head({ lesson }: { lesson: Lesson }) {
+function Head({ lesson, attendance }: { lesson: Lesson; attendance: Attendance }) {
   return (
     <header class="bar">
       {!isPrinted && <h1>{t("leg.title")}</h1>}
@@ -80,7 +85,14 @@ function Head({ lesson }: { lesson: Lesson }) {
           </button>
         </>
       ) : (
-        <a href="leg?print">{t("leg.sheet")}</a>
+        <>
+          <a href="leg?print">{t("leg.sheet")}</a>
+          {attendance.keeps.value && (
+            <a class="button" href="design">
+              {t("leg.back")}
+            </a>
+          )}
+        </>
       )}
       <button
         class="button"
@@ -127,6 +139,11 @@ function Screen({ lesson }: { lesson: Lesson }) {
           >
             {t("leg.previous")}
           </button>
+          {isShown && questions.length > 0 && (
+            <button class="button" type="button" onClick={() => lesson.askAgain()}>
+              {t("leg.again")}
+            </button>
+          )}
           <button
             class={isShown ? "button strong" : "button"}
             type="button"

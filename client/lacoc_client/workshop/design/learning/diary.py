@@ -11,9 +11,10 @@ from lacoc_client.workshop.design.learning.draft import NAME, Draft, read_draft
 from lacoc_client.workshop.design.learning.keeper import Keeper
 from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.phases.class_file import Document
-from lacoc_client.workshop.phases.evidence import Evidence, Named, Voted
-from lacoc_client.workshop.phases.phases import PHASES
+from lacoc_client.workshop.phases.evidence import Evidence, Named, TookStep, Voted
+from lacoc_client.workshop.phases.phases import A_CYCLE, PHASES
 from lacoc_client.workshop.phases.progress import State, StudentProgress, progress
+from lacoc_client.workshop.phases.proof.questions import PhaseQuestion
 from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -21,11 +22,19 @@ from lacoc_shared.words import Phrase, say
 _T = TypeVar("_T")
 
 
+class AskedQuestion(msgspec.Struct, frozen=True, kw_only=True):
+    """A question as a page shows it."""
+
+    name: str
+    ask: Phrase
+    choices: tuple[Phrase, ...]
+
+
 class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
     """A phase as a page shows it."""
 
     number: int
-    """From 1 to 6."""
+    """From 0 to 6."""
     state: State
     share: float
     """Part of the task that is done, from 0 to 1."""
@@ -36,20 +45,25 @@ class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
     explanation: Phrase
     missing: tuple[Phrase, ...]
     """Sentences that say what is still missing, the most useful first."""
+    asked: AskedQuestion | None
+    """The question that waits for an answer; None: none does."""
 
 
 class Phases(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a student is in the six phases."""
+    """How far a student is in the phases."""
 
     phase: int
-    """Number of the phase that the student is at, from 1 to 6."""
+    """Number of the phase that the student is at, from 0 to 6."""
     word: str
     """The word that the student chose for how the robot should walk; "": none yet."""
     hand_up: bool
     """Whether the student asks for help now."""
     trouble: Phrase | None
     """Why progress is not kept, or that its file was damaged; None: all is well."""
+    lesson_step: int
+    """The step of the lesson of one leg to which the student came last; 0: none yet."""
     phases: tuple[PhaseState, ...]
+    """All phases; each stands at the index that is its number."""
     rules: StudentRules
 
 
@@ -163,6 +177,16 @@ class Diary:
         return self._progress
 
     @property
+    def lesson(self) -> tuple[TookStep, ...]:
+        """What the student did in the lesson of one leg, in order."""
+        return tuple(one for one in self._evidence if isinstance(one, TookStep))
+
+    @property
+    def has_earned_sample(self) -> bool:
+        """Whether the sample gait is the student's reward: phase 4 is done."""
+        return self.progress.outcomes[A_CYCLE.number].met
+
+    @property
     def word(self) -> str:
         """The word that the student chose for how the robot should walk; "": none yet."""
         words = (one.word for one in reversed(self._evidence) if isinstance(one, Named))
@@ -180,6 +204,7 @@ class Diary:
             word=self.word,
             hand_up=now.hand_up,
             trouble=self._keeper.trouble,
+            lesson_step=now.lesson_step,
             phases=tuple(
                 PhaseState(
                     number=phase.number,
@@ -191,11 +216,22 @@ class Diary:
                     hint=phase.hint,
                     explanation=phase.explanation,
                     missing=outcome.missing,
+                    asked=self._asked(phase.number),
                 )
                 for phase, state, outcome in zip(PHASES, now.states, now.outcomes, strict=True)
             ),
             rules=rules,
         )
+
+    def question(self, phase: int) -> PhaseQuestion | None:
+        """Return the question of a phase that waits for an answer; None: none does."""
+        return self.progress.questions[phase]
+
+    def _asked(self, phase: int) -> AskedQuestion | None:
+        found = self.question(phase)
+        if found is None:
+            return None
+        return AskedQuestion(name=found.name, ask=found.ask, choices=found.choices)
 
     async def _opened(self) -> ClassStore | None:
         """Open the file and read this student's evidence and draft; None if it can't be opened."""

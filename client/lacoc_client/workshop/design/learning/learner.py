@@ -1,4 +1,4 @@
-"""Turns what one page does into evidence for the six phases."""
+"""Turns what one page does into evidence for the phases."""
 
 import asyncio
 import hashlib
@@ -10,9 +10,11 @@ from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import sent_gait
 from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.learning.student import Student
+from lacoc_client.workshop.design.learning.tried_rows import numbers, row_names
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import (
     SAMPLE,
+    Answered,
     CheckedGait,
     Coached,
     Compared,
@@ -20,6 +22,7 @@ from lacoc_client.workshop.phases.evidence import (
     Evidence,
     Guessed,
     Rows,
+    TookStep,
     Tried,
     edited,
 )
@@ -37,6 +40,7 @@ from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.studio import TrialReply
+from lacoc_shared.words import Phrase, say
 
 
 class Judged(msgspec.Struct, frozen=True, kw_only=True):
@@ -53,6 +57,16 @@ class EditReply(msgspec.Struct, frozen=True, kw_only=True):
 
     guess: Judged | None = None
     """None: the student guessed nothing, or the guess can't be judged."""
+
+
+class AnswerReply(msgspec.Struct, frozen=True, kw_only=True):
+    """The answer to an answer."""
+
+    right: bool
+    was: tuple[Phrase, ...]
+    """All right choices."""
+    because: Phrase
+    """Why they are right."""
 
 
 class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
@@ -109,12 +123,11 @@ class Learner:
             return EditReply()
         evidence: list[Evidence] = [edit]
         judged = None
-        if asked.guess is not None:
+        if asked.guess is not None and asked.by == "hand":
             spec = await asyncio.to_thread(_robot, asked.robot)
-            if was := _foot_ways(edit, _rows(before), spec):
-                guess = Guessed(about="foot", said=asked.guess, was=was)
+            if (guess := _guessed(edit, asked.guess, spec)) is not None:
                 evidence.append(guess)
-                judged = Judged(said=guess.said, was=was, right=guess.right)
+                judged = Judged(said=guess.said, was=guess.was, right=guess.right)
         if asked.by == "coach" and asked.size is not None:
             evidence.append(Coached(version=version, size=asked.size))
         await self._diary.add(*evidence)
@@ -131,8 +144,14 @@ class Learner:
             return None
         before = self._last.get(asked.keys)
         self._last[asked.keys] = facts
+        spec = await asyncio.to_thread(_robot, asked.robot)
         evidence: list[Evidence] = [
-            Tried(version=_version(asked.table, asked.sequences), facts=facts)
+            Tried(
+                version=_version(asked.table, asked.sequences),
+                facts=facts,
+                rows=row_names(asked, facts.keys[-1]),
+                numbers=numbers(asked, facts.keys, spec),
+            )
         ]
         for guess in asked.guesses:
             if guess.about == "way":
@@ -167,6 +186,43 @@ class Learner:
             version = _version(asked.table, asked.sequences)
             await self._diary.add(Compared(version=version, against=SAMPLE, differs=differs))
         return bool(differs)
+
+    async def answered(self, asked: requests.AnswerAsk) -> AnswerReply:
+        """Take in the answer to the question of a phase.
+
+        Raises:
+            UserError: if the phase does not ask this question now.
+        """
+        question = self._diary.question(asked.phase)
+        if (
+            question is None
+            or question.name != asked.question
+            or asked.choice >= len(question.choices)
+        ):
+            raise UserError(say("class.not-asked"))
+        is_right = asked.choice in question.right
+        await self._diary.add(
+            Answered(phase=asked.phase, question=question.name, said=asked.choice, right=is_right)
+        )
+        was = tuple(question.choices[place] for place in sorted(question.right))
+        return AnswerReply(right=is_right, was=was, because=question.because)
+
+    async def stepped(self, asked: requests.LessonAsk) -> None:
+        """Take in what the student does in the lesson of one leg; what is known is not kept twice.
+
+        The first answer to a question counts for the question's step, a later one as new work.
+        """
+        is_answer = asked.question is not None
+        one = TookStep(
+            step=asked.step,
+            robot=asked.robot,
+            question=asked.question if asked.question is not None else -1,
+            of=asked.of if is_answer else 0,
+            choice=asked.choice if is_answer else -1,
+            right=asked.right and is_answer,
+        )
+        if self._diary.lesson[-1:] != (one,):
+            await self._diary.add(one)
 
     async def checked(self, asked: requests.CheckAsk) -> CheckReply:
         """Check a table against its robot's joints, as `lacoc gait check` does.
@@ -214,16 +270,25 @@ def _robot(robot: SentFile | None) -> RobotSpec:
     return read_robot(robot.data, robot.name)
 
 
-def _foot_ways(edit: Edited, before: Rows, spec: RobotSpec) -> tuple[str, ...]:
-    """Return the directions in which an edit moved a foot, as `foot_ways` does; () if unknown.
-
-    It is the foot of the first leg that the edit changed.
-    """
+def _guessed(edit: Edited, said: str, spec: RobotSpec) -> Guessed | None:
+    """Judge the guess of where the foot of the first changed leg goes; None: it can't be judged."""
     leg = edit.legs[0]
-    old = before.get((leg.key, leg.posture))
-    if old is None or len(old) != 3 * len(spec.legs):
-        return ()
-    return foot_ways(spec.legs[leg.leg], old[leg.leg :: len(spec.legs)], leg.angles_deg)
+    if not leg.before_deg or leg.leg >= len(spec.legs):
+        return None
+    was = foot_ways(spec.legs[leg.leg], leg.before_deg, leg.angles_deg)
+    if len(edit.legs) > 1 or len(leg.changed) > 1:
+        return Guessed(about="foot", said=said, was=was)
+    level = leg.changed[0]
+    return Guessed(
+        about="foot",
+        said=said,
+        was=was,
+        leg=leg.leg,
+        level=level,
+        before_deg=leg.before_deg[level],
+        after_deg=leg.angles_deg[level],
+        of_legs=len(spec.legs),
+    )
 
 
 def _facts(reply: TrialReply, keys: str) -> TrialFacts | None:

@@ -12,7 +12,7 @@ _HELPS: tuple[Help, ...] = ("none", "matters", "cell", "three", "table")
 class StudentRules(msgspec.Struct, frozen=True, kw_only=True):
     """Rules for students. Whoever designs alone may do everything (`FREE`)."""
 
-    closed: tuple[Annotated[int, msgspec.Meta(ge=1, le=6)], ...] = ()
+    closed: tuple[Annotated[int, msgspec.Meta(ge=0, le=6)], ...] = ()
     """Numbers of the phases to which nobody can go."""
     coach: Help = "table"
     explain_first: bool = False

@@ -25,7 +25,9 @@ class Student:
         self.diary = diary
         self._rules = rules
         self.viewers: dict[Viewer, None] = {}
-        """The student's pages."""
+        """The student's pages of /design."""
+        self.lessons: dict[Viewer, None] = {}
+        """The student's pages of the lesson of one leg, which change no table."""
 
     @property
     def rules(self) -> StudentRules:
@@ -38,21 +40,42 @@ class Student:
 
     def send(self, message: bytes) -> None:
         """Send a message to all pages."""
-        for viewer in self.viewers:
+        for viewer in (*self.viewers, *self.lessons):
             viewer.send(message)
 
+    def greet(self, viewer: Viewer, lesson: bool) -> None:
+        """Take in a page that was let in; a page of /design stops the others.
+
+        Args:
+            viewer: the page.
+            lesson: whether it is a page of the lesson of one leg.
+        """
+        if lesson:
+            self.lessons[viewer] = None
+            return
+        self.send_away()
+        self.viewers[viewer] = None
+
+    def leave(self, viewer: Viewer) -> None:
+        """Remove a page that has gone."""
+        self.viewers.pop(viewer, None)
+        self.lessons.pop(viewer, None)
+
     def send_away(self, forgotten: bool = False) -> None:
-        """Refuse further requests from all pages, and tell the pages why.
+        """Refuse further requests from all pages of /design, and tell the pages why.
 
         Two pages at work would lose each other's changes: only the newest one works.
 
         Args:
-            forgotten: whether the student was deleted; else another page was opened.
+            forgotten: whether the student was deleted, so that pages of the lesson end too; else
+                another page was opened.
         """
-        self.send(wire.map_message(MessageKind.ELSEWHERE, {"forgotten": forgotten}))
-        for viewer in self.viewers:
-            viewer.can_act = False
-        self.viewers.clear()
+        message = wire.map_message(MessageKind.ELSEWHERE, {"forgotten": forgotten})
+        for pages in (self.viewers, self.lessons) if forgotten else (self.viewers,):
+            for viewer in pages:
+                viewer.send(message)
+                viewer.can_act = False
+            pages.clear()
 
     def phases_message(self) -> bytes:
         """Return the message that says how far the student is."""

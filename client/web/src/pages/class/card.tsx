@@ -1,6 +1,6 @@
 /** A student at a glance: one small card. */
 
-import { barsPath, elapsed, PHASES } from "../../core/class";
+import { barsPath, elapsed, LESSON_STEPS, PHASES } from "../../core/class";
 import type { Card } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Icon } from "../../ui/icons";
@@ -53,12 +53,12 @@ export function StudentCard({ teacher, card, isStop }: Props) {
   );
 }
 
-/** The six phases as dots: how far, what was left out, and where the student is. */
+/** The phases as dots: how far, what was left out, and where the student is. */
 export function Dots({ card }: { card: Card }) {
   return (
     <span class="dots">
       {PHASES.map((phase) => {
-        const state = card.states[phase - 1] ?? "open";
+        const state = card.states[phase] ?? "open";
         return (
           <i key={phase} data-state={state} data-now={phase === card.phase}>
             {phase === card.phase && state !== "met" ? phase : MARKS[state]}
@@ -108,8 +108,14 @@ export function news(teacher: Teacher, card: Card): string {
     return t("class.hand", { since: since(teacher, card.hand_up_s) });
   }
   if (card.stuck) return said(card.stuck);
+  if (card.in_lesson) return lessonStep(card);
   if (card.need === "quiet") return t("class.quiet", { since: since(teacher, card.seen_s) });
   return "";
+}
+
+/** Where in the lesson of one leg the student is. */
+export function lessonStep({ lesson_step: step }: Card): string {
+  return t("class.lesson", { step: Math.max(1, step), of: LESSON_STEPS });
 }
 
 /** A card in words. */
@@ -117,9 +123,10 @@ function summary(teacher: Teacher, card: Card): string {
   const parts = [
     news(teacher, card),
     card.hand_up_s !== null && card.stuck && said(card.stuck),
+    card.lesson_step > 0 && !card.in_lesson && lessonStep(card),
     t("class.atPhase", { number: card.phase, percent: Math.round(100 * card.share) }),
-    ...PHASES.filter((phase) => card.states[phase - 1] !== "open").map((number) =>
-      t("class.state", { number, state: t(`class.legend.${card.states[number - 1]!}`) }),
+    ...PHASES.filter((phase) => card.states[phase] !== "open").map((number) =>
+      t("class.state", { number, state: t(`class.legend.${card.states[number]!}`) }),
     ),
     card.best_mm_s === null
       ? t("class.noTrial")

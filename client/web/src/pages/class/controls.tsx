@@ -9,12 +9,12 @@ import { Dialog } from "../../ui/dialog";
 import { Mistakes } from "../../ui/mistakes";
 import type { Handout, Teacher } from "./teacher";
 
-/** Codes of the phases' titles. */
-const TITLES = ["one-leg", "three-legs", "half-cycle", "cycle", "concept", "creative"];
+/** Codes of the phases' titles, by number. */
+const TITLES = ["lesson", "one-leg", "three-legs", "half-cycle", "cycle", "concept", "creative"];
 
 /** The title of a phase. */
 export function phaseTitle(phase: number): string {
-  return said({ code: `phases.${TITLES[phase - 1]}` });
+  return said({ code: `phases.${TITLES[phase]}` });
 }
 
 export function Controls({ teacher }: { teacher: Teacher }) {

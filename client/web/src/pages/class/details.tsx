@@ -6,7 +6,7 @@ import { type MessageName, said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Icon } from "../../ui/icons";
 import { toast } from "../../ui/toasts";
-import { Dots, Feet, since, speed } from "./card";
+import { Dots, Feet, lessonStep, since, speed } from "./card";
 import { phaseTitle } from "./controls";
 import type { Teacher } from "./teacher";
 
@@ -57,6 +57,7 @@ function State({ teacher, card }: { teacher: Teacher; card: Card }) {
         </li>
       )}
       {card.stuck && <li data-need="stuck">{said(card.stuck)}</li>}
+      {card.lesson_step > 0 && <li>{lessonStep(card)}</li>}
       {card.coached && <li>{t("class.coached")}</li>}
       <li>
         {!card.online
@@ -96,7 +97,7 @@ function Fact({ title, value }: { title: string; value: string }) {
 function Progress({ card }: { card: Card }) {
   const percent = Math.round(100 * card.share);
   const title = t("class.progress", { number: card.phase, title: phaseTitle(card.phase) });
-  const state = card.states[card.phase - 1] ?? "open";
+  const state = card.states[card.phase] ?? "open";
   return (
     <section aria-label={title}>
       <h3>

@@ -6,6 +6,8 @@ import type { StudentRules } from "../../core/wire";
 export interface Can {
   /** Open and save the files of a folder; else they are only dropped and downloaded. */
   save: boolean;
+  /** Open the sample gait. */
+  sample: boolean;
   /** Ask the coach. */
   coach: boolean;
   /** Work on the six phases. */
@@ -17,6 +19,7 @@ export interface Can {
 /** On one's own machine. */
 export const ALL: Can = {
   save: true,
+  sample: true,
   coach: true,
   learn: true,
   rules: OPEN_RULES,

@@ -71,6 +71,7 @@ export function Side({ studio, tab }: Props) {
             can={can}
             canTry={studio.present.value === true}
             court={studio.court}
+            files={studio.files}
             onVariants={() => {
               tab.value = "coach";
               void studio.coach.others.askVariants();

@@ -16,7 +16,7 @@ import { Files } from "./files/files";
 import { sentGait } from "./files/gait";
 import { Opening } from "./files/opening";
 import { Gateway } from "./gateway";
-import { Learning } from "./learning/learning";
+import { hasEarned, Learning } from "./learning/learning";
 import { Numbers } from "./robot/numbers";
 import { RobotInUse } from "./robot/robot";
 import { takeGivenLeg } from "./table/given_leg";
@@ -122,10 +122,11 @@ export class Studio {
     this.membership.entered(greeting);
     // What is on the page is somebody else's.
     if (before !== undefined && before !== greeting.student) location.reload();
-    const { student, draft } = greeting;
+    const { student, draft, earned } = greeting;
     this.court.leads.value = greeting.court;
     this.greeting = greeting;
-    this.can.value = { ...this.can.peek(), save: student === null };
+    const isAlone = student === null;
+    this.can.value = { ...this.can.peek(), save: isAlone, sample: isAlone || earned };
     if (this.opening.isOpen) {
       if (student !== null && draft) this.opening.again(draft);
       this.learning.greet();
@@ -140,7 +141,9 @@ export class Studio {
       void this.openFirst();
     } else if (kind === "phases") {
       this.learning.phases.value = body;
-      this.can.value = { ...this.can.peek(), rules: body.rules };
+      const can = this.can.peek();
+      const sample = can.save || hasEarned(body);
+      this.can.value = { ...can, rules: body.rules, sample };
     } else if (kind === "progress") {
       this.search.progress.value = body;
     } else if (kind === "handed") {

@@ -7,6 +7,19 @@ import { SAMPLES } from "../../core/leg/samples.gen";
 
 const WORKSHOPS_ROBOT = "hexapod";
 
+/** What is done in the lesson: somebody came to a step, or answered a question of it. */
+export interface Done {
+  /** From 1. */
+  step: number;
+  robot: string;
+  /** null: came to the step. */
+  question: number | null;
+  /** How many questions the step has. */
+  of: number;
+  choice: number;
+  right: boolean;
+}
+
 export class Lesson {
   readonly robotName = signal(WORKSHOPS_ROBOT);
   readonly robot = computed(() => SAMPLES[this.robotName.value]!);
@@ -33,8 +46,47 @@ export class Lesson {
     return spots(this.leg.value, first, second)[2];
   });
 
+  /** Hears of all that is done. */
+  follower: ((done: Done) => void) | null = null;
+
   constructor() {
     this.goTo(this.named());
+  }
+
+  /** Where the lesson is now. */
+  here(): Done {
+    const [step, robot] = [this.at.peek() + 1, this.robotName.peek()];
+    return { step, robot, question: null, of: 0, choice: 0, right: false };
+  }
+
+  /**
+   * Take up the lesson where it was left: all answers, and, unless the address names a step or
+   * something was answered here, the last step.
+   */
+  takeUp(steps: readonly Done[]): void {
+    const last = steps.at(-1);
+    if (!last) return;
+    batch(() => {
+      const isFresh = !location.hash && !Object.keys(this.answers.peek()).length;
+      const answers: Record<string, number> = {};
+      for (const { step, robot, question, choice } of steps) {
+        if (question !== null) answers[`${robot}/${step - 1}/${question}`] = choice;
+      }
+      this.answers.value = { ...answers, ...this.answers.peek() };
+      if (isFresh && SAMPLES[last.robot]) this.robotName.value = last.robot;
+      const step = isFresh ? last.step - 1 : this.at.peek();
+      this.show(this.steps.peek()[step] ? step : 0);
+    });
+  }
+
+  /** Ask the questions of this step again. */
+  askAgain(): void {
+    batch(() => {
+      const own = this.name(0, this.at.peek()).replace(/0$/, "");
+      const others = Object.entries(this.answers.peek()).filter(([name]) => !name.startsWith(own));
+      this.answers.value = Object.fromEntries(others);
+      this.begin();
+    });
   }
 
   /** Go to the step that the address names, if it is another one. */
@@ -56,11 +108,8 @@ export class Lesson {
   }
 
   goTo(step: number): void {
-    batch(() => {
-      this.at.value = step;
-      this.begin();
-      if (step > 0 || location.hash) history.replaceState(null, "", `#${step + 1}`);
-    });
+    this.show(step);
+    this.follower?.(this.here());
   }
 
   /** The chosen answer; null: none yet. */
@@ -74,6 +123,9 @@ export class Lesson {
       this.answers.value = { ...this.answers.peek(), [name]: choice };
       this.begin();
     });
+    const { questions } = this.step.peek();
+    const right = questions[question]?.choices[choice]?.right ?? false;
+    this.follower?.({ ...this.here(), question, of: questions.length, choice, right });
   }
 
   /** Whether all questions of a step are answered, so that it may show everything. */
@@ -101,6 +153,14 @@ export class Lesson {
       const { postures } = this.found.peek();
       const pair = postures[bend] ?? postures[0];
       if (pair) this.angles.value = [this.angles.peek()[0], ...pair];
+    });
+  }
+
+  private show(step: number): void {
+    batch(() => {
+      this.at.value = step;
+      this.begin();
+      if (step > 0 || location.hash) history.replaceState(null, "", `#${step + 1}`);
     });
   }
 

@@ -5,6 +5,7 @@ import { useEffect } from "preact/hooks";
 import { joint, LEVELS } from "../../core/design/table";
 import { GIVEN_LEG, written } from "../../core/leg/given";
 import { spots, type Three } from "../../core/leg/leg";
+import { hasPage } from "../../core/served";
 import { t } from "../../i18n";
 import { Joints } from "./controls";
 import type { Lesson } from "./lesson";
@@ -57,14 +58,4 @@ export function Table({ lesson }: { lesson: Lesson }) {
       <p>{t("leg.table.then")}</p>
     </>
   );
-}
-
-/** Whether the gateway of this page has another page too. */
-async function hasPage(path: string): Promise<boolean> {
-  try {
-    const health: { pages?: string[] } = await (await fetch("healthz")).json();
-    return health.pages?.includes(path) ?? false;
-  } catch {
-    return false; // no gateway, or none that answers
-  }
 }

@@ -5,7 +5,7 @@ import { runKey } from "../../../core/address";
 import { type Refused, Unanswered } from "../../../core/connection";
 import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
 import type { Phrase } from "../../../core/phrase";
-import { remembered } from "../../../core/settings";
+import { place as kept } from "../../../core/place";
 import type { Draft, SentFile } from "../../../core/wire";
 
 /** What the gateway says to a page that it has let in. */
@@ -17,6 +17,8 @@ export interface Greeting {
   token: string | null;
   /** The newest table that the gateway got; null: none. */
   draft: Draft | null;
+  /** Whether phase 4 is done, so that a page without a table begins with the sample. */
+  earned: boolean;
   /** Where a table can be taken; null: nowhere. */
   court: "practice" | null;
 }
@@ -28,15 +30,6 @@ export interface Door {
   /** The nickname of before. */
   name: string;
 }
-
-interface Kept {
-  name: string;
-  token: string;
-  /** Number of the last handed-out table that was taken or put off. */
-  answered: number;
-}
-
-const kept = remembered<Kept | null>("class", null);
 
 /** Answers that ask for the class code and a nickname. */
 const AT_DOOR = ["class.enter", "class.unknown-token"];

@@ -78,11 +78,13 @@ export function FilesDialog(props: Props) {
                 onOpen={open(() => handed.take(newest))}
               />
             )}
-            <Choice
-              label={t("design.sample")}
-              hint={t("design.sampleHint")}
-              onOpen={open(() => files.openSample())}
-            />
+            {can.sample && (
+              <Choice
+                label={t("design.sample")}
+                hint={t("design.sampleHint")}
+                onOpen={open(() => files.openSample())}
+              />
+            )}
             <Choice
               label={t("design.new")}
               hint={t("design.newHint")}

@@ -113,6 +113,25 @@ export class Files {
     if (robot) this.begin(standing(robot));
   }
 
+  /** Put a new table in place of this one: one step, so that undo brings this one back. */
+  takeNew(): void {
+    const robot = this.robot.robot.peek();
+    if (robot) this.replace(t("design.new"), standing(robot));
+  }
+
+  /** Put the sample gait in place of this table, as `takeNew` does. */
+  async takeSample(): Promise<void> {
+    try {
+      const { table } = await this.gateway.ask<Parsed>("sample");
+      const robot = this.robot.robot.peek();
+      if (table && robot && table.legs === robot.legs.length) {
+        this.replace(t("design.sample"), fromWire(table, columnsOf(robot)));
+      }
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
   /** Take a dropped file, or the text of a pasted sheet. */
   async parse(name: string, data: Uint8Array): Promise<void> {
     try {
@@ -214,6 +233,15 @@ export class Files {
         this.sheet.refit(step, read, gesture);
         if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.version.peek() };
       }
+    });
+  }
+
+  /** Put a table that is in no file in place of this one: one step. */
+  private replace(step: string, table: Table): void {
+    this.isAskedFor = true;
+    batch(() => {
+      this.sheet.put(step, table, null);
+      this.file.value = { ...NO_FILE, saved: 0 };
     });
   }
 

@@ -35,9 +35,9 @@ export class Opening {
 
   /**
    * Open the first things to see, once: the robot and the table that somebody was working on, or
-   * the folder's first gait, else the sample.
+   * the folder's first gait, else a new table, or the sample if somebody has earned it.
    */
-  async first({ robot: given, student, draft }: Greeting): Promise<void> {
+  async first({ robot: given, student, draft, earned }: Greeting): Promise<void> {
     if (this.is !== "closed") return;
     this.is = "opening";
     try {
@@ -50,7 +50,8 @@ export class Opening {
       } else {
         if (student !== null) sequences.value = SAMPLE_SEQUENCES; // not those of another student
         const name = own ? own.file : this.firstGait();
-        const read = await this.firstTable(this.find((file) => file.name === name)?.name ?? "");
+        const there = this.find((file) => file.name === name)?.name ?? "";
+        const read = there || earned ? await this.firstTable(there) : null;
         const file = read?.version ? { name, version: read.version } : undefined;
         this.files.beginWith(robot, read?.table ?? null, file);
         this.gateway.tell(read?.notes);

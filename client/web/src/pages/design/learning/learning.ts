@@ -1,13 +1,26 @@
-/** The six phases: how far the student is, and what is sent as evidence (workshop 4-2). */
+/** The phases: how far the student is, and what is sent as evidence (workshop 3-1, 4-2). */
 
 import { signal } from "@preact/signals";
-import type { Judged, Phases } from "../../../core/wire";
+import type { AnswerReply, Judged, Phases } from "../../../core/wire";
 import type { Base, SentGait } from "../files/gait";
 import type { Gateway } from "../gateway";
 import type { By } from "../table/sheet";
 
 /** Edits of the same kind within this time are told as one. */
 const TELL_MS = 250;
+
+/** The phase after which the sample gait is the reward. */
+const REWARDED = 4;
+
+/** Whether a student has earned the sample gait. */
+export function hasEarned({ phases }: Phases): boolean {
+  return phases[REWARDED]?.state === "met";
+}
+
+/** An answer to the question of a phase, and what came of it. */
+export interface PhaseAnswer extends AnswerReply {
+  phase: number;
+}
 
 /** The edits that the gateway does not know yet. */
 interface Untold {
@@ -23,6 +36,8 @@ export class Learning {
   readonly footGuess = signal<string | null>(null);
   /** What came of the last such guess. */
   readonly judged = signal<Judged | null>(null);
+  /** What came of the last answer to a phase's question; null: none was given here. */
+  readonly answer = signal<PhaseAnswer | null>(null);
   /** Whether the gateway has the table as it is now. */
   readonly isTold = signal(true);
   private untold: Untold | null = null;
@@ -58,9 +73,15 @@ export class Learning {
     await this.send("phase", { number });
   }
 
+  /** Answer the question of a phase. */
+  async say(phase: number, question: string, choice: number): Promise<void> {
+    const reply = await this.send<AnswerReply>("answer", { phase, question, choice });
+    if (reply) this.answer.value = { ...reply, phase };
+  }
+
   /** Send something that counts as evidence; null: it was refused. */
   async send<T>(
-    what: "phase" | "name" | "vote" | "check" | "hand",
+    what: "phase" | "answer" | "name" | "vote" | "check" | "hand",
     fields: object,
   ): Promise<T | null> {
     this.tell();

@@ -1,20 +1,27 @@
-/** The task of the phase that the student is at (workshop 4-2). */
+/** The task of the phase that the student is at (workshop 3-1, 4-2). */
 
 import { said, t } from "../../../i18n";
 import { allows, type Can, isClosed } from "../can";
 import type { Court } from "../files/court";
 import { CourtButton } from "../files/court_button";
+import type { Files } from "../files/files";
 import { classes } from "../names";
 import type { Sheet } from "../table/sheet";
 import type { Pose, Trials } from "../trials/trials";
 import { closedText, stateName } from "./dots";
 import type { Learning } from "./learning";
+import { Question } from "./question";
 import { Check, Concept, FootGuess } from "./tasks";
 import "./learning.css";
 
 /** What is to be tried in a phase. */
 const POSE_OF: Readonly<Record<number, Pose>> = { 2: "A1", 3: "A1, A2" };
+const LESSON = 0;
 const ONE_LEG = 1;
+const CYCLE = 4;
+const LAST = 6;
+/** Said where numbers of a trial are not the student's own. */
+const FOREIGN = "phases.foreign";
 const CONCEPT = 5;
 const CREATIVE = 6;
 
@@ -25,13 +32,15 @@ interface Props {
   can: Can;
   canTry: boolean;
   court: Court;
+  files: Files;
   /** Shows six variants of the gait. */
   onVariants: () => void;
 }
 
-export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVariants }: Props) {
+export function PhasePanel(props: Props) {
+  const { learning, sheet, trials, can, canTry, court, files, onVariants } = props;
   const now = learning.phases.value;
-  const phase = now?.phases[now.phase - 1];
+  const phase = now?.phases[now.phase];
   if (!now || !phase) return <p class="muted">{t("design.loading")}</p>;
   const { number, state } = phase;
   const percent = Math.round(100 * phase.share);
@@ -55,9 +64,17 @@ export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVari
       <h3>
         {number}. {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
       </h3>
+      <Question learning={learning} phase={phase} />
       {isFirst && explanation}
       <p class="learn-task">{said(phase.task)}</p>
       <p>{said(phase.question)}</p>
+      {number === LESSON && (
+        <a class={classes("button", !phase.asked && "strong")} href="leg">
+          {now.lesson_step
+            ? t("design.lesson.goOn", { step: now.lesson_step })
+            : t("design.lesson.begin")}
+        </a>
+      )}
       {number === ONE_LEG && (
         <>
           <a href="leg">{t("design.lesson")}</a>
@@ -89,6 +106,19 @@ export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVari
           <CourtButton court={court} />
         </>
       )}
+      {phase.missing.some(({ code }) => code === FOREIGN) && (
+        <button class="button" type="button" onClick={() => files.takeNew()}>
+          {t("design.phase.newTable")}
+        </button>
+      )}
+      {number === CYCLE && state === "met" && (
+        <section class="reward">
+          <p>{t("design.phase.reward")}</p>
+          <button class="button" type="button" onClick={() => void files.takeSample()}>
+            {t("design.phase.openSample")}
+          </button>
+        </section>
+      )}
       <progress max={100} value={percent} aria-label={t("design.phase.share")}>
         {percent} %
       </progress>
@@ -115,7 +145,7 @@ export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVari
         <button
           class="button"
           type="button"
-          disabled={number === 1 || !isOpen(number - 1)}
+          disabled={number === LESSON || !isOpen(number - 1)}
           onClick={() => void learning.goTo(number - 1)}
         >
           {t("design.phase.back")}
@@ -123,7 +153,7 @@ export function PhasePanel({ learning, sheet, trials, can, canTry, court, onVari
         <button
           class={classes("button", state === "met" && "strong")}
           type="button"
-          disabled={number === now.phases.length || !isOpen(number + 1)}
+          disabled={number === LAST || !isOpen(number + 1)}
           onClick={() => void learning.goTo(number + 1)}
         >
           {t("design.phase.next")}

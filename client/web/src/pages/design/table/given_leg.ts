@@ -31,7 +31,7 @@ export function takeGivenLeg(sheet: Sheet): void {
     );
   sheet.select({ row, col: col(0) });
   // The lesson's numbers are no work at the table: phase 1 is still to be done.
-  sheet.edit(t("design.given.step"), change, null, "paste");
+  sheet.edit(t("design.given.step"), change, null, "lesson");
   const values = { leg: given.label, row: rowName(table.rows[row]!, table.kind === "locomotion") };
   toast(t("design.given", values));
 }

@@ -22,7 +22,7 @@ export interface Place {
 }
 
 /** How an edit was made; null: none that counts as one's own work. */
-export type By = "hand" | "tool" | "paste" | "coach" | null;
+export type By = "hand" | "tool" | "paste" | "coach" | "lesson" | null;
 
 /** Who is told what happens to the table. */
 export interface Followers {

@@ -54,14 +54,14 @@ export function Tools({ sheet }: { sheet: Sheet }) {
           ),
       )}
       {tool(t("design.tool.addRow"), canAdd(table, row), () =>
-        sheet.edit(t("design.tool.addRow"), (now) => addRow(now, row)),
+        sheet.edit(t("design.tool.addRow"), (now) => addRow(now, row), null, "tool"),
       )}
       {table.kind === "locomotion" &&
         tool(t("design.tool.addKey"), true, () =>
-          sheet.edit(t("design.tool.addKey"), (now) => addKey(now, row)),
+          sheet.edit(t("design.tool.addKey"), (now) => addKey(now, row), null, "tool"),
         )}
       {tool(t("design.tool.removeRow"), canRemove(table, row), () =>
-        sheet.edit(t("design.tool.removeRow"), (now) => removeRow(now, row)),
+        sheet.edit(t("design.tool.removeRow"), (now) => removeRow(now, row), null, "tool"),
       )}
     </div>
   );

@@ -27,7 +27,7 @@ export function Result({ sheet, trials, showing }: ResultProps) {
   const { figures, notes = [], fault } = tried.trial.reply;
   const isOld = !tried.name && tried.version !== sheet.version.value;
   return (
-    <section class="result" aria-label={t("design.result")}>
+    <section class="trial-result" aria-label={t("design.result")}>
       <header>
         <h2>{tried.name || t("design.trialOf", { number: tried.number, key: tried.key })}</h2>
         {isOld && <span class="badge old">{t("design.oldTable")}</span>}
@@ -69,7 +69,7 @@ export function Result({ sheet, trials, showing }: ResultProps) {
 /** How it is done, until something was tried. */
 function First({ onTry }: { onTry: () => void }) {
   return (
-    <section class="result first" aria-label={t("design.result")}>
+    <section class="trial-result first" aria-label={t("design.result")}>
       <h2>{t("design.first")}</h2>
       <ol>
         <li>{t("design.first.1")}</li>

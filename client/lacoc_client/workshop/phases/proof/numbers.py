@@ -1,0 +1,182 @@
+"""Which numbers of a table are a student's own, and have changed since a phase began.
+
+A number is *typed* if the student typed it by hand into its cell, before the same number came
+there in another way. It is *made* if it came from the lesson of one leg, or if a tool or a paste
+brought it and the student had typed it for such a joint before. Any other number is *foreign*: it
+was pasted, or it came with a file, from the coach, or from the teacher. Numbers of the robot's
+start posture are none of these.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from lacoc_client.workshop.phases.evidence import Edited, Evidence, Guessed, LegEdit, Tried
+
+NUMBER_DEG = 10.0
+"""A number counts if it changes a posture by so much since the phase began [deg]."""
+
+_Place = tuple[int, int, int, int]
+"""Key, posture, leg and level of a cell."""
+_Move = tuple[int, int, bool]
+"""Leg and level of a joint, and whether its angle became larger."""
+_Source = Literal["typed", "made", "foreign"]
+_DIGITS = 3
+_COPIES = ("tool", "paste")
+
+
+def is_apart(one_deg: float, other_deg: float) -> bool:
+    """Return whether two angles differ so much that the change counts."""
+    return round(abs(one_deg - other_deg), _DIGITS) >= NUMBER_DEG
+
+
+@dataclass(frozen=True)
+class OwnTrial:
+    """A trial, and whose the numbers of its rows are."""
+
+    tried: Tried
+    typed: int
+    """How many numbers the student typed that differ by `NUMBER_DEG` from what was there before."""
+    made: int
+    """The same for numbers that were made from typed ones."""
+    foreign: int
+    """How many numbers are foreign, whenever they came."""
+
+
+def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
+    """Find whose the numbers of each trial are.
+
+    Args:
+        evidence: all evidence of a student, in order.
+        start: trials and changes count from this index on.
+    """
+    cells, found = _Cells(), []
+    for at, one in enumerate(evidence):
+        if isinstance(one, Edited):
+            cells.take(one, at >= start)
+        elif isinstance(one, Tried) and at >= start:
+            found.append(cells.judge(one))
+    return found
+
+
+class _Cells:
+    """The cells of a table as edits have filled them."""
+
+    def __init__(self) -> None:
+        self._sources: dict[tuple[_Place, float], _Source] = {}
+        """How each number first came into a cell."""
+        self._typed: set[tuple[int, float]] = set()
+        """The numbers that were typed for joints of a level, in any cell."""
+        self._base: dict[_Place, float | None] = {}
+        """What stood in each changed cell when counting began; None: the row is new."""
+
+    def take(self, edit: Edited, counts: bool) -> None:
+        """Take in an edit; `counts`: it belongs to the phase."""
+        for leg in edit.legs:
+            for level in leg.changed:
+                place = (leg.key, leg.posture, leg.leg, level)
+                angle = round(leg.angles_deg[level], _DIGITS)
+                before = round(leg.before_deg[level], _DIGITS) if leg.before_deg else None
+                if before is not None:  # whatever was there before the student typed
+                    self._sources.setdefault((place, before), "foreign")
+                if edit.by == "hand":
+                    self._typed.add((level, angle))
+                self._sources.setdefault((place, angle), self._source(edit, level, angle))
+                if counts:
+                    self._base.setdefault(place, before)
+
+    def judge(self, tried: Tried) -> OwnTrial:
+        """Return whose the numbers of a trial are."""
+        counts = {"typed": 0, "made": 0, "foreign": 0}
+        for number in tried.numbers:
+            place = (number.key, number.posture, number.leg, number.level)
+            angle = round(number.angle_deg, _DIGITS)
+            source = self._sources.get((place, angle), "foreign")
+            base = self._base.get(place, angle)
+            if base is None:
+                base = number.start_deg
+            if source == "foreign" or is_apart(angle, base):
+                counts[source] += 1
+        return OwnTrial(tried, **counts)
+
+    def _source(self, edit: Edited, level: int, angle: float) -> _Source:
+        if edit.by == "hand":
+            return "typed"
+        is_copy = edit.by in _COPIES and (level, angle) in self._typed
+        return "made" if is_copy or edit.by == "lesson" else "foreign"
+
+
+@dataclass(frozen=True)
+class LegNumbers:
+    """What a student typed for one leg."""
+
+    joints: int
+    """How many of its three joints were turned by `NUMBER_DEG` at least."""
+    postures: int
+    """How many postures differ from each other, and from the first one, by `NUMBER_DEG`."""
+
+
+def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
+    """Return what a student typed for each leg."""
+    joints: dict[int, set[int]] = {}
+    postures: dict[int, list[tuple[float, ...]]] = {}
+    for leg in _typed_legs(evidence):
+        turned = [level for level in leg.changed if _is_turned(leg, level)]
+        joints.setdefault(leg.leg, set()).update(turned)
+        seen = postures.setdefault(leg.leg, [leg.before_deg])
+        if turned and all(_apart(leg.angles_deg, one) for one in seen):
+            seen.append(leg.angles_deg)
+    return [LegNumbers(len(joints[leg]), len(postures[leg]) - 1) for leg in joints]
+
+
+def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
+    """Return the guesses of where a foot goes that count, in order.
+
+    A guess counts if one number of one leg was changed by `NUMBER_DEG`, and the student had not
+    seen before where this joint brings this foot in this direction.
+
+    Args:
+        evidence: all evidence of a student, in order.
+        start: guesses from this index on are returned.
+    """
+    seen: set[_Move] = set()
+    newest: set[_Move] = set()  # what the last edit has shown; its guess comes after it
+    found = []
+    for at, one in enumerate(evidence):
+        if isinstance(one, Edited):
+            seen |= newest
+            newest = _moves(one)
+        elif isinstance(one, Guessed) and one.about == "foot" and one.level >= 0:
+            move = (one.leg, one.level, one.after_deg > one.before_deg)
+            is_large = is_apart(one.after_deg, one.before_deg)
+            if is_large and move not in seen and at >= start:
+                found.append(one)
+            seen |= newest | {move}
+    return found
+
+
+def _moves(edit: Edited) -> set[_Move]:
+    """Return how joints were turned by hand, so that the student saw where feet go."""
+    if edit.by != "hand":
+        return set()
+    return {
+        (leg.leg, level, leg.angles_deg[level] > leg.before_deg[level])
+        for leg in edit.legs
+        if leg.before_deg
+        for level in leg.changed
+        if _is_turned(leg, level)
+    }
+
+
+def _typed_legs(evidence: Sequence[Evidence]) -> list[LegEdit]:
+    """Return the edits by hand of legs that were there before."""
+    edits = (one for one in evidence if isinstance(one, Edited) and one.by == "hand")
+    return [leg for edit in edits for leg in edit.legs if leg.before_deg]
+
+
+def _is_turned(leg: LegEdit, level: int) -> bool:
+    return is_apart(leg.angles_deg[level], leg.before_deg[level])
+
+
+def _apart(one: Sequence[float], other: Sequence[float]) -> bool:
+    return any(is_apart(a, b) for a, b in zip(one, other, strict=True))
