@@ -70,7 +70,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
     show.sees(".hint", "Bees: ahead by 2")
     expect(show.find(".panel .log li").first).to_contain_text("+4 points for Bees")
     show.until(lambda: show.view("drawnBeat") > reply["beat"] + 230, "time stands still")
-    show.misses(".third")
+    show.misses(".third[data-kind]")
     show.page.close()
 
 
@@ -396,9 +396,9 @@ def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
     referee.phase(Phase.PLAYING)
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
     decide(referee, "n" * 200, type="adjust", seat="left", points=2)
-    show.sees(".third .what", "nnn")
+    show.sees(".third.neutral .what", "nnn")
     show.sees(".panel .log", "nnn")
-    for selector in (".panel .log", ".third .what", ".third"):
+    for selector in (".panel .log", ".third.neutral .what", ".third"):
         width, room = show.find(selector).first.evaluate("(at) => [at.scrollWidth, at.clientWidth]")
         assert width <= room, selector
     show.sees(".hint", LONG)
@@ -430,7 +430,7 @@ def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
     show.sees(".panel .log")
     decide(referee, "a foul", type="adjust", seat="left", points=2)
-    show.sees(".third .what", "+2 points for Ants")
+    show.sees(".third.neutral .what", "+2 points for Ants")
     show.sees(".panel .log", "+2 points for Ants")
     assert show.find("[aria-live]:not([aria-live=off])", has_text="+2 points for Ants").count() == 1
 

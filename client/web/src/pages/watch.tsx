@@ -127,9 +127,7 @@ function Hud() {
           <OnAir court={court} />
         </header>
       </div>
-      <Corner panel={panel}>
-        <Watching court={court} />
-      </Corner>
+      <Corner panel={panel} />
       <div class="middle-stage">
         <Countdown match={shown} />
         {putAway.value !== match && (
@@ -159,6 +157,7 @@ function Hud() {
           <Cameras camera={camera} sheet={court.sheet.value} />
         )}
         {court.begun.value && <Again rewind={shown} />}
+        {court.begun.value && <Watching court={court} />}
         {court.begun.value && <Cheers court={court} />}
       </div>
     </>
