@@ -179,7 +179,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     show.sees(".result .next", "The referee is confirming")
     box = show.find(".result").bounding_box()
     assert box is not None
-    assert box["x"] + box["width"] / 2 == pytest.approx(SOURCE["width"] / 2, abs=4)
+    assert box["x"] > SOURCE["width"] / 2, "the winner stands beside the card"
     assert box["width"] > 700
     assert show.find("button").count() == 0
     decide(referee, type="official")

@@ -91,7 +91,7 @@ function secondOf(frame: Frame, sheet: Sheet): number {
 }
 
 /** The seat with the most points; less than 0: several have as many. */
-function leaderOf({ seats }: Frame): number {
+export function leaderOf({ seats }: Pick<Frame, "seats">): number {
   const scores = seats.map(({ score }) => score);
   const most = Math.max(...scores);
   return scores.filter((score) => score === most).length === 1 ? scores.indexOf(most) : -1;

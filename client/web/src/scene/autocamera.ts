@@ -7,6 +7,7 @@
 
 import { Phase } from "../core/wire";
 import { type Aim, FOV_RAD, fit, isCalm, type Rig, type Shot } from "./cameras";
+import type { Robot } from "./model";
 
 /** A close shot lasts at least this long while play goes on. */
 const LEAST_MS = 4200;
@@ -22,6 +23,8 @@ const NEAR_FOR_MS = 500;
 const DRIFT_RAD = 0.09;
 const DRIFT_MS = 21_000;
 const TURN_MS = 60_000;
+/** Around the winner so much of the field is seen. */
+const WINNER_M = 0.42;
 
 type Scene =
   | { kind: "wide" }
@@ -33,6 +36,18 @@ type Scene =
 export interface Action {
   /** The seat of the robot that did it. */
   seat: number;
+}
+
+/** From all sides of the winner, who stays in the free part of the picture. */
+function around({ x, y }: Robot, aim: Aim, nowMs: number): Shot {
+  const points = [-WINNER_M, WINNER_M].flatMap((side) => [
+    [x + side, y, 0] as const,
+    [x, y + side, 0] as const,
+    [x, y, side + WINNER_M] as const,
+  ]);
+  const azimuth = -Math.PI / 2 + (nowMs / TURN_MS) * 2 * Math.PI;
+  const from = { x, y, z: 0.05, azimuth, elevation: 0.42, distance: 1.5 };
+  return fit(points, from, aim.aspect, aim.frame);
 }
 
 export class AutoCamera {
@@ -48,9 +63,12 @@ export class AutoCamera {
     if (isCalm.matches) return { key: "auto", shot: this.rig.aim("arena", aim, nowMs) };
     this.choose(aim, actions, nowMs);
     const drift = DRIFT_RAD * Math.sin((nowMs / DRIFT_MS) * 2 * Math.PI);
-    const shot = this.frame(aim, nowMs);
-    shot.azimuth += this.scene.kind === "end" ? (nowMs / TURN_MS) * 2 * Math.PI : drift;
     const { scene } = this;
+    const winner = aim.model.robots[aim.model.leader];
+    if (scene.kind === "end" && winner)
+      return { key: "auto winner", shot: around(winner, aim, nowMs) };
+    const shot = this.frame(aim, nowMs);
+    shot.azimuth += scene.kind === "end" ? (nowMs / TURN_MS) * 2 * Math.PI : drift;
     return { key: `auto ${scene.kind}${scene.kind === "robot" ? scene.seat : ""}`, shot };
   }
 

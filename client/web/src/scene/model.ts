@@ -1,8 +1,9 @@
 /** The input of a view: a sheet, its scene, and all positions at a moment. */
 
+import { leaderOf } from "../core/cues";
 import { ForwardKinematics, jointsPerSeat } from "../core/fk";
 import type { Moment } from "../core/timeline";
-import { Phase, type Scene, type Sheet, sameBytes, unpackStates } from "../core/wire";
+import { Phase, type Scene, SeatFlag, type Sheet, sameBytes, unpackStates } from "../core/wire";
 import { PoseMixer } from "./poses";
 
 /** The floor between the walls [m, world]. */
@@ -36,6 +37,8 @@ export class Model {
   /** State of each marker. */
   states: readonly number[];
   phase: number = Phase.CREATED;
+  /** Seat with the most points; less than 0: several have as many. */
+  leader = -1;
   beat = 0;
   match = 0;
   private readonly mixer: PoseMixer;
@@ -62,6 +65,7 @@ export class Model {
     const { before } = moment;
     if (!sameBytes(before.scene, this.sheet.scene)) return false;
     this.phase = before.phase;
+    this.leader = leaderOf(before);
     this.beat = moment.beat;
     this.match = before.match;
     const count = this.sheet.markers.length;
@@ -80,7 +84,9 @@ export class Model {
       const alongY = 1 - 2 * (x! * x! + z! * z!);
       // Upright on its nose a robot has no heading: the last one stays.
       if (Math.hypot(alongX, alongY) > 0.05) robot.heading = Math.atan2(alongY, alongX);
-      robot.flags = before.seats[seat]?.flags ?? 0;
+      const flags = before.seats[seat]?.flags ?? 0;
+      // After the end it is no news that somebody has gone: the winner keeps its colour.
+      robot.flags = this.phase < Phase.FINISHED ? flags : flags & ~SeatFlag.SILENT;
     });
     return true;
   }

@@ -42,6 +42,11 @@ function isJudged(settings: Sheet["settings"]): boolean {
   return (settings.match as { start?: string } | undefined)?.start !== "ready";
 }
 
+/** Whether a match is over, so that its result is shown. */
+export function useResult(match: Match): boolean {
+  return SHOWN.has(useMemo(() => phaseOf(match), [match]).value);
+}
+
 /** Nothing until the match is over. */
 export function ResultCard(props: Props) {
   const { match, own = -1, onClose, withReplay, isLast, next, children } = props;

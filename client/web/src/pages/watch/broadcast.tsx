@@ -12,7 +12,7 @@ import { type CameraName, type Shutter, View } from "../../scene/View";
 import { Board } from "../../ui/board";
 import { Introductions } from "../../ui/introductions";
 import { Countdown, OpeningCard, useOpening } from "../../ui/opening";
-import { ResultCard } from "../../ui/result";
+import { ResultCard, useResult } from "../../ui/result";
 import { Hint, ScoreBug } from "../../ui/score";
 import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
@@ -27,6 +27,10 @@ const SCORE_PX = 1560;
 /** In a phone's window, smaller letters could not be read: what lies over the picture has this width. */
 const PHONE_PX = 780;
 const PHONE_SCALE = 0.5;
+
+/** In a window that is wider than this the result stands beside the picture, not over it. */
+const BESIDE = 1.3;
+const CARD_PX = 1000;
 
 /** How a broadcast is shown. */
 export interface Style {
@@ -73,19 +77,25 @@ export function Broadcast({ match, style, scale, ...more }: Props & More) {
   const seats = useMemo(() => computed(() => match.sheet.value?.seats.length ?? 0), [match]).value;
   const isSplit = style.split && seats > 1;
   const shown = more.replays?.rewind ?? match;
+  const hasCard = useResult(match) && style.hud && innerWidth > BESIDE * innerHeight;
   return (
     <>
       {isSplit ? (
         <Windows match={shown} style={style} scale={scale} />
       ) : (
-        <Whole match={shown} style={style} scale={scale} />
+        <Whole
+          match={shown}
+          style={style}
+          scale={scale}
+          hasCard={hasCard && !more.replays?.shown.value}
+        />
       )}
       {style.hud && <Hud match={match} {...more} />}
     </>
   );
 }
 
-function Whole({ match, style, scale }: Props) {
+function Whole({ match, style, scale, hasCard }: Props & { hasCard: boolean }) {
   const { camera, quality, transparent, hud, shutter } = style;
   const edge = hud ? scale.value : 0;
   const opening = useOpening(match);
@@ -96,7 +106,11 @@ function Whole({ match, style, scale }: Props) {
         camera={camera}
         quality={quality}
         transparent={transparent}
-        inset={{ top: (opening ? 140 : 190) * edge, bottom: (opening ? 370 : 30) * edge }}
+        inset={{
+          top: (opening ? 140 : 190) * edge,
+          bottom: (opening ? 370 : 30) * edge,
+          right: hasCard ? CARD_PX * edge : 0,
+        }}
         labels={hud}
         label={t("watch.view")}
         {...(shutter && { shutter })}
