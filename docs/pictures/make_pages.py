@@ -16,17 +16,13 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-sys.path.append(str(Path(__file__).parents[2] / "tests" / "common"))
-sys.path.append(str(Path(__file__).parents[2] / "tests" / "pages"))
-sys.path.append(str(Path(__file__).parents[2] / "tests" / "gateway"))
-sys.path.append(str(Path(__file__).parents[2] / "tests" / "client"))
-sys.path.append(str(Path(__file__).parents[2] / "tests" / "classroom"))
-
+sys.path.insert(0, str(Path(__file__).parents[2]))
+import tests  # noqa: F401 - makes their helpers importable
 from chromium import FLAGS, build_pages, find_chromium
 from class_room import ClassRoom
-from contestant import Contestant, own_page
-from court_process import environment
-from lacoc_process import COMMAND
+from contestant import Contestant
+from lacoc_process import COMMAND, environment
+from own_page import OwnPage
 from show import Show
 from venue import REFEREE, TOKENS, Venue
 
@@ -74,7 +70,8 @@ def pages(browser: Browser) -> Iterator[Open]:
 
 def practice(folder: Path, open_page: Open) -> None:
     """Take the picture of /practice while the robot walks."""
-    with own_page(folder, "practice") as (url, key):
+    with OwnPage(folder, "practice") as own:
+        url, key = own.url, own.key
         page = Contestant(open_page, url, viewport=LAPTOP)
         page.page.goto(f"{url}/practice#key={key}")
         page.stands("seated")
@@ -90,7 +87,8 @@ def design(folder: Path, open_page: Open) -> None:
     postures = sample_gait_files("hexapod").postures
     assert postures is not None
     (folder / postures.name).write_bytes(postures.data)
-    with own_page(folder, "design") as (url, key):
+    with OwnPage(folder, "design") as own:
+        url, key = own.url, own.key
         page = Contestant(open_page, url, viewport=LAPTOP)
         page.page.goto(f"{url}/design#key={key}")
         page.sees("#gait-grid td")

@@ -7,9 +7,11 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import av
 import proxies
 import pytest
 import trustme
+import zxingcpp
 from chromium import OpenPage
 from contestant import Contestant
 from lacoc_process import contest_run, run_lacoc
@@ -110,6 +112,11 @@ def test_a_contest_at_a_public_address(
         office.get_by_label("Print …").select_option("links")
         papers = office.locator(".papers")
         expect(papers).to_contain_text(f"{place.pages}/referee?court=north#")
+        office.emulate_media(media="print")
+        codes = codes_of(office)
+        office.emulate_media(media="screen")
+        assert {place.links[team] for team in TEAMS} <= codes
+        assert all(code.startswith(place.pages) for code in codes)
         to_referee = re.search(rf"{place.pages}(/referee\S+)", papers.inner_text())
         assert to_referee is not None
         players = []
@@ -151,6 +158,14 @@ def test_a_contest_at_a_public_address(
         expect(home).to_have_url(re.compile(re.escape(f"{place.pages}/watch")))
         for page in pages:  # before the contest ends
             page.context.close()
+
+
+def codes_of(page: Page) -> set[str]:
+    """Read all QR codes of a page, as a phone's camera does."""
+    png = page.screenshot(full_page=True)
+    (picture,) = av.CodecContext.create("png", "r").decode(av.Packet(png))
+    found = zxingcpp.read_barcodes(picture.to_ndarray(format="gray"))
+    return {one.text for one in found}
 
 
 def step(referee: Page) -> None:

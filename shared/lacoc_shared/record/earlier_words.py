@@ -17,26 +17,37 @@ def in_earlier_words(recorded: Sequence[Event], again: Sequence[Event]) -> tuple
     if len(recorded) != len(again):
         return (*again,)
     pairs = zip(recorded, again, strict=True)
-    return tuple(
-        _earlier(now) if _did(then) in _EARLIER and _did(now) in _NOW else now
-        for then, now in pairs
-    )
+    return tuple(_earlier(now) if _had_fewer_words(then, now) else now for then, now in pairs)
 
 
 _EARLIER = ("decision.take-back", "decision.set")
 _NOW = ("decision.took-back", "decision.set-for", "decision.set-so")
+_ADJUST = "decision.adjust"
 
 
-def _did(event: Event) -> str:
+def _had_fewer_words(then: Event, now: Event) -> bool:
+    before, after = _did(then), _did(now)
+    if before is None or after is None:
+        return False
+    if before.code == after.code == _ADJUST:
+        return "score" not in before.values and "score" in after.values
+    return before.code in _EARLIER and after.code in _NOW
+
+
+def _did(event: Event) -> Phrase | None:
     did = event.said.values.get("did")
-    return did.code if isinstance(did, Phrase) else ""
+    return did if isinstance(did, Phrase) else None
 
 
 def _earlier(event: Event) -> Event:
     given = event.data["arguments"]
-    if event.data["decision"] == "take-back":
-        did = say("decision.take-back", event=given["event"])
-    else:
-        did = say("decision.set", marker=given["marker"], state=given["state"])
-    said = event.said.with_values(did=did)
-    return msgspec.structs.replace(event, said=said)
+    match event.data["decision"]:
+        case "take-back":
+            did = say("decision.take-back", event=given["event"])
+        case "adjust":
+            now = _did(event)
+            assert now is not None
+            did = say(_ADJUST, points=given["points"], team=now.values["team"])
+        case _:
+            did = say("decision.set", marker=given["marker"], state=given["state"])
+    return msgspec.structs.replace(event, said=event.said.with_values(did=did))
