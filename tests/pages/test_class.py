@@ -19,6 +19,11 @@ from lacoc_robots.library import sample_gait_files
 
 pytestmark = pytest.mark.slow
 
+FINISHED = """(name) => {
+  const { cards } = window.__class;
+  const done = (card) => ({ ...card, states: card.states.map(() => "met"), best_mm_s: 84.4 });
+  cards.value = cards.value.map((card) => (card.name === name ? done(card) : card));
+}"""
 SEQUENCES = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
 
 
@@ -157,6 +162,14 @@ def test_the_teacher_sets_rules_hands_out_and_takes_home(
     name, text = desk.download(lambda: desk.page.click("text=Evidence (CSV)"), tmp_path)
     assert name.endswith(".csv")
     assert "Cem" in text
+    desk.page.click("text=Certificates …")
+    desk.sees(".papers", "Nobody has finished all six phases yet.")
+    # What the page gets of a student who has: the phases themselves are done elsewhere.
+    desk.page.evaluate(FINISHED, "Cem")
+    desk.find(".certificate .name").fill("Cem Öz")
+    desk.sees(".certificate", "has designed a gait of their own")
+    desk.page.click("text=Back")
+    desk.sees(".student")
 
 
 @pytest.mark.long

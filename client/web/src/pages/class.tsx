@@ -8,6 +8,7 @@ import { isNarrow } from "../ui/screen";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
 import { Cards } from "./class/cards";
+import { Certificates } from "./class/certificates";
 import { Controls, FileTrouble, HandoutDialog } from "./class/controls";
 import { Details } from "./class/details";
 import { Head, Troubles } from "./class/head";
@@ -42,6 +43,7 @@ export default function Class() {
     const count = teacher.hands.value;
     document.title = `${t(count ? "class.titleHands" : "class.title", { count })} – LACOC`;
   });
+  if (teacher.screen.value?.shows === "certificates") return <Certificates teacher={teacher} />;
   return (
     <main class="class">
       <div class="desk" inert={teacher.screen.value !== null}>

@@ -27,7 +27,7 @@ import { Entries } from "./office/entries";
 import { Head } from "./office/head";
 import { MoveDialog } from "./office/moving";
 import { Organiser } from "./office/organiser";
-import { Papers } from "./office/papers";
+import { OfficePapers } from "./office/papers";
 import { RuleDialog, Rulings } from "./office/ruling";
 import { Timetable } from "./office/timetable";
 import "./contest/contest.css";
@@ -44,7 +44,7 @@ export default function Office() {
   });
   const trouble = organiser.trouble.value;
   const waits = trouble ? said(trouble) : waitsForGateway(organiser.desk.connection.state.value);
-  if (over?.is === "paper") return <Papers organiser={organiser} paper={over.paper} />;
+  if (over?.is === "paper") return <OfficePapers organiser={organiser} paper={over.paper} />;
   return (
     <>
       {waits && <Banner role="alert">{waits}</Banner>}

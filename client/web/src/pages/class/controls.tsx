@@ -136,6 +136,15 @@ function Home({ teacher }: { teacher: Teacher }) {
           {t("class.export.tables")}
         </button>
         <button
+          class="button"
+          type="button"
+          onClick={() => {
+            teacher.screen.value = { shows: "certificates" };
+          }}
+        >
+          {t("class.certificates")}
+        </button>
+        <button
           class="button quiet"
           type="button"
           title={t("class.newCodeHint")}

@@ -22,8 +22,10 @@ import {
 import { sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 
-/** What fills the screen: how to join, a student's robot, or the standings. */
-export type Screen = { shows: "room" } | { shows: "standings" } | { shows: "robot"; name: string };
+/** What fills the screen: how to join, a student's robot, the standings, or what is printed. */
+export type Screen =
+  | { shows: "room" | "standings" | "certificates" }
+  | { shows: "robot"; name: string };
 
 /** A table that is about to be handed out. */
 export interface Handout {

@@ -7,8 +7,9 @@ import type { ContestSheet } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
 import { pictureUrl } from "../../core/picture";
 import { columns } from "../../core/timetable";
-import { language, said, t } from "../../i18n";
+import { said, t } from "../../i18n";
 import { seatName, timeOf } from "../../i18n/words";
+import { Certificate, Papers } from "../../ui/papers";
 import { Schedule } from "../contest/schedule";
 import { Tables } from "../contest/standings";
 import { placeTitle, stageTitle } from "../contest/words";
@@ -19,28 +20,19 @@ interface Props {
   paper: Paper;
 }
 
-export function Papers({ organiser, paper }: Props) {
+export function OfficePapers({ organiser, paper }: Props) {
   const view = organiser.view.value;
   const sheet = organiser.feed.sheet.value;
   useEffect(() => {
     if (paper === "links") void organiser.getLinks();
   }, [organiser, paper]);
   return (
-    <main class="papers" data-paper={paper}>
-      <div class="paper-tools">
-        <button class="button" type="button" onClick={() => organiser.close()}>
-          {t("office.paper.back")}
-        </button>
-        <button class="button strong" type="button" onClick={() => print()}>
-          {t("contest.print")}
-        </button>
-        <p class="muted">{t("office.paper.hint")}</p>
-      </div>
+    <Papers paper={paper} hint={t("office.paper.hint")} onBack={() => organiser.close()}>
       {view && paper === "schedule" && <Times view={view} />}
       {view && paper === "links" && <Links organiser={organiser} view={view} />}
       {sheet && paper === "results" && <Results sheet={sheet} />}
       {sheet && paper === "certificates" && <Certificates sheet={sheet} />}
-    </main>
+    </Papers>
   );
 }
 
@@ -96,30 +88,26 @@ function Results({ sheet }: { sheet: ContestSheet }) {
 /** A certificate for each team that has its final place. */
 function Certificates({ sheet }: { sheet: ContestSheet }) {
   const all = places(sheet);
-  const day = new Date().toLocaleDateString(language.value, { dateStyle: "long" });
   if (!all.length) return <p class="muted">{t("office.paper.noPlaces")}</p>;
   return (
     <>
       {all.map(({ team, rank, equal, stage, group, won }) => (
-        <section key={team} class="certificate" data-won={won || undefined}>
-          <p class="of">{sheet.name}</p>
-          <h1>{t("office.certificate")}</h1>
-          <p class="team">{team}</p>
-          <p class="place">
-            {won && !equal.length ? t("contest.winner") : placeTitle(rank, equal)}
-            {stage && (
-              <small>
-                {" "}
-                {stageTitle(sheet, stage)}
-                {group && ` · ${t("contest.group", { group: group.toUpperCase() })}`}
-              </small>
-            )}
-          </p>
-          <footer>
-            <span>{day}</span>
-            <span class="signature">{t("office.signature")}</span>
-          </footer>
-        </section>
+        <Certificate
+          key={team}
+          of={sheet.name}
+          title={t("office.certificate")}
+          who={team}
+          isWon={won}
+        >
+          {won && !equal.length ? t("contest.winner") : placeTitle(rank, equal)}
+          {stage && (
+            <small>
+              {" "}
+              {stageTitle(sheet, stage)}
+              {group && ` · ${t("contest.group", { group: group.toUpperCase() })}`}
+            </small>
+          )}
+        </Certificate>
       ))}
     </>
   );
