@@ -47,7 +47,7 @@ def _earlier(event: Event) -> Event:
         case "adjust":
             now = _did(event)
             assert now is not None
-            did = say(_ADJUST, points=given["points"], team=now.values["team"])
+            did = say("decision.adjust", points=given["points"], team=now.values["team"])
         case _:
             did = say("decision.set", marker=given["marker"], state=given["state"])
     return msgspec.structs.replace(event, said=event.said.with_values(did=did))

@@ -8,6 +8,7 @@ const called = { state: "court", court: "north", seat: "left", call: "c1" };
 const waits = { state: "waits", court: "south", seat: "", call: "" };
 const fresh = {
   ...{ there: waits, court: "north", call: "", seat: "", mine: "", seen: false },
+  lost: false,
   driven: false,
 };
 const playing = { ...fresh, there: called, call: "c1", seat: "left", mine: "c1" };
@@ -49,6 +50,12 @@ const TABLE = [
     "has the other seat in the next match of the court",
     { ...playing, there: { ...called, seat: "right", call: "c2" }, call: "c2" },
     "join",
+  ],
+  ["has lost its seat to another window", { ...playing, seat: "", lost: true }, "stay"],
+  [
+    "has lost its seat because the office took the match back",
+    { ...playing, there: waits, call: "c2", seat: "", lost: true },
+    "rest",
   ],
   ["is out", { ...fresh, there: { ...waits, state: "out" } }, "stay"],
 ];

@@ -119,6 +119,7 @@ export class Team {
       seat: held || wanted,
       mine: this.mine,
       seen: now - this.officialMs > RESULT_MS,
+      lost: this.player.standing.peek() === "lost",
       driven: there.call !== this.taken && this.isDriven(there.seat),
     });
     this.driven.value = move === "ask";

@@ -15,6 +15,8 @@ export interface Situation {
   mine: string;
   /** The match has been official for long enough that its result was seen. */
   seen: boolean;
+  /** The seat was lost to somebody else, and the page says so. */
+  lost: boolean;
   /** Somebody else drives the seat of the call: another page, or a program. */
   driven: boolean;
 }
@@ -32,15 +34,17 @@ export interface Situation {
 export type Move = "stay" | "hold" | "rest" | "join" | "ask" | "go";
 
 /** Decide what the page does next. */
-export function nextMove({ there, court, call, seat, mine, seen, driven }: Situation): Move {
+export function nextMove(now: Situation): Move {
+  const { there, court, call, seat, mine, seen, lost, driven } = now;
   if (there.open) return there.court === court ? "stay" : "go"; // a person brings name and files
   const isCalled = there.state === "court";
   if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
   const isHere = isCalled && there.court === court;
   if (isHere && seat === there.seat && call === there.call) return "hold";
   // The result stays for a while, unless another match has taken its place.
-  if (seat && mine && call === mine && !seen) return "stay";
-  if (!isCalled) return seat ? "rest" : "stay";
+  if ((seat || lost) && mine && call === mine && !seen) return "stay";
+  // Nobody took the seat of a match that is no more, such as one that the office took back.
+  if (!isCalled) return seat || lost ? "rest" : "stay";
   if (!isHere) return "go";
   if (call !== there.call) return "stay";
   return driven ? "ask" : "join";

@@ -22,7 +22,8 @@ const NEAR_FOR_MS = 500;
 
 const DRIFT_RAD = 0.09;
 const DRIFT_MS = 21_000;
-const TURN_MS = 60_000;
+const SWAY_RAD = 0.7;
+const SWAY_MS = 40_000;
 /** Around the winner so much of the field is seen. */
 const WINNER_M = 0.42;
 
@@ -38,14 +39,14 @@ export interface Action {
   seat: number;
 }
 
-/** From all sides of the winner, who stays in the free part of the picture. */
-function around({ x, y }: Robot, aim: Aim, nowMs: number): Shot {
+/** From both sides of the winner, who stays in the free part of the picture. */
+function around({ x, y }: Robot, aim: Aim, turned: number): Shot {
   const points = [-WINNER_M, WINNER_M].flatMap((side) => [
     [x + side, y, 0] as const,
     [x, y + side, 0] as const,
     [x, y, side + WINNER_M] as const,
   ]);
-  const azimuth = -Math.PI / 2 + (nowMs / TURN_MS) * 2 * Math.PI;
+  const azimuth = -Math.PI / 2 + turned;
   const from = { x, y, z: 0.05, azimuth, elevation: 0.42, distance: 1.5 };
   return fit(points, from, aim.aspect, aim.frame);
 }
@@ -66,9 +67,9 @@ export class AutoCamera {
     const { scene } = this;
     const winner = aim.model.robots[aim.model.leader];
     if (scene.kind === "end" && winner)
-      return { key: "auto winner", shot: around(winner, aim, nowMs) };
+      return { key: "auto winner", shot: around(winner, aim, this.sway(nowMs)) };
     const shot = this.frame(aim, nowMs);
-    shot.azimuth += scene.kind === "end" ? (nowMs / TURN_MS) * 2 * Math.PI : drift;
+    shot.azimuth += scene.kind === "end" ? this.sway(nowMs) : drift;
     return { key: `auto ${scene.kind}${scene.kind === "robot" ? scene.seat : ""}`, shot };
   }
 
@@ -106,6 +107,11 @@ export class AutoCamera {
     this.scene = scene;
     this.sinceMs = nowMs;
     this.side = -this.side;
+  }
+
+  /** To one side and the other after the end; left stays left. */
+  private sway(nowMs: number): number {
+    return SWAY_RAD * Math.sin(((nowMs - this.sinceMs) / SWAY_MS) * 2 * Math.PI);
   }
 
   private gap(robots: Aim["model"]["robots"]): number {

@@ -8,7 +8,7 @@ import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedTicks } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
-import { byRules, logClock, markerName, team, winnerOf } from "../i18n/words";
+import { byRules, eventClock, logClock, markerName, team, winnerOf } from "../i18n/words";
 import { ReplayLink } from "./replay_link";
 import { SeatMark } from "./score";
 import "./result.css";
@@ -165,7 +165,10 @@ function Compared({ match, winner, withReplay }: ComparedProps) {
       </table>
       {moment && (
         <p class="why">
-          {t("result.decisive", { time: logClock(moment.clock_ticks), what: said(moment.said) })}{" "}
+          {t(winner < 0 ? "result.largest" : "result.decisive", {
+            time: eventClock(moment, sheet),
+            what: said(moment.said),
+          })}{" "}
           {withReplay && <ReplayLink match={match} beat={moment.beat} />}
         </p>
       )}

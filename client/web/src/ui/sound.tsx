@@ -3,13 +3,12 @@
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { flag } from "../core/address";
-import { inBase64 } from "../core/base64";
 import { type Cue, type CueName, cuesBetween, type Heard, heardAt } from "../core/cues";
 import type { Match } from "../core/match";
 import { isLoud } from "../core/settings";
 import { BEATS_PER_S } from "../core/wire";
 import { isTyping } from "./shortcuts";
-import { LONGEST_S, rendered, schedule } from "./tones";
+import { schedule } from "./tones";
 
 /** How a phone shakes at a cue [ms]. */
 const SHAKES: Partial<Record<CueName, number>> = { start: 80, score: 30, end: 200 };
@@ -18,38 +17,8 @@ const SHAKES: Partial<Record<CueName, number>> = { start: 80, score: 30, end: 20
 const MOST_LATER_S = 0.2;
 
 let context: AudioContext | null = null;
-/** Whether a program takes the sound, as `lacoc stream` does: then nothing is heard here. */
-const isTaken = flag("taken", false);
-/** Sounds that it has not taken yet. */
-let untaken: TakenCue[] = [];
-
-/** A cue, and when it is to be heard, as the time of the day [ms]. */
-interface TakenCue {
-  cue: Cue;
-  atMs: number;
-}
-
-declare global {
-  interface Window {
-    /**
-     * Takes the sounds since the last call: when each begins, as the time of the day [ms], and its
-     * samples of both sides in turn as base64, each with 16 bits, little endian.
-     */
-    __sounds?: (rate: number) => Promise<[atMs: number, samples: string][]>;
-  }
-}
-
-if (isTaken)
-  window.__sounds = (rate) => {
-    const cues = untaken;
-    untaken = [];
-    return Promise.all(
-      cues.map(async ({ cue, atMs }): Promise<[number, string]> => {
-        const samples = await rendered([{ ...cue, atS: 0 }], LONGEST_S, rate);
-        return [atMs, await inBase64(new Uint8Array(samples.buffer))];
-      }),
-    );
-  };
+/** Where a program takes the sound, as `lacoc stream` does: then nothing is heard here. */
+const taking = flag("taken", false) ? import("./taken") : null;
 
 interface Props {
   match: Match;
@@ -61,8 +30,8 @@ interface Props {
 
 export function Sound({ match, isQuiet = false, own = -1 }: Props) {
   useEffect(() => {
-    if (isQuiet && !isTaken && !flag("sound", false)) return;
-    if (isQuiet && !isTaken) wake(); // a program for streams asks for no press
+    if (isQuiet && !taking && !flag("sound", false)) return;
+    if (isQuiet && !taking) wake(); // a program for streams asks for no press
     let heard: Heard | null = null;
     return effect(() => {
       const [frame, sheet, events] = [match.frame.value, match.sheet.value, match.events.value];
@@ -90,9 +59,9 @@ export function Sound({ match, isQuiet = false, own = -1 }: Props) {
 }
 
 function tell({ name, seat }: Cue, laterS: number, own: number): void {
-  if (isTaken) {
+  if (taking) {
     const atMs = performance.timeOrigin + performance.now() + 1000 * laterS;
-    untaken.push({ cue: { name, seat }, atMs });
+    void taking.then(({ take }) => take({ name, seat }, atMs));
     return;
   }
   if (!isLoud.peek()) return;

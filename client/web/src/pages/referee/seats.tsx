@@ -2,7 +2,14 @@
 
 import { useMemo } from "preact/hooks";
 import { part } from "../../core/match";
-import { type Frame, SeatFlag, type SeatHealth, type Sheet, SILENT_AFTER_S } from "../../core/wire";
+import {
+  type Frame,
+  Phase,
+  SeatFlag,
+  type SeatHealth,
+  type Sheet,
+  SILENT_AFTER_S,
+} from "../../core/wire";
 import { said, t } from "../../i18n";
 import { seatName, seatState, team } from "../../i18n/words";
 import { SeatMark } from "../../ui/score";
@@ -101,13 +108,15 @@ function LinkFacts({ desk, sheet, index }: Props) {
   const flags = desk.flags(index).value;
   const health = court.live.value ? court.health.value : null;
   const link = health?.seats[index];
+  const isOver = useMemo(() => part(court, ({ phase }) => phase >= Phase.FINISHED, false), [court]);
+  const verdict = linkVerdict(link, isOver.value);
   const refused = Object.entries(link?.refused ?? {});
   return (
     <dl class="facts">
       <dt>{t("seatLink.title")}</dt>
       <dd>
-        <Verdict name={linkVerdict(link)} text={t(`seatLink.${linkWord(link)}`)} />
-        {link?.joined && (
+        <Verdict name={verdict} text={t(`seatLink.${linkWord(verdict, link)}`)} />
+        {link?.joined && verdict !== "unknown" && (
           <span class="muted">
             {link.heard_ms === null
               ? t("seatLink.notHeard")
@@ -144,14 +153,17 @@ function LinkFacts({ desk, sheet, index }: Props) {
   );
 }
 
-function linkVerdict(link: SeatHealth | undefined): VerdictName {
+function linkVerdict(link: SeatHealth | undefined, isOver: boolean): VerdictName {
   if (!link?.joined) return "unknown";
+  if (isOver && (link.heard_ms ?? SILENT_MS) >= SILENT_MS) return "unknown"; // it has gone: no news
   if (link.heard_ms === null || link.heard_ms >= SILENT_MS) return "bad";
   return link.heard_ms < GOOD_MS ? "good" : "watch";
 }
 
-function linkWord(link: SeatHealth | undefined): "good" | "watch" | "bad" | "none" | "unknown" {
-  const verdict = linkVerdict(link);
+function linkWord(
+  verdict: VerdictName,
+  link: SeatHealth | undefined,
+): "good" | "watch" | "bad" | "none" | "unknown" {
   if (verdict !== "unknown") return verdict;
   return link ? "none" : "unknown";
 }
