@@ -10,7 +10,7 @@ from functools import cache
 from multiprocessing import get_context
 
 from arguments import arguments
-from mistaken_tables import KINDS, Mistaken, Outcome, beginners, mistaken, told
+from mistaken_tables import KINDS, Mistaken, Outcome, beginners, mistaken, repaired
 
 from benchmarks.figures import finish
 
@@ -54,7 +54,7 @@ def _counts(found: list[Outcome]) -> dict[str, int]:
 
 def _by_chance(seed: int) -> Outcome:
     table = mistaken(seed)
-    return told(table, KINDS[table.kind][1])
+    return repaired(table, KINDS[table.kind][1])
 
 
 @cache
@@ -63,7 +63,7 @@ def _beginners() -> tuple[tuple[Mistaken, tuple[str, ...]], ...]:
 
 
 def _of_beginners(index: int) -> Outcome:
-    return told(*_beginners()[index])
+    return repaired(*_beginners()[index])
 
 
 if __name__ == "__main__":

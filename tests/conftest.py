@@ -22,13 +22,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--long",
         action="store_true",
-        help="run what a usual run leaves out: tests marked long, and properties of five times as "
+        help="run what a usual run leaves out: tests marked long, and properties of three times as "
         "many examples",
     )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let 40 examples check each property, or 200 with --long.
+    """Let 40 examples check each property, or 120 with --long.
 
     Also keep the programs that tests start from writing bytecode.
     """

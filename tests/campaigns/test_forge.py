@@ -36,13 +36,13 @@ def test_no_role_does_what_is_anothers(attempts: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.long(minutes=3)
+@pytest.mark.long(minutes=2)
 def test_nothing_forged_is_accepted() -> None:
     """A court accepts no forgery.
 
     This holds with all protection, with tokens and seals alone, and with TLS.
     """
-    found = forged("messages", 2000)
+    found = forged("messages", 1000)
     assert [one["right"] for one in found] == [True] * 3
     assert {sum(one["accepted"].values()) for one in found} == {0}
     refused = found[1]["refused by the court"]["commands"]

@@ -9,31 +9,29 @@ from pathlib import Path
 import pytest
 from aside import aside
 
-from tests.campaigns.kill import anything, leftovers, online
+from tests.campaigns.kill import anything, court, leftovers, online
 
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "words",
-    [
-        pytest.param(("court", "--kills", "24"), id="court"),
-        pytest.param(
-            ("contest", "--teams", "4", "--courts", "2", "--kills", "6"),
-            id="contest",
-            marks=pytest.mark.slow,
-        ),
-    ],
-)
-def test_nothing_is_lost_by_kills(words: tuple[str, ...]) -> None:
-    """The campaigns of courts and of contests find nothing wrong.
+@pytest.mark.long(minutes=1)
+@pytest.mark.slow
+def test_a_killed_court_loses_nothing() -> None:
+    """A killed court comes back in the right phase, and loses nothing that it had shown.
 
-    A killed court comes back in the right phase, and loses nothing that it had shown. After kills
-    of office, courts and gateway, the standings of a contest are the same as without kills.
+    It is killed twice in each phase, as the plan of the campaign has them.
     """
-    name, *more = words
-    command = [sys.executable, "-m", f"tests.campaigns.kill.{name}", *more]
+    found = aside(lambda: court.killed(2 * len(court.PLAN), seed=1, fresh=False))
+    assert found.wrong == 0, found
+    assert found.verified == 2
+
+
+@pytest.mark.long(minutes=2)
+@pytest.mark.slow
+def test_a_contest_loses_nothing_by_kills() -> None:
+    """After kills of office, courts and gateway, the standings are the same as without kills."""
+    command = [sys.executable, "-m", "tests.campaigns.kill.contest"]
+    command += ["--teams", "4", "--courts", "2", "--kills", "6"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=900)
     assert done.returncode == 0, done.stdout + done.stderr
 
@@ -50,7 +48,7 @@ def test_whatever_is_killed_all_goes_on(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="kill -9")
 def test_what_killed_commands_leave_is_removed() -> None:
     """After kill -9 at random moments, the next start removes what was left."""
-    found, left = leftovers.killed(16)
+    found, left = leftovers.killed(16, fresh=False)
     assert found > 0
     assert not left
 

@@ -25,11 +25,11 @@ def test_no_robot_that_is_let_in_leaps() -> None:
     assert max(refused_m) > 2 * FARTHEST_M  # some refused robots did leave it
 
 
-@pytest.mark.long
+@pytest.mark.long(minutes=1)
 def test_no_search_finds_a_leap() -> None:
-    """Among 150 random robots and 150 variants, none leaves its start place or scores."""
-    found = list(search(150, 150, os.cpu_count() or 1, seed=0))
+    """Among 75 random robots and 75 variants, none leaves its start place or scores."""
+    found = list(search(75, 75, os.cpu_count() or 1, seed=0))
     leaps_m = [one.leap_m for one in found if one.leap_m is not None]
-    assert len(leaps_m) > 35
+    assert len(leaps_m) > 17
     assert max(leaps_m) <= FARTHEST_M
     assert not any(one.scored for one in found)

@@ -125,8 +125,11 @@ def test_the_commands_from_an_empty_folder_to_standings(
     """The documented commands set up, play, publish and verify a contest, in this order."""
     monkeypatch.chdir(tmp_path)
     assert lacoc("contest", "init")[0] == 0
-    with Path("contest.toml").open("a", encoding="utf-8") as file:
-        file.write(FINAL.replace('after = "swiss"\n', ""))
+    file = Path("contest.toml")
+    text, start = file.read_text("utf-8"), 'settings.match.start = "ready"\n'
+    assert start in text
+    # The stages of the file as they are, but games of 4 s instead of minutes.
+    file.write_text(text.replace(start, FINAL[FINAL.index("settings") :]), "utf-8")
     assert lacoc("contest", "check")[0] == 0
     for team in ("Bees", "Ants"):
         code, said, _ = lacoc("contest", "enter", team, "--bot", "planner")

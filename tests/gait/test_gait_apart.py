@@ -18,9 +18,10 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals and lim
 
 
 def _under_limits(code: str) -> subprocess.CompletedProcess[bytes]:
-    """Run code in a process with the limits of the one that reads."""
+    """Run code in a process with the limits of the one that reads, but 1 s of the processor."""
     limits = (
-        "from lacoc_shared.gait.workbook import apart\napart._limit_memory()\napart._limit_time()"
+        "from lacoc_shared.gait.workbook import apart\napart._PROCESSOR_S = 1\n"
+        "apart._limit_memory()\napart._limit_time()"
     )
     return subprocess.run([sys.executable, "-c", f"{limits}\n{code}"], capture_output=True)
 

@@ -266,7 +266,7 @@ def test_the_coach_repairs_a_wrong_sign(
     page.cell_is(1, 14, "40")
 
 
-@pytest.mark.long
+@pytest.mark.long(minutes=1)
 def test_other_gaits_are_watched_and_taken(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:

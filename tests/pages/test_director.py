@@ -78,6 +78,7 @@ def begin(url: str, key: str, court: str, stack: ExitStack) -> PageClient:
     return referee
 
 
+@pytest.mark.long(minutes=1)
 def test_pages_follow_the_director(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:

@@ -141,6 +141,7 @@ def test_every_slide_can_be_read(
     assert kinds == {"now", "tables", "bracket", "ratings", "podium"}
 
 
+@pytest.mark.long(minutes=1)
 def test_the_match_fills_the_projector_and_its_champion_stands_at_the_end(
     tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:

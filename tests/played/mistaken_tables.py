@@ -41,8 +41,20 @@ class Mistaken(NamedTuple):
     """The table without the mistake."""
 
 
-class Outcome(NamedTuple):
+class Said(NamedTuple):
     """What a person is told about a table with a mistake."""
+
+    code: str
+    """The code of the first sentence; empty: nothing was found."""
+    named: bool
+    """Whether the first sentence names the mistake."""
+    pointed: bool
+    """Whether it points at a wrong cell."""
+    sentences: tuple[str, ...]
+
+
+class Outcome(NamedTuple):
+    """What a person is told about a table with a mistake, and what the coach repairs."""
 
     robot: str
     kind: str
@@ -259,17 +271,15 @@ def sequence_of(table_deg: Floats) -> tuple[Posture, ...]:
     return tuple(tuple(map(float, row)) for row in rows)
 
 
-def told(table: Mistaken, codes: tuple[str, ...], *, repairs: bool = True) -> Outcome:
-    """Let a robot walk with a table: return what the first sentence says, and what is repaired.
+def told(table: Mistaken, codes: tuple[str, ...]) -> Said:
+    """Let a robot walk with a table, and return what is said about it.
 
     Args:
         table: the table.
         codes: codes of sentences that name its mistake.
-        repairs: whether the coach tries to repair it.
     """
     robot = entry_of(table.robot).robot
-    sequence = sequence_of(table.table_deg)
-    gait = Gait(None, LocomotionTable((*((robot.start_posture,),) * KEY, sequence)))
+    sequence, gait = _gait_of(table)
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, KEY)
     walk = course_of(table.robot).walk(gait, [press])
     explained = explain(robot, walk, measure(walk), press, sequence)
@@ -277,25 +287,39 @@ def told(table: Mistaken, codes: tuple[str, ...], *, repairs: bool = True) -> Ou
     code = first.said.code.removeprefix("explain.") if first else ""
     cell = first.cell if first else None
     at = None if cell is None else (cell.posture, *divmod(cell.joint, len(robot.legs)))
-    said = tuple(render(one.said) for one in explained)
-    task = task_of(robot, gait, KEY, Goal.FORWARD, None)
+    sentences = tuple(render(one.said) for one in explained)
+    return Said(code, code in codes, at in table.cells, sentences)
+
+
+def repaired(table: Mistaken, codes: tuple[str, ...]) -> Outcome:
+    """Let the coach repair a table; arguments as in `told`."""
+    first = told(table, codes)
+    said = first.sentences
+    task = task_of(entry_of(table.robot).robot, _gait_of(table)[1], KEY, Goal.FORWARD, None)
     good = KeyTable.of(sequence_of(table.good_deg))
     good_mm_s = try_table(task._replace(table=good), good.angles_deg).speed_mm_s
     before_mm_s = after_mm_s = try_table(task, task.table.angles_deg).speed_mm_s
-    for one in repair(HereTrials(task)) if repairs else ():
+    for one in repair(HereTrials(task)):
         after_mm_s = one.after.speed_mm_s
         said = (*said, f"{render(one.said)} {one.before.speed_mm_s:.0f} -> {after_mm_s:.0f}")
     return Outcome(
         table.robot,
         table.kind,
-        code,
-        code in codes,
-        at in table.cells,
+        first.code,
+        first.named,
+        first.pointed,
         good_mm_s,
         before_mm_s,
         after_mm_s,
         said,
     )
+
+
+def _gait_of(table: Mistaken) -> tuple[tuple[Posture, ...], Gait]:
+    """Return the postures of a table, and a gait that has them at its key `KEY`."""
+    sequence = sequence_of(table.table_deg)
+    stand = (entry_of(table.robot).robot.start_posture,)
+    return sequence, Gait(None, LocomotionTable((*(stand,) * KEY, sequence)))
 
 
 class HereTrials(Trials):

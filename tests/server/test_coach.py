@@ -197,7 +197,8 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
             cli.main(["coach", *words, "--json"])
         return json.loads(capsys.readouterr().out)
 
-    assert len(found(str(SAMPLE))["matters"]) == 72
+    small = SAMPLE.parents[1] / "quadruped" / SAMPLE.name
+    assert len(found(str(small), "--robot", "quadruped")["matters"]) == 48
     wrong, out = tmp_path / "Loco-data.txt", tmp_path / "better.txt"
     row = "1 Key\t0\t0\t-45\t0\t0\t45\t20\t20\t20\t20\t20\t20\t40\t0\t40"
     text = SAMPLE.read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mistaken_tables import GOOD, KEY, KINDS, beginners, mistaken, sequence_of, told
+from mistaken_tables import GOOD, KEY, KINDS, beginners, mistaken, repaired, sequence_of, told
 from sample_walks import entry_of
 
 from lacoc_server.studio.coach.coach import task_of
@@ -22,7 +22,7 @@ BEGINNERS = list(beginners())
 @pytest.mark.parametrize("index", range(len(BEGINNERS)), ids=[one.kind for one, _ in BEGINNERS])
 def test_the_first_sentence_names_a_beginners_mistake(index: int) -> None:
     """The first sentence names the mistake of a beginner's table, and points at a wrong cell."""
-    found = told(*BEGINNERS[index], repairs=False)
+    found = told(*BEGINNERS[index])
     assert found.named, found
     assert found.pointed, found
 
@@ -31,7 +31,7 @@ def test_the_first_sentence_names_a_beginners_mistake(index: int) -> None:
 @pytest.mark.parametrize("kind", ["zeros", "2nd -40", "rows 2, 3 changed", "left Roots' signs"])
 def test_the_coach_repairs_a_beginners_mistake(kind: str) -> None:
     """What the coach repairs, in physics, brings back nine tenths of the lost speed."""
-    found = told(*next(one for one in BEGINNERS if one[0].kind == kind))
+    found = repaired(*next(one for one in BEGINNERS if one[0].kind == kind))
     assert found.lost
     assert found.back, found
 

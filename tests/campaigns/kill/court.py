@@ -22,8 +22,10 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from arguments import arguments
+from lacoc_process import ALONE, started
 from ports import free_port
 
 from lacoc_client.play.controller import Controller
@@ -68,15 +70,34 @@ class Figures:
     verified: int = 0
     not_same: list[str] = field(default_factory=list)
 
+    @property
+    def wrong(self) -> int:
+        """Return how much was wrong or lost; 0: all is right."""
+        bad = self.wrong_phase + self.differing_hashes + self.lost_commands
+        return bad + self.lost_decisions + len(self.not_same)
+
 
 def main() -> None:
     """Kill courts, and print the counts."""
     options = arguments(__doc__, kills=100, seed=1)
-    chance = random.Random(options.seed)
+    figures = killed(options.kills, options.seed)
+    print(json.dumps({**figures.__dict__, "ready_s": _spread(figures.ready_s)}))
+    sys.exit(bool(figures.wrong))
+
+
+def killed(kills: int, seed: int, *, fresh: bool = True) -> Figures:
+    """Kill courts, and print the counts after each match.
+
+    Args:
+        kills: how many at least.
+        seed: chooses the moments.
+        fresh: whether each court gets a new interpreter, as the time until it is back needs it.
+    """
+    chance = random.Random(seed)
     figures = Figures()
-    while figures.kills < options.kills:
+    while figures.kills < kills:
         with tempfile.TemporaryDirectory() as folder:
-            _Trial(Path(folder), chance, figures).run()
+            _Trial(Path(folder), chance, figures, fresh).run()
         print(
             f"{figures.kills} kills: {figures.wrong_phase} in a wrong phase, "
             f"{figures.differing_hashes} hashes of {figures.frames} differ, lost "
@@ -85,9 +106,7 @@ def main() -> None:
             f"{figures.verified} records same, not same: {figures.not_same}",
             flush=True,
         )
-    print(json.dumps({**figures.__dict__, "ready_s": _spread(figures.ready_s)}))
-    bad = figures.wrong_phase + figures.differing_hashes + figures.lost_commands
-    sys.exit(bool(bad + figures.lost_decisions + len(figures.not_same)))
+    return figures
 
 
 def _spread(times_s: list[float]) -> str:
@@ -97,13 +116,14 @@ def _spread(times_s: list[float]) -> str:
 class _Trial:
     """One match, whose court is killed as planned."""
 
-    def __init__(self, folder: Path, chance: random.Random, figures: Figures) -> None:
+    def __init__(self, folder: Path, chance: random.Random, figures: Figures, fresh: bool) -> None:
         self._folder = folder / "recordings"
         self._contest = folder / "contest.toml"
         self._contest.write_text(_contest())
         self._chance = chance
         self._figures = figures
-        self._process: subprocess.Popen[str] | None = None
+        self._fresh = fresh
+        self._process: subprocess.Popen[Any] | None = None
         self._answered: list[DecisionReply] = []
         self._seen: dict[int, Frame] = {}
 
@@ -124,19 +144,8 @@ class _Trial:
         self._check_record()
 
     def _serve(self) -> None:
-        words = [str(self._contest), "--json"]
-        self._process = subprocess.Popen(
-            [
-                sys.executable,
-                "-m",
-                "tests.processes.alone",
-                *words,
-                "--recordings",
-                str(self._folder),
-            ],
-            stdout=subprocess.PIPE,
-            text=True,
-        )
+        words = (str(self._contest), "--json", "--recordings", str(self._folder))
+        self._process = started(ALONE, *words, fresh=self._fresh, stdout=subprocess.PIPE, text=True)
 
     def _stop(self) -> None:
         assert self._process is not None

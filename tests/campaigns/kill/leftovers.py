@@ -17,9 +17,11 @@ from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import psutil
 from arguments import arguments
+from lacoc_process import started
 
 _LONGEST_S = 5.0
 _END_S = 60.0
@@ -40,12 +42,13 @@ def _commands(folder: Path) -> dict[str, list[str]]:
     }
 
 
-def killed(kills: int, seed: int = 0) -> tuple[int, Counter[str]]:
+def killed(kills: int, seed: int = 0, *, fresh: bool = True) -> tuple[int, Counter[str]]:
     """Kill commands at random moments.
 
     Args:
         kills: how many.
         seed: chooses commands and moments.
+        fresh: whether each command gets a new interpreter, as users' commands do.
 
     Returns:
         How many folders they left in all, and how many of them the next start did not remove, by
@@ -58,35 +61,32 @@ def killed(kills: int, seed: int = 0) -> tuple[int, Counter[str]]:
         folder.mkdir()
         temporary.mkdir()
         environment = {**os.environ, "TMPDIR": str(temporary), "HOME": str(folder)}
-        _run(["contest", "init", str(folder / "contest.toml")], folder, environment)
+        options = {"cwd": folder, "env": environment, "fresh": fresh}
+        _run(["contest", "init", str(folder / "contest.toml")], options)
         commands = _commands(folder)
         for _ in range(kills):
             name = dice.choice([*commands])
-            _kill(commands[name], folder, environment, dice.uniform(0.1, _LONGEST_S))
+            _kill(commands[name], options, dice.uniform(0.1, _LONGEST_S))
             found += len([*temporary.iterdir()])
-            _run(["simulate", "straight", "straight", "--seconds", "0.1"], folder, environment)
+            _run(["simulate", "straight", "straight", "--seconds", "0.1"], options)
             for path in temporary.iterdir():
                 left[f"{name}: {path.name.rpartition('-')[0]}"] += 1
     return found, left
 
 
-def _run(words: list[str], folder: Path, environment: Mapping[str, str]) -> None:
+def _run(words: list[str], options: Mapping[str, Any]) -> None:
     """Run a command to its end; it makes a folder for temporary files, and so sweeps first."""
+    with started(*words, stdout=subprocess.DEVNULL, **options) as command:
+        assert command.wait() == 0
     swept = "from lacoc_shared.command.scratch import Scratch; Scratch('x').close()"
-    for line in ([sys.executable, "-m", "lacoc_shared", *words], [sys.executable, "-c", swept]):
-        subprocess.run(line, cwd=folder, env=environment, check=True, stdout=subprocess.DEVNULL)
+    where = {"cwd": options["cwd"], "env": options["env"]}
+    subprocess.run([sys.executable, "-c", swept], check=True, **where)
 
 
-def _kill(words: list[str], folder: Path, environment: Mapping[str, str], after_s: float) -> None:
+def _kill(words: list[str], options: Mapping[str, Any], after_s: float) -> None:
     """Start a command, kill it after some seconds, and wait until its own processes have gone."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "lacoc_shared", *words],
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+    none = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+    process = started(*words, **none, **options)
     with suppress(subprocess.TimeoutExpired):
         process.wait(after_s)
     own: list[psutil.Process] = []
