@@ -1,6 +1,52 @@
-/** The games of a match: their numbers, and points by team whichever seat it has. Pure. */
+/** The games that come next, and those of a match: their points by team, whoever sits left. Pure. */
 
-import type { ContestMatch } from "./sheet.gen";
+import { type ContestMatch, type ContestSheet, type Later, running } from "./sheet";
+
+/** A game that is on a court, or one of the next whose teams are known. */
+export interface NextGame {
+  pairing: string;
+  game: number;
+  teams: [string, string];
+  /** The court that it was given to, or will probably be; "" if nobody knows. */
+  court: string;
+  /** The id of the call that gave it to the court; "": it has none yet. */
+  call: string;
+  /** About when it begins, in milliseconds since 1970; 0: nobody knows, or it has been called. */
+  at_ms: number;
+}
+
+/** The first games that are on courts or come next, at most so many. */
+export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
+  const games = [
+    ...running(sheet).map(({ id, ...one }) => ({ ...one, call: id, at_ms: 0 })),
+    ...sheet.coming.map((one) => ({ ...one, call: "" })),
+    // A final waits for the match for third place, but who plays it is known.
+    ...sheet.later.flatMap((one) => {
+      const teams = teamsOfLater(one);
+      return teams ? [{ ...one, game: 1, teams, call: "" }] : [];
+    }),
+  ];
+  return games.slice(0, most).map(({ pairing, game, teams, court, call, at_ms }) => ({
+    pairing,
+    game,
+    teams,
+    court,
+    call,
+    at_ms,
+  }));
+}
+
+/** The teams of a match that can't be played yet; null while they are not both known. */
+export function teamsOfLater({ who }: Later): [string, string] | null {
+  const [left, right] = who.map(({ code, values }) => (code === "who.team" ? values?.team : ""));
+  return left && right ? [String(left), String(right)] : null;
+}
+
+/** The next game of a team after the one of a call; null if none is known. */
+export function nextGameOf(sheet: ContestSheet, team: string, call: string): NextGame | null {
+  const games = nextGames(sheet, Number.POSITIVE_INFINITY);
+  return games.find((one) => one.teams.includes(team) && (!one.call || one.call !== call)) ?? null;
+}
 
 /** The numbers of the games that have been played, and of the next one. */
 export function gamesOf(match: ContestMatch): number[] {
