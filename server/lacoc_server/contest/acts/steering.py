@@ -147,8 +147,8 @@ def undrawing(contest: Contest, stage: str, reason: str) -> Undrawn:
     """Take the draw of a stage back; it waits until the organiser draws it again.
 
     Raises:
-        UserError: if no stage is named, it is not drawn, somebody has played in it, another stage was drawn since, a
-            court has a game of it, or the reason is missing.
+        UserError: if no stage is named, it is not drawn, somebody has played in it, another stage
+            was drawn since, a court has a game of it, or the reason is missing.
     """
     drawn = [view.name for view in contest.stages]
     if not stage:
