@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import proxies
@@ -77,6 +78,33 @@ def test_a_right_address_is_ok(tmp_path: Path, authority: trustme.CA) -> None:
             ("certificate-found", "pages-found", "websocket-found"), Status.OK
         )
         assert found(public, "Other Cup")["pages-another"] is Status.PROBLEM
+
+
+@pytest.mark.parametrize(
+    ("issuer", "hours", "expected", "status"),
+    [
+        ("A University", 9, "certificate-hours", Status.NOTE),
+        ("A University", 30, "certificate-found", Status.NOTE),
+        ("Caddy Local Authority - ECC Intermediate", 9, "certificate-caddy", Status.OK),
+    ],
+)
+def test_a_certificate_that_ends_soon_is_noted_unless_caddy_renews_it(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    issuer: str,
+    hours: int,
+    expected: str,
+    status: Status,
+) -> None:
+    """Less than a day is told in hours; Caddy's own authority issues for hours only."""
+    authority = trustme.CA(organization_name=issuer)
+    authority.cert_pem.write_to_path(str(tmp_path / "authority.pem"))
+    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "authority.pem"))
+    port, end = free_port(), datetime.now(UTC) + timedelta(hours=hours)
+    pair = proxies.issue(tmp_path, authority, "localhost", not_after=end)
+    public = PublicAddress.of(f"https://localhost:{port}", *pair)
+    with gateway(public, port):
+        assert found(public)[expected] is status
 
 
 def test_a_certificate_of_nobody_is_a_problem(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from cup import NOW_MS, Cup
 
+from lacoc_server.contest.desk.overview import slots
 from lacoc_server.contest.league.facts import Called, Moved, Played, Recalled, Withdrawn
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.timetable.calling import (
@@ -16,6 +17,7 @@ from lacoc_server.contest.league.timetable.calling import (
     taken_back,
     wanted,
 )
+from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
 from lacoc_shared.words import render
 
 
@@ -170,3 +172,20 @@ def test_what_is_played_is_said(how: str, settings: dict[str, Any], said: list[s
     game = min(2, view.stage.settings.games)
     names = [render(fixture(contest, view, match, game), "en") for match in view.matches]
     assert names == said
+
+
+@pytest.mark.parametrize(
+    ("after_ms", "call", "absent"),
+    [(0, "", ()), (60_000, "", ("t002",)), (60_000, "other", ())],
+)
+def test_a_team_that_has_not_come_is_told_a_while_after_the_call(
+    after_ms: int, call: str, absent: tuple[str, ...]
+) -> None:
+    """A court that still has another match says nothing about this one."""
+    cup = Cup()
+    called = cup.call("cup:a1.1", "north", ("t001", "t002"))
+    there = SeenCourt(NOW_MS, call or called, missing=("t002",))
+    pace = ContestPace(cup.contest.running[0].at_ms + after_ms, 60_000)
+    known = OfficeKnowledge({"north": there}, pace, {})
+    (slot,) = (slot for slot in slots(cup.contest, known) if slot.running)
+    assert slot.absent == absent

@@ -6,11 +6,13 @@ import pytest
 from msgspec.structs import replace
 from office_room import CODE, KEY, NOW_MS, Room, said, sample
 
+from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Drawn, Entered, Played, Substituted, Undrawn
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
+from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
 from lacoc_server.contest.verify.published import check_published
 from lacoc_shared.messages.desk import (
@@ -160,8 +162,16 @@ def test_a_draw_is_taken_back_and_made_again(room: Room) -> None:
     assert said(room.ask(Undraw(secret=KEY, stage="finals", reason="x"))) == "league.not-drawn"
     room.ask(Undraw(secret=KEY, stage="cup", reason="a late team", really=True))
     assert room.view.undrawable is None
+    office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
+    note_plans(room.store, room.where.plans)  # as a restart of the office does
+    office.step()
+    assert office.contest.stages == (), "it waits for the organiser"
     room.enter("Eels", reason="a late train")
-    room.draw()
+    to_draw = room.view.to_draw
+    assert to_draw is not None
+    room.ask(Draw(secret=KEY, stage="cup", entries=to_draw.entries))
+    note_plans(room.store, room.where.plans)
+    assert room.view.to_draw is None
     (view,) = compute(room.facts, FORMATS).stages
     assert view.stage.entries == ("Ants", "Bees", "Crabs", "Dogs", "Eels")
     assert wrongs(room.facts) == []

@@ -64,7 +64,8 @@ def test_a_day_by_commands(file: Path, lacoc: Run) -> None:
 
     does("draw", "--lot", "4 2 6", "--yes", says="is drawn")
     drawn = contest(file).stages[0].stage.entries
-    does("undraw", "finals", "--reason", "a mistake", "--yes", says="was taken back")
+    refuses("undraw", says="This one can be taken back now: finals")
+    does("undraw", "finals", "--reason", "a mistake", "--yes", says="stays undrawn until")
     refuses("undraw", "finals", "--reason", "again", "--yes", says="has not been drawn")
     hand = ",".join(reversed(drawn))
     refuses("draw", "--order", "Ants,Bees", "--yes", says="exactly these teams")

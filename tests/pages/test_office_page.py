@@ -205,10 +205,20 @@ def decide(office: Page) -> None:
     expect(dialog.locator(".effects li").first).to_contain_text("round 1 (")
     expect(go).to_be_disabled()
     assert violations(office) == []
+    dialog.get_by_label("A team did not come").check()
+    teams = dialog.locator(".absent label")
+    expect(teams).to_have_count(2)
+    teams.first.click()
+    expect(dialog.locator(".effects li").first).to_contain_text(teams.nth(1).inner_text())
+    assert violations(office) == []
+    dialog.get_by_label("The game counts with this result").check()
     dialog.get_by_label("Reason").fill("the scores were swapped")
     go.click()
     expect(dialog).to_have_count(0)
     expect(office.locator(".rulings .score").first).to_have_text("3 : 9")
+    office.locator(".rulings li").first.get_by_role("button").click()
+    expect(dialog.locator(".points p")).to_contain_text("3 : 9")
+    office.keyboard.press("Escape")
 
 
 def late_files(office: Page, team: Page, event: Event) -> None:

@@ -362,8 +362,10 @@ def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
         call = office.assign(*teams, arena_settings=settings)
         assert office.link.sheet is not None
         match_id = office.link.sheet.match_id
+        office.until(lambda: office.link.missing == ("Ants", "Bees"))
         office.plays("Ants", "Bees", until=lambda: (office.link.clock_s or 0) > 1)
         assert office.link.phase is Phase.PLAYING
+        assert office.link.missing == ()
         office.process.kill()
         office.process.wait()
     with office_of(contest, records, "--speed", "4") as office:

@@ -358,6 +358,8 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
     running: bool = False
     begun: bool = False
     """Whether its game at the court has begun; a move no longer changes this game."""
+    absent: tuple[str, ...] = ()
+    """Teams that have not come to the court, a while after their game was called."""
     moved: MatchMove | None = None
     """How it was moved; None: it was not."""
     held: Phrase | None = None

@@ -6,6 +6,7 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { bracket } from "../../../client/web/src/core/contest/bracket.ts";
 import { fit } from "../../../client/web/src/core/contest/fit.ts";
+import * as g from "../../../client/web/src/core/contest/games.ts";
 import { places, podium } from "../../../client/web/src/core/contest/places.ts";
 import * as c from "../../../client/web/src/core/contest/sheet.ts";
 import { slides } from "../../../client/web/src/core/contest/slides.ts";
@@ -50,15 +51,26 @@ test("teams that have left are named, and do not count", () => {
 });
 
 test("the next games are those on courts, then those that can be played", () => {
-  const all = c.nextGames(groups, 99);
+  const all = g.nextGames(groups, 99);
   assert.equal(all.length, groups.running.length + groups.coming.length);
   const courts = c.running(groups).map(({ court }) => court);
   assert.deepEqual(
     all.map(({ court }) => court),
     [...courts, ...groups.coming.map(() => "")],
   );
-  assert.deepEqual(c.nextGames(groups, 1), all.slice(0, 1));
-  assert.deepEqual(c.nextGames(finals, 3), []);
+  assert.deepEqual(g.nextGames(groups, 1), all.slice(0, 1));
+  assert.deepEqual(g.nextGames(finals, 3), []);
+});
+
+test("a final that waits for another match is among the next games once its teams are known", () => {
+  const team = (name) => ({ code: "who.team", values: { team: name } });
+  const place = { pairing: "cup:w2.1", stage: "cup", court: "east", at_ms: 60_000 };
+  const known = { ...place, fixture: { code: "x" }, who: [team("Eels"), team("Ants")] };
+  const unknown = { ...known, who: [team("Eels"), { code: "who.winner", values: {} }] };
+  const sheet = { running: [], coming: [], later: [known] };
+  const [next] = g.nextGames(sheet, 4);
+  assert.deepEqual([next.teams, next.court, next.at_ms], [["Eels", "Ants"], "east", 60_000]);
+  assert.deepEqual(g.nextGames({ ...sheet, later: [unknown] }, 4), []);
 });
 
 test("rounds have the matches of all groups, and no byes in a bracket", () => {
@@ -109,10 +121,10 @@ test("a drawn game is half a game for each, so two of them are a tie", () => {
 test("the next game of a team is the one after the call that was played", () => {
   const one = { pairing: "cup:w1.1", game: 1, teams: ["Ants", "Bees"], court: "east" };
   const two = { pairing: "cup:w2.1", game: 1, teams: ["Cats", "Ants"], court: "west", at_ms: 5 };
-  const sheet = { running: [{ ...one, id: "c1" }], coming: [two] };
-  assert.equal(c.nextGameOf(sheet, "Ants", "c1").at_ms, 5);
-  assert.equal(c.nextGameOf(sheet, "Bees", "c1"), null);
-  assert.equal(c.nextGameOf(sheet, "Bees", "c0").court, "east");
+  const sheet = { running: [{ ...one, id: "c1" }], coming: [two], later: [] };
+  assert.equal(g.nextGameOf(sheet, "Ants", "c1").at_ms, 5);
+  assert.equal(g.nextGameOf(sheet, "Bees", "c1"), null);
+  assert.equal(g.nextGameOf(sheet, "Bees", "c0").court, "east");
 });
 
 test("a match says how it ended where its score does not", () => {

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { bySeat, gamesOf, pointsOf } from "../../../client/web/src/core/contest/games.ts";
 import { places } from "../../../client/web/src/core/contest/places.ts";
 import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
 import { clockOf, columns, dropped, momentOf } from "../../../client/web/src/core/timetable.ts";
@@ -126,4 +127,31 @@ test("an address is read however it is typed", () => {
     assert.equal(enterPage(typed), "https://uni.example/cup/enter");
   }
   for (const typed of ["", "  ", "http://"]) assert.equal(enterPage(typed), "");
+});
+
+test("points of each game are in the order of the match's teams, whoever sat left", () => {
+  const match = {
+    teams: ["Eels", "Wasps"],
+    games: [
+      { number: 1, teams: ["Eels", "Wasps"], scores: [18, 12] },
+      { number: 2, teams: ["Wasps", "Eels"], scores: [19, 17] },
+    ],
+    next_game: 3,
+    next_seats: ["Wasps", "Eels"],
+  };
+  assert.deepEqual(gamesOf(match), [1, 2, 3]);
+  assert.deepEqual(
+    [1, 2, 3].map((number) => pointsOf(match, number)),
+    [[18, 12], [17, 19], null],
+  );
+  assert.deepEqual(
+    [1, 2, 3].map((number) => bySeat(match, number, [4, 5])),
+    [
+      [4, 5],
+      [5, 4],
+      [5, 4],
+    ],
+  );
+  assert.deepEqual(gamesOf({ teams: ["Eels", "Wasps"] }), [1]);
+  assert.deepEqual(bySeat({ teams: ["Eels", "Wasps"] }, 1, [4, 5]), [4, 5]);
 });

@@ -24,6 +24,9 @@ from lacoc_shared.words import say
 _WAIT_S = 10.0
 _SOON_DAYS = 14.0
 _DAY_S = 86_400.0
+_HOUR_S = 3600.0
+_CADDY = "Caddy Local Authority"
+"""Begins the name of the authority that Caddy makes for itself. Its certificates last for hours."""
 
 
 class _PageAnswer(NamedTuple):
@@ -116,10 +119,15 @@ def _certificate(public: PublicAddress) -> Finding:
         _context(public).wrap_socket(raw, server_hostname=public.host) as wrapped,
     ):
         shown = wrapped.getpeercert() or {}
-    end_s = ssl.cert_time_to_seconds(str(shown["notAfter"]))
-    days = (end_s - time.time()) / _DAY_S
+    left_s = ssl.cert_time_to_seconds(str(shown["notAfter"])) - time.time()
+    days = left_s / _DAY_S
     found = say("doctor.certificate-found", days=days)
+    if days < 1:
+        found = say("doctor.certificate-hours", hours=left_s / _HOUR_S)
     about = say("doctor.certificate")
+    issuer = [pair[-1] for part in shown.get("issuer", ()) for pair in part]
+    if any(str(name).startswith(_CADDY) for name in issuer):
+        return Finding(about, Status.OK, say("doctor.certificate-caddy", left=found))
     if days > _SOON_DAYS:
         return Finding(about, Status.OK, found)
     return Finding(about, Status.NOTE, found, say("doctor.certificate-todo"))

@@ -223,6 +223,7 @@ export interface Slot {
   at_ms: number;
   running: boolean;
   begun: boolean;
+  absent: string[];
   moved: MatchMove | null;
   held: Phrase | null;
 }

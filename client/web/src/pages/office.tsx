@@ -90,7 +90,9 @@ export default function Office() {
       {over?.is === "move" && view && (
         <MoveDialog organiser={organiser} view={view} pairing={over.pairing} />
       )}
-      {over?.is === "rule" && <RuleDialog organiser={organiser} pairing={over.pairing} />}
+      {over?.is === "rule" && view && (
+        <RuleDialog organiser={organiser} pairing={over.pairing} view={view} />
+      )}
       {settings.value && (
         <Settings
           onClose={() => {

@@ -139,7 +139,10 @@ def substitute(
 
 
 def undraw(
-    stage: Annotated[str, typer.Argument(metavar="STAGE", help="Name in the contest file.")],
+    stage: Annotated[
+        str,
+        typer.Argument(metavar="STAGE", help="Name in the contest file; none: list the stages."),
+    ] = "",
     contest: ContestArgument = FILE,
     reason: Reason = "",
     yes: Yes = False,
@@ -147,7 +150,7 @@ def undraw(
 ) -> None:
     """Take the draw of a stage back that nobody has played in: show what that changes, ask.
 
-    It is drawn again, by the office or as you draw it: also with a team that came late.
+    It stays undrawn until you draw it again: then also with a team that came late.
     """
 
     def undrawn(now: "Contest") -> "AnyFact":

@@ -144,13 +144,16 @@ def undrawable(contest: Contest) -> str:
 
 
 def undrawing(contest: Contest, stage: str, reason: str) -> Undrawn:
-    """Take the draw of a stage back.
+    """Take the draw of a stage back; it waits until the organiser draws it again.
 
     Raises:
-        UserError: if it is not drawn, somebody has played in it, another stage was drawn since, a
-            court has a game of it, or the reason is missing.
+        UserError: if no stage is named, it is not drawn, somebody has played in it, another stage
+            was drawn since, a court has a game of it, or the reason is missing.
     """
     drawn = [view.name for view in contest.stages]
+    if not stage:
+        now = undrawable(contest) or None
+        raise UserError(say("day.which-stage", drawn=drawn or None, now=now))
     if stage not in drawn:
         raise UserError(say("league.not-drawn", stage=stage))
     if stage != undrawable(contest):
@@ -183,5 +186,5 @@ def done(contest: Contest, fact: AnyFact) -> Phrase:
         case Substituted():
             return say("decided.substituted", team=fact.team, substitute=fact.substitute)
         case Undrawn():
-            return say("decided.undrawn", stage=title(contest, fact.stage))
+            return say("day.undrawn", stage=title(contest, fact.stage))
     raise TypeError(type(fact).__name__)

@@ -21,6 +21,7 @@ from lacoc_server.contest.league.facts import (
     Replaced,
     Resumed,
     Shifted,
+    Undrawn,
     decisions,
     ordered,
     stage_of,
@@ -126,6 +127,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """In the order in which they were drawn."""
     planned: tuple[Planned, ...]
     """The plans of stages that are not drawn yet, in the order in which they were first made."""
+    undrawn: frozenset[str]
+    """Those of them whose draw was taken back."""
     running: tuple[Called, ...]
     """Games that are on a court now."""
     moves: tuple[Moved, ...]
@@ -243,6 +246,11 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         closed=any(isinstance(fact, Closed) for fact in known),
         stages=tuple(stages),
         planned=tuple(planned),
+        undrawn=frozenset(
+            fact.stage
+            for fact in known
+            if isinstance(fact, Undrawn) and fact.id not in unused and fact.stage in coming
+        ),
         running=_running(known),
         moves=_moves(known),
         decisions=decisions(known),

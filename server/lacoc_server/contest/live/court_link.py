@@ -26,7 +26,7 @@ from lacoc_shared.messages.office import (
     Withdraw,
 )
 from lacoc_shared.network.session import Mailbox, NoReply, Question, Refused, Session
-from lacoc_shared.seat import BEAT_S, Phase
+from lacoc_shared.seat import BEAT_S, Phase, SeatFlag
 from lacoc_shared.words import Phrase
 
 T = TypeVar("T")
@@ -242,6 +242,16 @@ class CourtLink:
         if sheet is None or frame is None or frame.match != sheet.match:
             return None
         return Phase(frame.phase)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Teams whose seats nobody has joined, in a match that has not begun."""
+        if self.phase not in (Phase.LOBBY, Phase.READY):
+            return ()
+        assert self.frame is not None
+        assert self.sheet is not None
+        seats = zip(self.sheet.seats, self.frame.seats, strict=False)
+        return tuple(seat.team for seat, now in seats if not now.flags & SeatFlag.JOINED)
 
     @property
     def clock_s(self) -> float | None:

@@ -170,7 +170,8 @@ class Office:
             who = outcome(_SEATS, result.outcome)
             ended = GameEnd((left, right), who, f"{result.match_id}.mcap")
         begun, there = link.phase in _BEGUN, link.is_there
-        return SeenCourt(self._heard_ms[name], link.call or "", begun, ended, there)
+        heard_ms, call = self._heard_ms[name], link.call or ""
+        return SeenCourt(heard_ms, call, begun, ended, there, link.missing)
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.

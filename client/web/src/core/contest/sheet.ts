@@ -71,41 +71,6 @@ export function running({ running }: ContestSheet): Called[] {
   return running.toSorted((a, b) => a.court.localeCompare(b.court, "en", { numeric: true }));
 }
 
-/** A game that is on a court or can be played next. */
-export interface NextGame {
-  pairing: string;
-  game: number;
-  teams: [string, string];
-  /** The court that it was given to, or will probably be; "" if nobody knows. */
-  court: string;
-  /** The id of the call that gave it to the court; "": it has none yet. */
-  call: string;
-  /** About when it begins, in milliseconds since 1970; 0: nobody knows, or it has been called. */
-  at_ms: number;
-}
-
-/** The first games that are on courts or come next, at most so many. */
-export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
-  const games = [
-    ...running(sheet).map(({ id, ...one }) => ({ ...one, call: id, at_ms: 0 })),
-    ...sheet.coming.map((one) => ({ ...one, call: "" })),
-  ];
-  return games.slice(0, most).map(({ pairing, game, teams, court, call, at_ms }) => ({
-    pairing,
-    game,
-    teams,
-    court,
-    call,
-    at_ms,
-  }));
-}
-
-/** The next game of a team after the one of a call; null if none is known. */
-export function nextGameOf(sheet: ContestSheet, team: string, call: string): NextGame | null {
-  const games = nextGames(sheet, Number.POSITIVE_INFINITY);
-  return games.find((one) => one.teams.includes(team) && (!one.call || one.call !== call)) ?? null;
-}
-
 /** The teams with which a team shares its rank because all tie-breaks left them equal. */
 export function equals(table: Table, { team, rank, shares }: Standing): string[] {
   if (!shares) return [];

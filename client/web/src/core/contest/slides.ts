@@ -1,6 +1,7 @@
 /** What a projector shows of a contest, one after another. Pure. */
 
 import { bracket, type Cut, feeders } from "./bracket";
+import { type NextGame, nextGames } from "./games";
 import {
   byId,
   type ContestSheet,
@@ -9,8 +10,6 @@ import {
   isKnockout,
   isMatch,
   isOver,
-  type NextGame,
-  nextGames,
   type StageView,
   stateOf,
   type Table,

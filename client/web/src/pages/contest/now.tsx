@@ -2,11 +2,12 @@
 
 import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
+import { teamsOfLater } from "../../core/contest/games";
 import { LiveScores } from "../../core/contest/live";
 import { type ContestSheet, found, running, score, written } from "../../core/contest/sheet";
 import type { CourtScore } from "../../core/desk.gen";
 import { Phase } from "../../core/wire";
-import { t } from "../../i18n";
+import { said, t } from "../../i18n";
 import { BEATS_PER_S, clock } from "../../i18n/words";
 import { TeamLink } from "./parts";
 import { expected, gameTitle } from "./words";
@@ -18,8 +19,8 @@ export const live = new LiveScores();
 
 export function Now({ sheet }: { sheet: ContestSheet }) {
   useEffect(() => (ownPage ? undefined : live.start()), []);
-  const coming = sheet.coming.slice(0, COMING_MOST);
-  const more = sheet.coming.length - coming.length;
+  const coming = [...sheet.coming, ...sheet.later];
+  const more = coming.length - COMING_MOST;
   return (
     <section id="now" class="now" aria-label={t("contest.now")}>
       <div>
@@ -57,13 +58,19 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
         <h2>{t("contest.coming")}</h2>
         {!coming.length && <p class="muted">{t("contest.noneComing")}</p>}
         <ol class="coming">
-          {coming.map((one) => (
-            <li key={`${one.pairing}/${one.game}`}>
-              <Sides teams={one.teams} />
-              <p class="muted">{gameTitle(sheet, one.pairing, one.game)}</p>
-              <p class="expected">{expected(one)}</p>
-            </li>
-          ))}
+          {coming.slice(0, COMING_MOST).map((one) => {
+            const teams = "who" in one ? teamsOfLater(one) : one.teams;
+            return (
+              <li key={one.pairing}>
+                {teams && <Sides teams={teams} />}
+                {"who" in one && !teams && <p>{one.who.map(said).join(" – ")}</p>}
+                <p class="muted">
+                  {"who" in one ? said(one.fixture) : gameTitle(sheet, one.pairing, one.game)}
+                </p>
+                <p class="expected">{expected(one)}</p>
+              </li>
+            );
+          })}
         </ol>
         {more > 0 && <p class="muted">{t("contest.more", { count: more })}</p>}
       </div>

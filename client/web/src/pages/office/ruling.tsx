@@ -2,6 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { bySeat, gamesOf, pointsOf } from "../../core/contest/games";
 import {
   type ContestMatch,
   type ContestSheet,
@@ -11,7 +12,7 @@ import {
   type StageView,
   score,
 } from "../../core/contest/sheet";
-import type { Effect, Rule } from "../../core/desk";
+import type { Effect, OfficeView, Rule } from "../../core/desk";
 import { t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { matchTitle } from "../contest/words";
@@ -104,24 +105,27 @@ function Line({ sheet, view, match }: LineProps) {
 
 interface DialogProps extends Props {
   pairing: string;
+  view: OfficeView;
 }
 
 /** The dialog for a decision; it shows what the decision would change. */
-export function RuleDialog({ organiser, pairing }: DialogProps) {
+export function RuleDialog({ organiser, pairing, view }: DialogProps) {
   const sheet = organiser.feed.sheet.value;
   const there = sheet && found(sheet, pairing);
-  const kind = useSignal<Rule["kind"]>("result");
+  const late = view.slots.find((slot) => slot.running && slot.pairing === pairing)?.absent ?? [];
+  const points = there && pointsOf(there.match, 1);
+  const kind = useSignal<Rule["kind"]>(late.length ? "no-show" : "result");
   const game = useSignal(1);
-  const team = useSignal("");
-  const left = useSignal("");
-  const right = useSignal("");
+  const team = useSignal(late.length === 1 ? late[0]! : "");
+  // In the order of the match's teams: they change seats from game to game.
+  const first = useSignal(points ? `${points[0]}` : "");
+  const second = useSignal(points ? `${points[1]}` : "");
   const reason = useSignal("");
   const effect = useSignal<Effect | null>(null);
-  const seats = there && seatsOf(there.match, game.value);
   const isScore = kind.value === "result";
-  const scores: [number, number] = [Number(left.value), Number(right.value)];
+  const scores: [number, number] = [Number(first.value), Number(second.value)];
   const isWhole =
-    (!isScore || (left.value !== "" && right.value !== "" && scores.every(isPoints))) &&
+    (!isScore || (first.value !== "" && second.value !== "" && scores.every(isPoints))) &&
     (kind.value !== "no-show" || team.value !== "");
   const wish = {
     do: "rule",
@@ -129,7 +133,7 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
     pairing,
     game: game.value,
     team: kind.value === "no-show" ? team.value : "",
-    scores: isScore ? scores : null,
+    scores: isScore && there ? bySeat(there.match, game.value, scores) : null,
   } as const;
   useEffect(() => {
     effect.value = null;
@@ -142,9 +146,12 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
     return () => {
       newest = false;
     };
-  }, [organiser, isWhole, kind.value, game.value, team.value, left.value, right.value]);
-  if (!sheet || !there || !seats) return null;
-  const numbers = gamesOf(there.match);
+  }, [organiser, isWhole, kind.value, game.value, team.value, first.value, second.value]);
+  if (!sheet || !there) return null;
+  const { match } = there;
+  const teams = match.teams.map((one) => one ?? "");
+  const numbers = gamesOf(match);
+  const present = pointsOf(match, game.value);
   return (
     <Dialog title={matchTitle(sheet, pairing)} onClose={() => organiser.close()}>
       <form
@@ -155,7 +162,7 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
           if (done) organiser.close();
         }}
       >
-        <Line sheet={sheet} view={there.view} match={there.match} />
+        <Line sheet={sheet} view={there.view} match={match} />
         <fieldset>
           <legend>{t("office.decision")}</legend>
           {KINDS.map((one) => (
@@ -179,6 +186,9 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
               value={game.value}
               onChange={(event) => {
                 game.value = Number(event.currentTarget.value);
+                const now = pointsOf(match, game.value);
+                first.value = now ? `${now[0]}` : "";
+                second.value = now ? `${now[1]}` : "";
               }}
             >
               {numbers.map((number) => (
@@ -191,9 +201,9 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
         )}
         {isScore && (
           <div class="points">
-            {[left, right].map((points, place) => (
+            {[first, second].map((points, place) => (
               <label key={place} class="field">
-                <span>{t("office.pointsOf", { team: seats[place]! })}</span>
+                <span>{t("office.pointsOf", { team: teams[place]! })}</span>
                 <input
                   inputMode="numeric"
                   value={points.value}
@@ -203,25 +213,34 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
                 />
               </label>
             ))}
+            {present && (
+              <p class="muted">
+                {t("office.pointsNow", {
+                  first: teams[0]!,
+                  second: teams[1]!,
+                  points: present.join(" : "),
+                })}
+              </p>
+            )}
           </div>
         )}
         {kind.value === "no-show" && (
-          <label class="field">
-            <span>{t("office.absent")}</span>
-            <select
-              value={team.value}
-              onChange={(event) => {
-                team.value = event.currentTarget.value;
-              }}
-            >
-              <option value="" disabled />
-              {seats.map((one) => (
-                <option key={one} value={one}>
-                  {one}
-                </option>
-              ))}
-            </select>
-          </label>
+          <fieldset class="absent">
+            <legend>{t("office.absent")}</legend>
+            {teams.map((one) => (
+              <label key={one} class="check">
+                <input
+                  type="radio"
+                  name="absent"
+                  checked={team.value === one}
+                  onChange={() => {
+                    team.value = one;
+                  }}
+                />
+                {one}
+              </label>
+            ))}
+          </fieldset>
         )}
         <Reason reason={reason} />
         <Effects effect={effect.value} />
@@ -235,19 +254,6 @@ export function RuleDialog({ organiser, pairing }: DialogProps) {
       </form>
     </Dialog>
   );
-}
-
-/** The numbers of the games that have been played, and of the next one. */
-function gamesOf(match: ContestMatch): number[] {
-  const numbers = (match.games ?? []).map(({ number }) => number);
-  return match.next_game ? [...numbers, match.next_game] : numbers.length ? numbers : [1];
-}
-
-/** Who sat left and right in a game, or will sit there. */
-function seatsOf(match: ContestMatch, number: number): readonly [string, string] {
-  const game = match.games?.find((one) => one.number === number);
-  const teams = game?.teams ?? match.next_seats ?? match.teams;
-  return [teams[0] ?? "", teams[1] ?? ""];
 }
 
 function isPoints(value: number): boolean {

@@ -129,11 +129,20 @@ function Card({ organiser, slot }: { organiser: Organiser; slot: Slot }) {
   return (
     <>
       <span class="time">
-        {slot.running ? t("office.now") : slot.at_ms ? timeOf(slot.at_ms) : "–"}
+        {slot.running
+          ? t(slot.begun ? "office.now" : "office.called")
+          : slot.at_ms
+            ? timeOf(slot.at_ms)
+            : "–"}
       </span>
       <b class="versus">{versus}</b>
       <span class="muted">{said(slot.fixture)}</span>
       {slot.moved && <small class="moved">{t("office.moved")}</small>}
+      {slot.absent.map((team) => (
+        <small key={team} class="warning">
+          {t("office.notCome", { team, time: timeOf(slot.at_ms) })}
+        </small>
+      ))}
       {slot.held && <small class="warning">{said(slot.held)}</small>}
       {canMove(slot) && (
         <button

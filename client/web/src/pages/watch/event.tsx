@@ -3,7 +3,8 @@
 import { useComputed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { Feed } from "../../core/contest/feed";
-import { type ContestSheet, nextGames, stateOf, teamsOf } from "../../core/contest/sheet";
+import { nextGames } from "../../core/contest/games";
+import { type ContestSheet, stateOf, teamsOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";

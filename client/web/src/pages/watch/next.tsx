@@ -2,7 +2,8 @@
 
 import { useEffect } from "preact/hooks";
 import { Feed } from "../../core/contest/feed";
-import { type ContestSheet, nextGameOf, stateOf } from "../../core/contest/sheet";
+import { nextGameOf } from "../../core/contest/games";
+import { type ContestSheet, stateOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
 import { t } from "../../i18n";
 import { expected } from "../contest/words";

@@ -43,6 +43,8 @@ class SeenCourt(NamedTuple):
     """How the match ended; None: it has no official end."""
     there: bool = False
     """Whether the court answers now."""
+    missing: tuple[str, ...] = ()
+    """Teams that have not joined the match of the call; none once it has begun."""
 
 
 def results(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterator[AnyFact]:

@@ -175,8 +175,14 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | Rou
 
 
 def waits_for_organiser(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None:
-    """Return the draw that only the organiser can make now; None: there is none."""
-    if not (contest.closed and contest.planned and contest.planned[0].draw == "organiser"):
+    """Return the draw that only the organiser can make now; None: there is none.
+
+    A stage whose draw was taken back waits too: the organiser says when it is drawn again.
+    """
+    if not (contest.closed and contest.planned):
+        return None
+    plan = contest.planned[0]
+    if plan.draw != "organiser" and plan.stage not in contest.undrawn:
         return None
     return _next_stage(contest, formats)
 
