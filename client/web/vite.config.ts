@@ -1,10 +1,13 @@
 import { defineConfig } from "vite";
 import { leanThree } from "./src/scene/lean_three";
 
-/** What people learn with is large, and no page of a match needs it. */
-const NO_LESSON = /^(?!.*[\\/](?:leg|design|class)[\\/.])/;
-const BASE =
-  /^(?!.*[\\/](?:leg|design|class)[\\/.]).*(?:node_modules|[\\/]src[\\/](?:core|i18n)[\\/])/;
+/** What people learn with: large, and no page of a match needs it. */
+const LESSON = /[\\/](?:leg|design|class)[\\/.]/;
+/** What people watch and hold an event with: no page of a contestant needs it. */
+const EVENT =
+  /[\\/](?:core[\\/](?:contest|odds|pieces|replays|rewind|playback|record)|ui[\\/](?:introductions|odds|on_air|papers|playback)|pages[\\/](?:contest|office|watch)[\\/.])/;
+const BASE = /node_modules|[\\/]src[\\/](?:core|i18n)[\\/]/;
+const isPlayed = (id: string) => !LESSON.test(id) && !EVENT.test(id);
 /** What several pages share is in few files: a page loads at most some kilobytes in vain. */
 const SHARED = { minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 200_000 };
 
@@ -27,8 +30,9 @@ export default defineConfig({
         codeSplitting: {
           groups: [
             // The entry needs this part, and no styles: those of all pages stay the first.
-            { name: "base", test: BASE, ...SHARED },
-            { name: "shared", test: NO_LESSON, ...SHARED },
+            { name: "base", test: (id) => isPlayed(id) && BASE.test(id), ...SHARED },
+            { name: "shared", test: isPlayed, ...SHARED },
+            { name: "event", test: EVENT, ...SHARED },
           ],
         },
       },

@@ -383,10 +383,10 @@ def test_a_contestant_tests_the_link_before_a_match(venue: Venue, sit: Sit) -> N
 def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """A contestant plays by the page's keys, from the lobby to Pos-data.txt (workshop 5-4)."""
     page = seated(venue, sit, "--seconds", "120")
-    page.press("2")
-    page.is_toasted("[2] Keys work only while the match is being played")
     page.press("r")
     page.is_told("You are ready. Waiting for the right seat")
+    page.press("2")
+    page.is_toasted("[2] Keys work only while the match is being played")
     page.page.click(".ready.said button")
     page.is_told("Press Ready when you are ready")
     other = playing(venue, page)
