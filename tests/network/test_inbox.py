@@ -821,6 +821,17 @@ def test_a_try_out_needs_the_seal_and_keys_in_their_order() -> None:
         assert refused.why.code == code
 
 
+def test_a_try_out_makes_no_ready_an_old_one() -> None:
+    """A request that overtakes another of another kind on the way refuses none of them."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert isinstance(inbox.try_out(LEFT, try_out(joined, seq=2)), TryOutRequest)
+    assert isinstance(inbox.ready(LEFT, request(joined, "ready", seq=1)), ReadySeat)
+    again = inbox.ready(LEFT, request(joined, "ready", seq=1))
+    assert isinstance(again, Refusal)
+    assert again.why.code == "refused.request-old"
+
+
 def test_try_outs_can_not_flood_a_court() -> None:
     """Six try-outs at once, then three a second; the seat is free to play meanwhile."""
     inbox = make()

@@ -488,7 +488,9 @@ class Inbox:
         )
         if not seal.same(request.mac, expected):
             return seat.refuse(Why.BAD_SEAL, say("refused.bad-seal", seat=seat.name))
-        if not self._sessions.is_next(request.session, request.seq):
+        # A try-out changes nothing: it must not make an earlier "ready" an old one.
+        of = "try" if what == "try" else ""
+        if not self._sessions.is_next(request.session, request.seq, of):
             return seat.refuse(Why.OLD, say("refused.request-old"))
         return request
 

@@ -1,7 +1,7 @@
 """The sessions of a court: which session holds which seat, and why the others ended."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import msgspec
@@ -44,8 +44,8 @@ class AnyToken(msgspec.Struct):
 class _SeatHolder:
     seat: int
     secret: bytes
-    requests: int = 0
-    """Sequence number of the newest ready or leave request."""
+    newest: dict[str, int] = field(default_factory=dict)
+    """Sequence number of the newest request, by `of` in `Sessions.is_next`."""
 
 
 class Sessions:
@@ -96,18 +96,19 @@ class Sessions:
         its_seat, why = self._ended.get(number, (seat, Why.UNKNOWN_SESSION))
         return why if its_seat == seat else Why.NOT_YOUR_SEAT
 
-    def is_next(self, number: int, seq: int) -> bool:
+    def is_next(self, number: int, seq: int, of: str = "") -> bool:
         """Accept a sequence number if it is newer than all before it in the session.
 
         Args:
             number: number of a session that holds a seat.
             seq: sequence number of a request whose seal is proven.
+            of: what it is compared with: requests of another kind may overtake these.
 
         Returns:
             Whether it was newer.
         """
         held = self._held[number]
-        if seq <= held.requests:
+        if seq <= held.newest.get(of, 0):
             return False
-        held.requests = seq
+        held.newest[of] = seq
         return True
