@@ -4,9 +4,9 @@
 
 src/core/wire.gen.ts has the court's messages as types, from the Python structs,
 src/core/desk.gen.ts those of an office's desk, src/core/contest/sheet.gen.ts the sheet of a
-contest, src/core/leg/samples.gen.ts the legs of the sample robots.
-src/i18n/texts/LANGUAGE/GROUP.json has what pages say: their own messages (texts/*.toml) and the
-phrases of programs, without those of commands. A page loads its groups in one language. A test
+contest, src/core/leg/samples.gen.ts the legs of the sample robots, public/Loco-data.txt the sample
+gait. src/i18n/texts/LANGUAGE/GROUP.json has what pages say: their own messages (texts/*.toml) and
+the phrases of programs, without those of commands. A page loads its groups in one language. A test
 fails when a file does not fit the Python code any more.
 """
 
@@ -37,6 +37,7 @@ from lacoc_client.workshop.design import folder, requests
 from lacoc_client.workshop.design.learning import diary, draft, learner, rules
 from lacoc_client.workshop.design.table import FileRow, FileTable
 from lacoc_client.workshop.phases import evidence, facts
+from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.league import (
     contest,
     decided,
@@ -385,12 +386,20 @@ def limits() -> str:
     return f"// Made by client/web/make_wire.py; not edited by hand.\n\n{_constants(LIMITS)}\n"
 
 
+def sample_gait() -> str:
+    """Return the sample's postures, which the pages offer to whoever has no gait yet."""
+    postures = sample_gait_files("hexapod").postures
+    assert postures is not None
+    return bytes(postures.data).decode("utf-8")
+
+
 FILES: dict[Path, Callable[[], str]] = {
     _SOURCE / "core" / "wire.gen.ts": wire_types,
     _SOURCE / "core" / "desk.gen.ts": desk_types,
     _SOURCE / "core" / "contest" / "sheet.gen.ts": sheet_types,
     _SOURCE / "core" / "leg" / "samples.gen.ts": sample_legs.samples,
     _SOURCE / "i18n" / "limits.gen.ts": limits,
+    _SOURCE.parent / "public" / "Loco-data.txt": sample_gait,
 } | {
     _SOURCE / "i18n" / "texts" / language / f"{group}.json": partial(
         page_texts.as_json, group, language

@@ -123,8 +123,11 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
 
 
 def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
-    """Enter with a workbook alone; the page says of what level B is made."""
+    """Enter with a workbook alone, after a look at the sample; level B is made of either."""
     page = open_page(viewport=PHONE)
+    page.goto(f"{event.url}/enter")
+    page.get_by_role("button", name="Take the sample gait").click()
+    expect(page.locator(".files li b").last).to_have_text("made from Loco-data.txt")
     fill(page, event, team)
     page.get_by_role("button", name="Remove LocoTra-data.txt").click()
     book = robot_folder("hexapod") / "Loco-data.xlsx"

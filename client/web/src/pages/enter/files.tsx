@@ -6,6 +6,9 @@ import { t } from "../../i18n";
 import { PickFiles } from "../../ui/pick";
 import { toast } from "../../ui/toasts";
 
+/** Stands beside the pages. */
+const SAMPLE = "Loco-data.txt";
+
 /** Keep files, each in its slot. */
 export async function take(files: Iterable<File>): Promise<void> {
   for (const file of files) {
@@ -14,6 +17,13 @@ export async function take(files: Iterable<File>): Promise<void> {
     // A folder seems to be a file until it is read.
     else await choose(file).catch(() => toast(t("files.unreadable", { name }), "no"));
   }
+}
+
+/** Keep the sample gait, which can be replaced later by the team's own. */
+async function takeSample(): Promise<void> {
+  const reply = await fetch(SAMPLE).catch(() => null);
+  if (reply?.ok) await take([new File([await reply.blob()], SAMPLE)]);
+  else toast(t("files.unreadable", { name: SAMPLE }), "no");
 }
 
 /** What is used in a slot without a file. */
@@ -35,6 +45,11 @@ export function Files() {
         {t("enter.pick")}
       </label>
       <PickFiles id={input} take={take} />
+      {!names.postures && !names.locomotion && (
+        <button class="button" type="button" onClick={() => void takeSample()}>
+          {t("enter.sample")}
+        </button>
+      )}
       <ul>
         {SLOTS.map((slot) => (
           <li key={slot}>
