@@ -6,7 +6,7 @@ type Tone = "plain" | "yes" | "no";
 
 interface Toast {
   id: number;
-  text: string;
+  say: () => string;
   tone: Tone;
 }
 
@@ -16,11 +16,16 @@ const MOST = 4;
 const toasts = signal<Toast[]>([]);
 let lastId = 0;
 
-/** Show a text; the same text again only restarts its time. */
-export function toast(text: string, tone: Tone = "plain"): void {
+/**
+ * Show a text; the same text again only restarts its time.
+ *
+ * @param text Itself, or what makes it: words that a page seldom says come a little later.
+ */
+export function toast(text: string | (() => string), tone: Tone = "plain"): void {
   const id = ++lastId;
-  const others = toasts.value.filter((one) => one.text !== text);
-  toasts.value = [...others.slice(1 - MOST), { id, text, tone }];
+  const say = typeof text === "string" ? () => text : text;
+  const others = toasts.value.filter((one) => one.say() !== say());
+  toasts.value = [...others.slice(1 - MOST), { id, say, tone }];
   setTimeout(() => {
     toasts.value = toasts.value.filter((one) => one.id !== id);
   }, SHOWN_MS);
@@ -29,9 +34,9 @@ export function toast(text: string, tone: Tone = "plain"): void {
 export function Toasts() {
   return (
     <div class="toasts" role="status" aria-live="polite">
-      {toasts.value.map(({ id, text, tone }) => (
+      {toasts.value.map(({ id, say, tone }) => (
         <div key={id} class={`toast ${tone}`}>
-          {text}
+          {say()}
         </div>
       ))}
     </div>

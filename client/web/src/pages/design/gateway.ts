@@ -52,11 +52,11 @@ export class Gateway {
       // A robot and a gait may both have mistakes: neither list hides the other.
       const before = this.trouble.peek()?.mistakes ?? [];
       this.trouble.value = { said: error.why, mistakes: [...before, ...error.mistakes] };
-    } else toast(said(error.why), "no");
+    } else toast(() => said(error.why), "no");
   }
 
   /** Say what was found out beside a reply. */
   tell(notes: readonly Phrase[] = []): void {
-    for (const note of notes) toast(said(note));
+    for (const note of notes) toast(() => said(note));
   }
 }

@@ -80,7 +80,7 @@ export class Organiser {
       return answer;
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
-      toast(sentence(error.why), "no");
+      toast(() => sentence(error.why), "no");
       return null;
     }
   }
@@ -91,7 +91,7 @@ export class Organiser {
     const lines = answer?.said ?? [];
     const many = wish.do === "decline" ? "office.doneDeclined" : "office.done";
     if (lines.length > MANY) toast(t(many, { count: lines.length }), "yes");
-    else for (const line of lines) toast(said(line), "yes");
+    else for (const line of lines) toast(() => said(line), "yes");
     return answer !== null;
   }
 
@@ -112,7 +112,7 @@ export class Organiser {
       this.links.value = await this.desk.connection.ask<ContestLinks>("links", wanted);
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
-      toast(sentence(error.why), "no");
+      toast(() => sentence(error.why), "no");
     }
   }
 

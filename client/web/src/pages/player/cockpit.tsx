@@ -239,7 +239,7 @@ function begin(alone: boolean) {
   followColours(court);
   const player = new Player(court, speak, alone);
   window.__lacoc = Object.assign(window.__lacoc ?? {}, { posData });
-  const say = (why: Phrase) => toast(sentence(why), "no");
+  const say = (why: Phrase) => toast(() => sentence(why), "no");
   return alone
     ? { court, player, team: null, tryOut: null }
     : { court, player, team: new Team(court, player), tryOut: new TryOut(court, player, say) };
@@ -255,7 +255,7 @@ function posData(seat: number, joints: number[], frames: Uint8Array[], most: num
 
 function speak(word: Word): void {
   if ("said" in word) {
-    toast(said(word.said), word.tone);
+    toast(() => said(word.said), word.tone);
     return;
   }
   const why = sentence({ code: WHY_NO[word.refused] ?? "key.refused" });

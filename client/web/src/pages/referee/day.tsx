@@ -5,6 +5,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { ownToken } from "../../core/address";
 import { type CourtPlan, Desk as OfficeDesk } from "../../core/desk";
 import { part } from "../../core/match";
+import type { Phrase } from "../../core/phrase";
 import { BEATS_PER_S, Phase, SeatFlag } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { team, timeOf } from "../../i18n/words";
@@ -110,7 +111,7 @@ export function Standings({ desk, winner }: { desk: Desk; winner: string | null 
   const { frame, sheet } = desk.court;
   const scores = (frame.value?.seats.map((seat) => seat.score) ?? []).join(" ");
   const court = sheet.value?.court ?? "";
-  const lines = useSignal<readonly string[] | null>(null);
+  const lines = useSignal<readonly Phrase[] | null>(null);
   useEffect(() => {
     const [left, right] = scores.split(" ").map(Number);
     if (!from || left === undefined || right === undefined) return;
@@ -118,7 +119,7 @@ export function Standings({ desk, winner }: { desk: Desk; winner: string | null 
     const outcome = (winner ?? byScore) as Result["outcome"];
     ask(from, court, { scores: [left, right], outcome }).then(
       ({ changes }) => {
-        lines.value = changes.map(said);
+        lines.value = changes;
       },
       () => undefined,
     );
@@ -128,7 +129,7 @@ export function Standings({ desk, winner }: { desk: Desk; winner: string | null 
     <div class="preview standings" aria-live="polite">
       <p>{t("day.changes")}</p>
       <ul>
-        {lines.value.map((line) => (
+        {lines.value.map(said).map((line) => (
           <li key={line}>{line}</li>
         ))}
       </ul>
