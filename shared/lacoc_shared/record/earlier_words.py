@@ -47,7 +47,8 @@ def _earlier(event: Event) -> Event:
         case "adjust":
             now = _did(event)
             assert now is not None
-            did = say("decision.adjust", points=given["points"], team=now.values["team"])
+            values = {name: value for name, value in now.values.items() if name != "score"}
+            did = Phrase(now.code, values)
         case _:
             did = say("decision.set", marker=given["marker"], state=given["state"])
     return msgspec.structs.replace(event, said=event.said.with_values(did=did))

@@ -19,6 +19,9 @@ NOT_FOLLOWING = 1
 NOT_PROVEN = 3
 """Exit code: nothing contradicts the standings, but not all could be checked here."""
 
+_LISTED = 12
+"""Of what is like the rest so many are shown; --json has all."""
+
 _Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The published folder.")]
 
 
@@ -130,8 +133,10 @@ def _show(found: "ContestCheck") -> None:
     ):
         if told:
             screen.note(title)
-        for one in told:
+        for one in told[:_LISTED]:
             screen.note(one)
+        if (more := len(told) - _LISTED) > 0:
+            screen.note(say("verify.more", count=more))
     if found.findings:
         screen.show(say("verify.wrong", count=len(found.findings)))
         return
@@ -139,6 +144,8 @@ def _show(found: "ContestCheck") -> None:
     unchecked = found.games - found.by_bots - found.by_people
     keys = say("verify.keys", bots=found.by_bots, people=found.by_people, unchecked=unchecked)
     screen.show(keys)
+    if found.unchecked:
+        screen.note(say("verify.usual"))
     if found.proven < found.games:
         said = say(
             "verify.sampled",
