@@ -60,14 +60,17 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
 def test_a_full_hall_is_said_and_not_stormed(
     venue: Venue, open_page: OpenPage, console: Any, locale: str, full: str
 ) -> None:
-    """A page that a full gateway sends away says so, and tries again by itself after 10 to 20 s."""
+    """A page that a full gateway sends away says so, and tries again by itself after 10 to 20 s.
+
+    A page that only watches goes on in pieces instead (test_pieces).
+    """
     console.expect_a_break()
     venue.web("--viewers", "1")
     first = venue.page()
     page = open_page(locale=locale)
     tried_s: list[float] = []
     page.on("websocket", lambda _: tried_s.append(time.monotonic()))
-    show = Show(page, venue.url, "/watch", drawn=False)
+    show = Show(page, venue.url, "/referee", drawn=False)
     show.sees(".banner", full)
     first.close()
     show.page.wait_for_timeout(5000)

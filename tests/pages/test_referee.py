@@ -433,7 +433,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
     expect(answer).to_contain_text("Check under Events whether it was done")
     expect(page.locator(".toast.no")).to_have_count(0)
     expect(dialog).to_have_count(0)
-    log_has(page, "Referee Kim: +3 points for Ants. Reason: rule")
+    log_has(page, "Referee Kim: +3 points for Ants: Ants 21 : 18 Bees. Reason: rule")
     has_scores(page, 21, 18)
     expect(page.locator(".acting.mine")).to_be_visible()
 

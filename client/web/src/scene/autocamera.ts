@@ -39,6 +39,11 @@ export interface Action {
   seat: number;
 }
 
+/** To one side and the other after the end: left stays left. */
+function sway(nowMs: number): number {
+  return SWAY_RAD * Math.sin((nowMs / SWAY_MS) * 2 * Math.PI);
+}
+
 /** From both sides of the winner, who stays in the free part of the picture. */
 function around({ x, y }: Robot, aim: Aim, turned: number): Shot {
   const points = [-WINNER_M, WINNER_M].flatMap((side) => [
@@ -67,9 +72,9 @@ export class AutoCamera {
     const { scene } = this;
     const winner = aim.model.robots[aim.model.leader];
     if (scene.kind === "end" && winner)
-      return { key: "auto winner", shot: around(winner, aim, this.sway(nowMs)) };
+      return { key: "auto winner", shot: around(winner, aim, sway(nowMs)) };
     const shot = this.frame(aim, nowMs);
-    shot.azimuth += scene.kind === "end" ? this.sway(nowMs) : drift;
+    shot.azimuth += scene.kind === "end" ? sway(nowMs) : drift;
     return { key: `auto ${scene.kind}${scene.kind === "robot" ? scene.seat : ""}`, shot };
   }
 
@@ -107,11 +112,6 @@ export class AutoCamera {
     this.scene = scene;
     this.sinceMs = nowMs;
     this.side = -this.side;
-  }
-
-  /** To one side and the other after the end; left stays left. */
-  private sway(nowMs: number): number {
-    return SWAY_RAD * Math.sin(((nowMs - this.sinceMs) / SWAY_MS) * 2 * Math.PI);
   }
 
   private gap(robots: Aim["model"]["robots"]): number {
