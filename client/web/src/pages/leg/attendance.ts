@@ -18,13 +18,18 @@ export class Attendance {
   private untold: Done[] = [];
   private isTelling = false;
 
-  constructor(private readonly lesson: Lesson) {}
+  constructor(private readonly lesson: Lesson) {
+    // From the beginning: what is answered before the gateway has greeted this page counts too.
+    lesson.follower = (done) => this.add(done);
+  }
 
   /** Come in with what lets this browser into its class or folder, if there is anything. */
   async begin(): Promise<void> {
-    if (!place.peek()?.token && !runKey()) return;
-    if (!(await hasPage(DESIGN))) return;
-    this.lesson.follower = (done) => this.add(done);
+    const mayCome = place.peek()?.token || runKey();
+    if (!mayCome || !(await hasPage(DESIGN))) {
+      this.leave();
+      return;
+    }
     this.connection = new Connection(
       socketUrl("design/ws"),
       () => this.greet(),
@@ -57,6 +62,7 @@ export class Attendance {
   private leave(): void {
     this.connection?.end();
     this.lesson.follower = null;
+    this.untold = [];
     this.keeps.value = null;
   }
 
@@ -67,11 +73,11 @@ export class Attendance {
 
   /** Tell all in order; what is not told now is told by the next connection. */
   private async tell(): Promise<void> {
-    if (this.isTelling) return;
+    if (this.isTelling || !this.connection) return;
     this.isTelling = true;
     try {
       while (this.untold.length) {
-        await this.connection!.ask("step", this.untold[0]!);
+        await this.connection.ask("step", this.untold[0]!);
         this.untold.shift();
       }
     } catch {
