@@ -62,10 +62,11 @@ def test_cheers_are_counted_by_symbol_and_told_once() -> None:
     for symbol in (0, 2, 2, SYMBOLS, -1):
         found.cheer(audience, symbol)
     found.hear(audience, [0, 3, 0, 10_000])
-    found.say(audience)
+    found.say(audience, 5)
     found.pass_second()
-    found.say(audience)
+    found.say(audience, 5)
     assert [one["cheers"] for one in watcher.told] == [[1, 3, 2, LOOKS_S], [0, 0, 0, 0]]
+    assert {one["watching"] for one in watcher.told} == {5}
 
 
 def test_an_organiser_may_have_no_cheers() -> None:
@@ -73,7 +74,7 @@ def test_an_organiser_may_have_no_cheers() -> None:
     found, audience, watcher = crowd(cheers=False)
     found.cheer(audience, 0)
     found.hear(audience, [5])
-    found.say(audience)
+    found.say(audience, 5)
     assert watcher.told[0]["cheers"] == [0, 0, 0, 0]
 
 

@@ -2,14 +2,20 @@
 
 import gzip
 import json
+import ssl
+import time
 import urllib.error
 import urllib.request
 from email.message import Message
 from itertools import count
+from pathlib import Path
 
+import proxies
 import pytest
+import trustme
 from hypothesis import given
 from hypothesis import strategies as st
+from ports import free_port
 from venue import Venue
 from waiting import until
 
@@ -161,3 +167,29 @@ def test_what_there_is_not_is_told_for_a_second(open_venue: Venue) -> None:
         status, headers, _ = ask(open_venue, path)
         assert (status, headers["Cache-Control"]) == (404, "public, max-age=1"), path
     assert [ask(open_venue, f"{one}/now.json")[0] for one in ("none", "court/none")] == [404, 404]
+
+
+def test_a_cache_goes_on_without_the_gateway(venue: Venue, tmp_path: Path) -> None:
+    """While the gateway is away, nginx answers with the pieces that it has, and says which."""
+    (folder := tmp_path / "proxy").mkdir()
+    port, name = free_port(), "localhost"
+    pair = proxies.issue(tmp_path, trustme.CA(), name)
+    venue.court()
+    web = venue.web("--pages", f"https://{name}:{port}/lacoc", "--proxy", "127.0.0.1")
+    trusting = ssl._create_unverified_context()
+
+    def cached(path: str) -> bytes:
+        url = f"https://{name}:{port}/lacoc/live/court/{path}"
+        with urllib.request.urlopen(url, context=trusting) as reply:
+            return bytes(reply.read())
+
+    with proxies.nginx(folder, pair, name, port, f"127.0.0.1:{venue.web_port}"):
+        until(lambda: json.loads(cached("now.json"))["closed"] > 1)
+        run = json.loads(cached("now.json"))["run"]
+        piece = cached(f"{run}/0")
+        web.kill()
+        time.sleep(2.5)  # longer than the answer may be kept
+        assert json.loads(cached("now.json"))["run"] == run
+        assert cached(f"{run}/0") == piece
+        with pytest.raises(urllib.error.HTTPError, match="502"):
+            cached(f"{run}/1")

@@ -31,6 +31,20 @@ class Language(StrEnum):
     JA = "ja"
 
 
+LanguageOption = Annotated[
+    Language | None,
+    typer.Option(help="Language of the overlay; by default that of this program."),
+]
+SizeOption = Annotated[
+    str,
+    typer.Option(
+        metavar="WIDTHxHEIGHT",
+        help="Size of the film in pixels: two even numbers from 160 to 3840.",
+    ),
+]
+FpsOption = Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")]
+
+
 @app.command(name="film")
 def film_command(
     record: Annotated[
@@ -69,18 +83,9 @@ def film_command(
         bool,
         typer.Option("--poster", help="Write a still of each match too, as .png beside the film."),
     ] = False,
-    language: Annotated[
-        Language | None,
-        typer.Option(help="Language of the overlay; by default that of this program."),
-    ] = None,
-    size: Annotated[
-        str,
-        typer.Option(
-            metavar="WIDTHxHEIGHT",
-            help="Size of the film in pixels: two even numbers from 160 to 3840.",
-        ),
-    ] = "1280x720",
-    fps: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 30,
+    language: LanguageOption = None,
+    size: SizeOption = "1280x720",
+    fps: FpsOption = 30,
     quality: Annotated[
         Quality,
         typer.Option(

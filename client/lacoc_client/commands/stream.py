@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from lacoc_client.commands.film import Language, look_of
+from lacoc_client.commands.film import FpsOption, LanguageOption, SizeOption, look_of
 from lacoc_client.film.look import Quality, View
 from lacoc_client.play.stopping import stop_signals
 from lacoc_shared.command import screen
@@ -35,18 +35,9 @@ def stream_command(
         str | None,
         typer.Option(metavar="NAME", help="Show this court; by default what the director chooses."),
     ] = None,
-    language: Annotated[
-        Language | None,
-        typer.Option(help="Language of the overlay; by default that of this program."),
-    ] = None,
-    size: Annotated[
-        str,
-        typer.Option(
-            metavar="WIDTHxHEIGHT",
-            help="Size of the film in pixels: two even numbers from 160 to 3840.",
-        ),
-    ] = "854x480",
-    fps: Annotated[int, typer.Option(min=1, max=60, help="Pictures a second.")] = 25,
+    language: LanguageOption = None,
+    size: SizeOption = "854x480",
+    fps: FpsOption = 25,
 ) -> None:
     """Send an event live to a video platform, or into a file, until Ctrl-C.
 

@@ -63,11 +63,12 @@ class _Streaming:
     ) -> None:
         self._address = source.address(look)
         self._look, self._tell = look, tell
-        self._pace = PicturePace(fps, time.time())
+        self._pace = PicturePace(fps, time.monotonic())
+        self._began_s = time.time()
         self.sender = Sender(target, (look.width, look.height), fps, tell)
         self._held: deque[LivePicture] = deque()
         self._sounds_s = 0.0
-        self._told_s = time.time()
+        self._told_s = time.monotonic()
         self._told = (0, 0)
 
     def run(self, stopping: Callable[[], bool], report: Callable[[Report], None]) -> None:
@@ -113,26 +114,26 @@ class _Streaming:
 
     def _picture(self, page: Page, shots: Shots) -> None:
         """Wait for the next picture, take it, and pass on those that were held long enough."""
-        wait_s = self._pace.wait_s(time.time())
+        wait_s = self._pace.wait_s(time.monotonic())
         if wait_s > _SLEPT_MOST_S:
             time.sleep(_SLEPT_MOST_S)
             return
         time.sleep(wait_s)
-        number = self._pace.take(time.time())
+        number = self._pace.take(time.monotonic())
         self._held.append(LivePicture(number, shots.take(JPEG)))
-        now_s = time.time()
+        now_s = time.monotonic()
         if now_s - self._sounds_s > _SOUNDS_S:
             self._sounds_s = now_s
             for at_ms, samples in page.evaluate(_SOUNDS, SOUND_HZ):
-                at_s = at_ms / 1000 - self._pace.time_s(0)
-                self.sender.hear(at_s, base64.b64decode(samples))
+                # The page says when by the time of the day; the pace's clock never leaps.
+                self.sender.hear(at_ms / 1000 - self._began_s, base64.b64decode(samples))
         while self._held and self._pace.time_s(self._held[0].number) < now_s - _HELD_S:
             self.sender.show(self._held.popleft())
         if self.sender.failed is not None:
             raise self.sender.failed
 
     def _report(self, report: Callable[[Report], None]) -> None:
-        now_s = time.time()
+        now_s = time.monotonic()
         if now_s - self._told_s < _TOLD_S:
             return
         passed_s, self._told_s = now_s - self._told_s, now_s

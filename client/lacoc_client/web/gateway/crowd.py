@@ -63,20 +63,22 @@ class Crowd:
         while True:
             await asyncio.sleep(_SAYS_S)
             seconds += 1
+            watching = self.watching()
             for feed in self._courts.feeds:
                 for audience in self._courts.audiences(feed):
-                    self.say(audience, again=seconds % _SAYS_AGAIN == 0)
+                    self.say(audience, watching, again=seconds % _SAYS_AGAIN == 0)
             self.pass_second()
 
-    def say(self, audience: Audience, *, again: bool = False) -> None:
+    def say(self, audience: Audience, watching: int, *, again: bool = False) -> None:
         """Tell some pages what was cheered in this second, and how many watch.
 
         Args:
             audience: the pages.
+            watching: how many watch the event.
             again: whether to tell it also if nothing has changed.
         """
         cheers = self._cheers.get(audience, Counter[int]())
-        body = {"watching": self.watching(), "cheers": [cheers[one] for one in range(SYMBOLS)]}
+        body = {"watching": watching, "cheers": [cheers[one] for one in range(SYMBOLS)]}
         message = wire.map_message(MessageKind.CROWD, body)
         if again or cheers or message != self._told.get(audience):
             self._told[audience] = message
