@@ -163,6 +163,7 @@ def test_exit_codes_and_languages(
     some = ("contest", "verify", folder, "--jobs", "1", "--sample", "1", "--seed", "1")
     code, said, note = lacoc(*some)
     assert (code, "The standings follow from the facts" in said) == (NOT_PROVEN, True)
+    assert "The exit code is 3." in note
     assert "a program of its own" in note
     told = json.loads(lacoc(*some, "--json")[1])
     checked = told["games"] - told["by_bots"] - told["by_people"]

@@ -20,6 +20,7 @@ from tests.campaigns.forge import contest as contest_forging
 from tests.campaigns.forge import game as game_forger
 
 from lacoc_arenas.arena import load
+from lacoc_server.commands.contest import checking
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.headless.pool import setup_of
@@ -47,7 +48,7 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.verify.alone import InputCheck, Side, check_inputs, ends_alike
-from lacoc_server.contest.verify.check import check
+from lacoc_server.contest.verify.check import ContestCheck, check
 from lacoc_server.contest.verify.games import GameCheck, check_game, games_of
 from lacoc_server.contest.verify.history import (
     call_of,
@@ -75,7 +76,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import Phrase, render
+from lacoc_shared.words import Phrase, render, say
 
 IDLE = small_contest.IDLE.encode()
 
@@ -805,3 +806,13 @@ def test_a_sample_takes_each_pair_equally_often() -> None:
     assert sorted(sample(range(5), 9, 1)) == [*range(5)]
     assert least_forged(0, 0) == 1
     assert least_forged(7, 0) == 8
+
+
+def test_what_is_like_the_rest_is_listed_in_part(capsys: pytest.CaptureFixture[str]) -> None:
+    """A long list ends with the number of those that are not shown."""
+    unchecked = tuple(say("verify.more", count=one) for one in range(100, 120))
+    checking._show(ContestCheck((), unchecked, (), (), 9, 20, 20, 0, 0, 0))
+    told = capsys.readouterr().err
+    assert "111 more" in told
+    assert "112 more" not in told
+    assert "8 more" in told
