@@ -286,11 +286,19 @@ async def does_the_work_without_coming_to_the_phase(pupil: Pupil) -> None:
 @way
 async def takes_all_numbers_from_the_lesson(pupil: Pupil) -> None:
     await pupil.goes(2, 3, 4)
+    for cell, angle in cells_of(pupil.sample, (1, 2, 3, 4)).items():
+        await pupil.pastes({cell: angle}, "lesson")
+    await tries_everything(pupil)
+
+
+@way
+async def copies_the_numbers_of_the_lesson(pupil: Pupil) -> None:
+    await pupil.goes(2, 3, 4)
     for cell, angle in cells_of(pupil.sample, (1, 2)).items():
         await pupil.pastes({cell: angle}, "lesson")
-    await pupil.tries("A1", 3.0)
-    await pupil.tries("A1:1, A2", 1.5)
-    await pupil.answers_all()
+    for cell, angle in cells_of(pupil.sample, (3, 4)).items():
+        await pupil.pastes({cell: angle}, "tool")
+    await tries_everything(pupil)
 
 
 @way

@@ -63,8 +63,8 @@ class Workers:
         jobs: number of processes; None: one for each core.
         background: whether these processes give way to all others.
         limit_s: longest time for a job [s]; after this its process is ended.
-        again: how often a job whose process was lost is given to a new one: for jobs that give the
-            same result each time.
+        again: how often a job whose process was lost, or ended after `limit_s`, is given to a new
+            one: for jobs that give the same result each time.
     """
 
     def __init__(

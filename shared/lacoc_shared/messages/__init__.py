@@ -165,7 +165,7 @@ class TriedKey(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fiel
 class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A player's question before the match: how would the robot walk, alone, with some keys?
 
-    Sealed as a `SeatRequest`, with which it shares the sequence numbers.
+    Sealed as a `SeatRequest`. One that overtakes a `SeatRequest` on the way makes it no old one.
     """
 
     session: int

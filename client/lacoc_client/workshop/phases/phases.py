@@ -41,7 +41,6 @@ _WALKS_MM_S, _STILL_MM = 15.0, 10.0
 
 LESSON = WorkshopPhase(
     number=0,
-    id="lesson",
     title=say("phases.lesson"),
     task=say("phases.lesson-task"),
     question=say("phases.lesson-question"),
@@ -53,7 +52,6 @@ LESSON = WorkshopPhase(
 
 ONE_LEG = WorkshopPhase(
     number=1,
-    id="one-leg",
     title=say("phases.one-leg"),
     task=say("phases.one-leg-task"),
     question=say("phases.one-leg-question"),
@@ -67,7 +65,6 @@ _STAND_S = 2.0
 
 THREE_LEGS = WorkshopPhase(
     number=2,
-    id="three-legs",
     title=say("phases.three-legs"),
     task=say("phases.three-legs-task"),
     question=say("phases.three-legs-question"),
@@ -102,7 +99,6 @@ _SAME_FEET = 0.9
 
 HALF_CYCLE = WorkshopPhase(
     number=3,
-    id="half-cycle",
     title=say("phases.half-cycle"),
     task=say("phases.half-cycle-task"),
     question=say("phases.half-cycle-question"),
@@ -132,7 +128,6 @@ _CYCLES, _CYCLES_MM, _POSTURES = 5, 100.0, 4
 
 A_CYCLE = WorkshopPhase(
     number=4,
-    id="cycle",
     title=say("phases.cycle"),
     task=say("phases.cycle-task"),
     question=say("phases.cycle-question"),
@@ -178,7 +173,6 @@ _DIFFERENCES, _NUMBERS = 2, 3
 
 CONCEPT = WorkshopPhase(
     number=5,
-    id="concept",
     title=say("phases.concept"),
     task=say("phases.concept-task"),
     question=say("phases.concept-question"),
@@ -208,7 +202,6 @@ _KEYS = 4
 
 CREATIVE = WorkshopPhase(
     number=6,
-    id="creative",
     title=say("phases.creative"),
     task=say("phases.creative-task"),
     question=say("phases.creative-question"),

@@ -1,7 +1,7 @@
 /** Before a match: the own robot stands alone on the field, and walks by the keys that are tried. */
 
 import { computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
-import type { Refused } from "./connection";
+import { type Refused, Unanswered } from "./connection";
 import type { Court } from "./court";
 import { jointsPerSeat, poseStarts } from "./fk";
 import type { Phrase } from "./phrase";
@@ -55,6 +55,8 @@ export class TryOut {
   private known = 0;
   private beganMs = 0;
   private asking = false;
+  /** The robot walks no further than what is known: physics stopped there. */
+  private stopped = false;
   private isWanted = false;
   /** Counts the robots that were seen: an answer about an earlier one is of no use. */
   private robots = 0;
@@ -107,7 +109,7 @@ export class TryOut {
   sample(nowMs: number): Moment | null {
     if (!this.isShown.peek()) return this.court.sample(nowMs);
     const tick = this.tick(nowMs);
-    if (tick >= TRY_OUT_TICKS) this.restart();
+    if (tick >= (this.stopped ? this.known : TRY_OUT_TICKS)) this.restart();
     else if (this.keys.peek().length && this.known - tick < AHEAD_TICKS) void this.ask();
     return this.frames.length ? momentAt(this.frames, tick) : null;
   }
@@ -125,6 +127,7 @@ export class TryOut {
     else {
       this.keys.value = [...keys, [tick, level, key]];
       this.known = Math.min(this.known, tick);
+      this.stopped = false;
       void this.ask();
     }
   }
@@ -136,6 +139,7 @@ export class TryOut {
     this.frames = this.frames.filter(({ beat }) => beat <= moved);
     this.known = this.frames.at(-1)?.beat ?? 0;
     this.beganMs = performance.now();
+    this.stopped = false;
     void this.ask();
   }
 
@@ -151,31 +155,34 @@ export class TryOut {
     const { robots, known: first } = this;
     const keys = this.keys.peek();
     const most = keys.length ? TRY_OUT_TICKS : STAND_TICKS;
-    if (this.asking || !this.isWanted || first >= most) return;
+    if (this.asking || !this.isWanted || this.stopped || first >= most) return;
     this.asking = true;
     const until = Math.min(most, first + TRY_OUT_ASKED_TICKS);
     const fields = { keys, first, until, drawn: !this.alone.peek() };
     const paced = new Promise((resolve) => setTimeout(resolve, PACE_MS));
     let goesOn = true;
+    let isLate = false;
     try {
       const reply = await this.court.ask<TryOutReply>("try", fields);
-      if (robots === this.robots) this.take(reply, keys);
+      if (robots === this.robots) this.take(reply, keys, until);
     } catch (error) {
       const { why, again } = error as Refused;
-      if (keys.length && keys === this.keys.peek()) {
+      isLate = again || error instanceof Unanswered || why.code === "page.not-connected";
+      if (isLate) await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
+      else if (keys.length && keys === this.keys.peek()) {
         this.say(why);
+        this.known = Math.min(this.known, keys.at(-1)![0]);
         this.keys.value = keys.slice(0, -1);
-      } else if (again) await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
-      else goesOn = robots !== this.robots;
+      } else goesOn = robots !== this.robots;
     }
     await paced;
     this.asking = false;
-    if (goesOn && (keys !== this.keys.peek() || robots !== this.robots || !this.alone.peek()))
-      void this.ask();
+    const isOther = keys !== this.keys.peek() || robots !== this.robots || !this.alone.peek();
+    if (goesOn && (isLate || isOther)) void this.ask();
   }
 
   /** Take pictures, unless other keys were pressed meanwhile. */
-  private take(reply: TryOutReply, keys: readonly Tried[]): void {
+  private take(reply: TryOutReply, keys: readonly Tried[], until: number): void {
     if (reply.drawn) this.alone.value = { hash: reply.scene, scene: reply.drawn };
     const frame = this.court.frame.peek();
     const sheet = this.court.sheet.peek();
@@ -189,5 +196,6 @@ export class TryOut {
     });
     this.frames = [...this.frames.filter(({ beat }) => beat < reply.first), ...made];
     this.known = this.frames.at(-1)?.beat ?? 0;
+    this.stopped = keys.length > 0 && this.known + reply.every < until;
   }
 }

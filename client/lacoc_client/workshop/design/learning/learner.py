@@ -208,7 +208,7 @@ class Learner:
         return AnswerReply(right=is_right, was=was, because=question.because)
 
     async def stepped(self, asked: requests.LessonAsk) -> None:
-        """Take in what the student does in the lesson of one leg; what is known is not kept twice.
+        """Take in what the student does in the lesson of one leg; an arrival is not kept twice.
 
         The first answer to a question counts for the question's step, a later one as new work.
         """
@@ -221,7 +221,7 @@ class Learner:
             choice=asked.choice if is_answer else -1,
             right=asked.right and is_answer,
         )
-        if self._diary.lesson[-1:] != (one,):
+        if is_answer or self._diary.lesson[-1:] != (one,):
             await self._diary.add(one)
 
     async def checked(self, asked: requests.CheckAsk) -> CheckReply:

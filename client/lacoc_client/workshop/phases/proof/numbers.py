@@ -1,10 +1,11 @@
 """Which numbers of a table are a student's own, and have changed since a phase began.
 
 A number is *typed* if the student typed it by hand into its cell, before the same number came
-there in another way. It is *made* if it came from the lesson of one leg, or if a tool or a paste
-brought it and the student had typed it for such a joint before. Any other number is *foreign*: it
-was pasted, or it came with a file, from the coach, or from the teacher. Numbers of the robot's
-start posture are none of these.
+there in another way. It is *made* if a tool or a paste brought it and the student had
+typed it for such a joint before. It is *given* if it came from the lesson of one leg, or is such a
+copy of one that did: it is welcome, and counts for nothing. Any other number is *foreign*: it was
+pasted, or it came with a file, from the coach, or from the teacher. Numbers of the robot's start
+posture are none of these.
 """
 
 from collections.abc import Sequence
@@ -20,7 +21,7 @@ _Place = tuple[int, int, int, int]
 """Key, posture, leg and level of a cell."""
 _Move = tuple[int, int, bool]
 """Leg and level of a joint, and whether its angle became larger."""
-_Source = Literal["typed", "made", "foreign"]
+_Source = Literal["typed", "made", "given", "foreign"]
 _DIGITS = 3
 _COPIES = ("tool", "paste")
 
@@ -67,6 +68,8 @@ class _Cells:
         """How each number first came into a cell."""
         self._typed: set[tuple[int, float]] = set()
         """The numbers that were typed for joints of a level, in any cell."""
+        self._given: set[tuple[int, float]] = set()
+        """Likewise those that came from the lesson."""
         self._base: dict[_Place, float | None] = {}
         """What stood in each changed cell when counting began; None: the row is new."""
 
@@ -81,6 +84,8 @@ class _Cells:
                     self._sources.setdefault((place, before), "foreign")
                 if edit.by == "hand":
                     self._typed.add((level, angle))
+                elif edit.by == "lesson":
+                    self._given.add((level, angle))
                 self._sources.setdefault((place, angle), self._source(edit, level, angle))
                 if counts:
                     self._base.setdefault(place, before)
@@ -95,15 +100,18 @@ class _Cells:
             base = self._base.get(place, angle)
             if base is None:
                 base = number.start_deg
-            if source == "foreign" or is_apart(angle, base):
+            if source == "foreign" or (source != "given" and is_apart(angle, base)):
                 counts[source] += 1
         return OwnTrial(tried, **counts)
 
     def _source(self, edit: Edited, level: int, angle: float) -> _Source:
         if edit.by == "hand":
             return "typed"
-        is_copy = edit.by in _COPIES and (level, angle) in self._typed
-        return "made" if is_copy or edit.by == "lesson" else "foreign"
+        if edit.by == "lesson":
+            return "given"
+        if edit.by in _COPIES and (level, angle) in self._typed:
+            return "made"
+        return "given" if edit.by in _COPIES and (level, angle) in self._given else "foreign"
 
 
 @dataclass(frozen=True)

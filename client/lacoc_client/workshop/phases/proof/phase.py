@@ -26,7 +26,6 @@ class WorkshopPhase:
 
     number: int
     """From 0 to 6."""
-    id: str
     title: Phrase
     task: Phrase
     question: Phrase

@@ -207,7 +207,7 @@ def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 def differs_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
     """Ask what of the walk differs from the sample, or how long its cycle lasts."""
-    trial = _last_trial(seen)
+    periods_s = [one.facts.cycle_s for one in seen if isinstance(one, Tried) and one.facts.cycle_s]
     compared = [one.differs for one in seen if isinstance(one, Compared)]
     differs = compared[-1] if compared else ()
     same = [one for one in _DIFFERENCES if one not in differs]
@@ -221,7 +221,7 @@ def differs_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
             say("phases.because-differs", differs=tuple(_DIFFERENCES[one] for one in differs)),
             len(seen),
         )
-    cycle_s = trial.facts.cycle_s or 1.0
+    cycle_s = periods_s[-1] if periods_s else 1.0
     return _made(
         "period",
         say("phases.ask-period"),
@@ -239,11 +239,16 @@ def keys_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
     versions: dict[str, dict[str, float]] = {}
     for one in seen:
         if isinstance(one, Tried) and one.facts.keys[-1].startswith("B"):
-            tried = versions.setdefault(one.version, {})
+            tried = versions[one.version] = versions.pop(one.version, {})
             tried[one.facts.keys[-1][1:]] = sign * one.facts.drift_deg_s
-    # The newest version with such a key.
+    # The version that was tried last, of those with such a key and another one.
     turns = next(
-        (keys for keys in reversed(versions.values()) if max(keys.values()) >= TURNS_DEG_S), {}
+        (
+            keys
+            for keys in reversed(versions.values())
+            if max(keys.values()) >= TURNS_DEG_S > min(keys.values())
+        ),
+        {},
     )
     found = [key for key, deg_s in turns.items() if deg_s >= TURNS_DEG_S]
     others = [key for key in turns if key not in found]

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { runKey, socketUrl } from "../../core/address";
-import { Connection } from "../../core/connection";
+import { Connection, type Refused, Unanswered } from "../../core/connection";
 import { place } from "../../core/place";
 import { hasPage } from "../../core/served";
 import type { Message, TookStep } from "../../core/wire";
@@ -46,7 +46,8 @@ export class Attendance {
         ...shown,
         lesson: true,
       });
-      this.lesson.takeUp(steps.map(doneOf));
+      // After a break the page knows it all, and the student may be at work.
+      if (!this.keeps.peek()) this.lesson.takeUp(steps.map(doneOf));
       this.keeps.value = true;
       this.add(this.lesson.here());
     } catch (error) {
@@ -77,7 +78,10 @@ export class Attendance {
     this.isTelling = true;
     try {
       while (this.untold.length) {
-        await this.connection.ask("step", this.untold[0]!);
+        await this.connection.ask("step", this.untold[0]!).catch((error: Refused) => {
+          // What is refused would be refused again; without an answer the next greeting goes on.
+          if (error instanceof Unanswered || !this.connection?.state.peek().open) throw error;
+        });
         this.untold.shift();
       }
     } catch {

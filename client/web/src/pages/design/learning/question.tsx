@@ -1,5 +1,6 @@
 /** The question that a phase asks before it is done, and what came of the last answer. */
 
+import { useSignal } from "@preact/signals";
 import { useId } from "preact/hooks";
 import type { PhaseState } from "../../../core/wire";
 import { said, t } from "../../../i18n";
@@ -14,6 +15,7 @@ interface Props {
 export function Question({ learning, phase: { number, asked } }: Props) {
   const answer = learning.answer.value;
   const title = useId();
+  const isAsking = useSignal(false);
   const told = answer?.phase === number ? answer : null;
   return (
     <>
@@ -25,7 +27,12 @@ export function Question({ learning, phase: { number, asked } }: Props) {
               key={`${asked.name} ${index}`}
               class="button"
               type="button"
-              onClick={() => void learning.say(number, asked.name, index)}
+              disabled={isAsking.value}
+              onClick={async () => {
+                isAsking.value = true;
+                await learning.say(number, asked.name, index);
+                isAsking.value = false;
+              }}
             >
               {said(choice)}
             </button>
