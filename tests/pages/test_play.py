@@ -601,6 +601,7 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
     page.sees(".entrance h1", "試合に参加")
     page.join(TOKENS["left"])
     page.stands("seated")
+    page.press("r")
     page.press("2")
     page.is_toasted("キーは試合中だけ使えます")
     words = page.find("main").inner_text().replace("LACOC", "")

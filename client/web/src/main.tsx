@@ -5,7 +5,7 @@ import { type ComponentType, render } from "preact";
 import { ownPage } from "./core/address";
 import { palette } from "./core/colours";
 import { reloadWhenServed } from "./core/reload";
-import { type Group, language, loadWords } from "./i18n";
+import { GROUPS, type Group, language, loadWords } from "./i18n";
 import "./style.css";
 
 type Load = () => Promise<{ default: ComponentType }>;
@@ -20,7 +20,7 @@ const PAGES: Record<string, [Load, ...Group[]]> = {
   ],
   "/referee": [() => import("./pages/referee"), "referee"],
   "/watch": [() => import("./pages/watch"), "contest"],
-  "/overlay": [() => import("./pages/overlay")],
+  "/overlay": [() => import("./pages/overlay"), "contest"],
   "/design": [() => import("./pages/design"), "design", "play", "seldom"],
   "/class": [() => import("./pages/class"), "class", "design", "seldom"],
   "/contest": [() => import("./pages/contest"), "contest"],
@@ -28,7 +28,8 @@ const PAGES: Record<string, [Load, ...Group[]]> = {
   "/enter": [() => import("./pages/enter"), "office", "contest", "seldom"],
   "/replay": [() => import("./pages/replay"), "replay"],
   "/leg": [() => import("./pages/leg"), "leg"],
-  "/film": [() => import("./pages/film")],
+  // A picture of a film cannot wait for words, so it has all from the beginning.
+  "/film": [() => import("./pages/film"), ...GROUPS],
 };
 
 effect(() => {

@@ -41,7 +41,7 @@ export const language = computed<Language>(() => {
 });
 
 /** Parts of the words: "every" for all pages, the others for pages that say them often. */
-const GROUPS = [
+export const GROUPS = [
   "every",
   "play",
   "seldom",
