@@ -34,7 +34,7 @@ from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.web.office import links
 from lacoc_client.workshop.classroom import cards, tournament
 from lacoc_client.workshop.design import folder, requests
-from lacoc_client.workshop.design.learning import diary, draft, learner, rules
+from lacoc_client.workshop.design.learning import diary, learner, rules
 from lacoc_client.workshop.design.table import FileRow, FileTable
 from lacoc_client.workshop.phases import evidence, facts
 from lacoc_robots.library import sample_gait_files
@@ -133,7 +133,6 @@ STRUCTS = (
     diary.AskedQuestion,
     diary.PhaseState,
     diary.Phases,
-    draft.Draft,
     evidence.TookStep,
     cards.Card,
     tournament.ClassMatch,

@@ -8,6 +8,7 @@ from typing import Any
 
 from lacoc_process import Running
 from page_connection import PageConnection
+from page_table import SharingPage
 
 from lacoc_client.web.gateway.wire import MessageKind
 
@@ -46,7 +47,7 @@ class ClassRoom:
         self._running.close()
 
 
-class StudentPage(PageConnection):
+class StudentPage(SharingPage, PageConnection):
     """A page of /design in a class."""
 
     def __init__(self, url: str) -> None:
@@ -57,6 +58,7 @@ class StudentPage(PageConnection):
     def enter(self, **fields: str) -> None:
         """Enter the class, and wait until the page is told the six phases."""
         self.hello = self.ask("hello", **fields)
+        self.opens()
         self.until(lambda: self.told[MessageKind.PHASES])
 
     @property
@@ -96,9 +98,11 @@ class TeacherPage(PageConnection):
 
 
 def until_kept(folder: Path, angle_deg: float) -> None:
-    """Wait until a table with this angle is on the disk, about a second after the edit."""
-    wanted = struct.pack(">d", angle_deg)  # as in a table that is kept
+    """Wait until a table with this angle, which needs 64 bits or has a fraction, is on the disk."""
+    wanted = [struct.pack(">d", angle_deg), struct.pack(">f", angle_deg)]  # as Yjs writes numbers
     deadline_s = time.monotonic() + 60
-    while not any(wanted in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*")):
+    while not any(
+        one in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*") for one in wanted
+    ):
         assert time.monotonic() < deadline_s
         time.sleep(0.05)

@@ -11,18 +11,19 @@ from aside import run_async
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.classroom import CLASS_FILE, Classroom
 from lacoc_client.workshop.design.learning.diary import Diary
-from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.learning.keeper import Keeper
+from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.design.requests import Hello
 from lacoc_client.workshop.design.studios.asker import Asker
 from lacoc_client.workshop.design.studios.studios import Studios
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import ClassFile
 from lacoc_client.workshop.phases.evidence import Named, WentToPhase
+from lacoc_client.workshop.tables.draft import Draft
 from lacoc_shared.mistakes import UserError
 
 WORD = "a-word-that-only-ada-has"
-DRAFT = Draft(table=FileTable(kind="postures", legs=6, rows=()), file=WORD)
+DRAFT = Draft(table=FileTable(kind="postures", legs=6, rows=()))
 
 
 def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
@@ -33,13 +34,12 @@ def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
         keeper = Keeper(path)
         diary, other = Diary(keeper, "Ada"), Diary(keeper, "Bo")
         await diary.add(Named(word=WORD))
-        await diary.keep(DRAFT, "1")
-        await asyncio.sleep(1.5)  # the table is on the disk
+        await diary.write(TABLE, WORD.encode())
         assert any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
         await asyncio.gather(diary.forget(), diary.add(WentToPhase(phase=2)))
         await diary.add(Named(word=WORD))
         await diary.vote(WORD, "A")
-        await diary.keep(DRAFT, "2")
+        await diary.write(TABLE, WORD.encode())
         await other.add(WentToPhase(phase=1))
         assert not any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
         await keeper.close()
@@ -122,7 +122,7 @@ def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
         assert room.find("Ada") is ada
         assert room.find("Bo") is bo
         for student in room.students.values():
-            student.diary.draft = DRAFT
+            student.table._draft, student.table.is_touched = DRAFT, True
         with pytest.raises(UserError):
             await comes("Cy")
         await room._keeper.close()
@@ -135,6 +135,7 @@ import asyncio, resource, signal, sys
 from pathlib import Path
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.keeper import Keeper
+from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.evidence import WentToPhase
 from lacoc_shared.mistakes import UserError
 

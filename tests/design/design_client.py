@@ -3,13 +3,14 @@
 from typing import Any
 
 from page_connection import PageConnection, Refused
+from page_table import SharingPage
 
 from lacoc_client.web.gateway.wire import MessageKind
 
 __all__ = ["DesignClient", "Refused"]
 
 
-class DesignClient(PageConnection):
+class DesignClient(SharingPage, PageConnection):
     """A page's connection to `lacoc design`.
 
     Args:
@@ -23,6 +24,7 @@ class DesignClient(PageConnection):
         """The reply to hello."""
         if key is not None:
             self.hello = self.ask("hello", key=key)
+            self.opens()
             self.until(lambda: self.folder and self.studio and self.phases)
 
     @property

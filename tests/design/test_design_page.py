@@ -139,17 +139,50 @@ def test_an_older_version_never_overwrites_a_newer_one(page: DesignClient, name:
     assert page.ask("read", name=name)["table"] == mine
 
 
-def test_only_the_newest_page_works(opens: Opens) -> None:
-    """A second page stops the first, and has what was changed there: no change is lost."""
+def test_two_pages_share_one_table(opens: Opens) -> None:
+    """A second page has what was changed on the first; each gets what the other does then.
+
+    Both are told where the other is, and that they typed into the same cell at the same time.
+    """
     one = opens()
     table = sample(one)
-    for angle_deg in (1.0, 17.25):
-        table["rows"][0]["angles_deg"][0] = angle_deg
-        one.ask("edit", table=table, sequences=None, by="hand")
+    one.edits(table)
     other = opens()
-    one.until(lambda: one.told[MessageKind.ELSEWHERE])
-    refused(one, "edit", table=table, sequences=None, by="hand")
-    assert other.hello["draft"]["table"] == table
+    assert other.shared.table == table
+    other.ask("table", **other.shared.put({"p6/5.0/3": 33.0}))
+    one.until(lambda: one.told[MessageKind.TABLE])
+    one.shared.take(one.last(MessageKind.TABLE)["update"])
+    assert one.shared.table == other.shared.table != table
+    # Neither has seen the other's number.
+    for page, angle_deg in ((one, 1.0), (other, 2.0)):
+        page.ask("table", **page.shared.put({"p6/1.0/0": angle_deg}))
+    for page in (one, other):
+        page.until(lambda page=page: "clash" in page.last(MessageKind.TABLE))
+        assert page.last(MessageKind.TABLE)["clash"]["cells"] == ["p6/1.0/0"]
+    other.ask("place", row=5, col=3, typing="-2")
+    one.until(lambda: "-2" in str(one.last(MessageKind.PEOPLE)))
+    assert len(one.last(MessageKind.PEOPLE)["people"]) == 2
+    assert one.last(MessageKind.PEOPLE)["me"] != other.last(MessageKind.PEOPLE)["me"]
+
+
+def test_what_is_no_table_is_refused(opens: Opens) -> None:
+    """An update that makes no table changes nothing; a page with another document is told so."""
+    page = opens()
+    page.edits(sample(page))
+    before = page.shared.table
+    for entries, code in (
+        ({"p6/1.0/18": 1.0}, "tables.unreadable"),
+        ({"p6/1.0/1": "x" * 300}, "tables.unreadable"),
+    ):
+        wrong = opens()
+        assert wrong.shared.table == before
+        reply = refused(wrong, "table", **{**wrong.shared.put(entries), "cells": []})
+        assert reply["error"]["code"] == code
+    older = {**opens().shared.put({"p6/1.0/1": 1.0}), "epoch": "another"}
+    assert refused(page, "table", **older)["error"]["code"] == "tables.older"
+    bytes_ = {**page.shared.put({"p6/1.0/1": 1.5}), "update": b"\xff" * 30}
+    assert refused(page, "table", **bytes_)["error"]["code"] == "tables.unreadable"
+    assert opens().shared.table == before
 
 
 def test_a_pasted_sheet_and_a_download(page: DesignClient) -> None:

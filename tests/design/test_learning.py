@@ -87,7 +87,7 @@ def test_two_phases_are_done_and_survive_a_kill(
     gateway, page = starts()
     table = standing(sample(page))
     assert not (folder / EVIDENCE_FILE).exists()
-    page.ask("edit", table=table)
+    page.edits(table)
     assert states(page) == ["open"] * 7
 
     guesses = []
@@ -100,7 +100,7 @@ def test_two_phases_are_done_and_survive_a_kill(
         (12, 20.0, None),
     ):
         table = changed(table, 1, joint, angle_deg)
-        said = page.ask("edit", table=table, sequences=SEQUENCES, by="hand", guess=guess)["guess"]
+        said = page.edits(table, sequences=SEQUENCES, guess=guess)["guess"]
         guesses.append(said and said["right"])
     assert guesses == [True, False, True, None, None, None]
     page.until(lambda: page.phases["phases"][1]["asked"])
@@ -116,10 +116,10 @@ def test_two_phases_are_done_and_survive_a_kill(
     page.until(lambda: page.phases["phase"] == 2)
     for joint in (12, 14, 16):
         table = changed(table, 1, joint, 45.0)
-        page.ask("edit", table=table, sequences=SEQUENCES, by="hand")
+        page.edits(table, sequences=SEQUENCES)
     for joint, angle_deg in ((0, 0.0), (3, 0.0), (6, 20.0)):
         table = changed(table, 1, joint, angle_deg)
-        page.ask("edit", table=table, sequences=SEQUENCES, by="hand")
+        page.edits(table, sequences=SEQUENCES)
     page.ask("trial", table=table, sequences=SEQUENCES, keys="A1", seconds=3.0)
     page.until(lambda: page.phases["phases"][2]["asked"])
     asked = page.phases["phases"][2]["asked"]
@@ -153,10 +153,10 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
         for row in own["rows"]
     ]
     slow = {**own, "rows": halves}
-    page.ask("edit", table=own, sequences=SEQUENCES)
+    page.edits(own, sequences=SEQUENCES)
     page.ask("trial", table=own, sequences=SEQUENCES, keys="2")
     page.ask("phase", number=5)
-    page.ask("edit", table=slow, sequences=SEQUENCES, by="tool")
+    page.edits(slow, "tool", sequences=SEQUENCES)
     guesses = [{"about": "pace", "said": "slower"}, {"about": "way", "said": "left"}]
     page.ask("trial", table=slow, sequences=SEQUENCES, keys="2", guesses=guesses)
     page.ask("trial", table=own, sequences=SEQUENCES, keys="2", watched=True)  # no evidence
@@ -189,8 +189,8 @@ def test_a_file_that_cannot_be_kept_is_told_and_disturbs_nobody(
     with ClassStore(folder / EVIDENCE_FILE):
         _, page = starts()
         table = sample(page)
-        page.ask("edit", table=table)
-        page.ask("edit", table=changed(table, 1, 0, 20.0), by="hand", guess="forward")
+        page.edits(table)
+        page.edits(changed(table, 1, 0, 20.0), guess="forward")
         page.until(lambda: page.phases["phases"][1]["share"] > 0)
 
         assert page.phases["trouble"]["code"] == "database.in-use"

@@ -13,7 +13,9 @@ ROW = {"key": 0, "posture": 0, "angles_deg": [0.0] * 18}
 
 def ask(**table: Any) -> bytes:
     full = {"kind": "postures", "legs": 6, "rows": [ROW], **table}
-    return msgspec.msgpack.encode({"id": 1, "do": "edit", "table": full})
+    return msgspec.msgpack.encode(
+        {"id": 1, "do": "edit", "before": full, "table": full, "by": "hand"}
+    )
 
 
 def test_a_table_is_read() -> None:

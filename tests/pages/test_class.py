@@ -81,7 +81,7 @@ def edits(student: StudentPage) -> dict[str, Any]:
         first, *others = table["rows"]
         row = {**first, "angles_deg": [angle_deg, *first["angles_deg"][1:]]}
         table = {**table, "rows": [row, *others]}
-        student.ask("edit", table=table, sequences=SEQUENCES, by="hand")
+        student.edits(table, sequences=SEQUENCES)
     return table
 
 

@@ -23,13 +23,13 @@ import msgpack
 import psutil
 from arguments import arguments
 from class_room import ClassRoom
+from page_table import PageTable, from_kept
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.classroom.classroom import CLASS_FILE
-from lacoc_client.workshop.design.learning.draft import NAME as DRAFT
-from lacoc_client.workshop.design.learning.draft import Draft, read_draft
+from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.class_file import ClassFile
 from lacoc_client.workshop.phases.evidence import Edited, Tried
 
@@ -145,32 +145,36 @@ class Student:
         hello = await page.ask("hello", name=self.name, **opens)
         self._token = hello["token"]
         if self._table:
-            self._compare(hello["draft"])
+            self._compare(PageTable(hello["table"]).table)
         else:
             self._table = (await page.ask("sample"))["table"]
-        await page.ask("edit", table=self._table, sequences=_SEQUENCES)  # as a page that opens
+        shared = PageTable(hello["table"])
+        await page.ask("table", **shared.write(self._table, _SEQUENCES))  # as a page that opens
         next_try_s = time.monotonic() + self._rng.uniform(0, _TRY_S) / lesson.speed
         while lesson.is_on:
             await asyncio.sleep(self._rng.uniform(0.5, 1.5) * _EDIT_S / lesson.speed)
-            await self._edit(page)
+            await self._edit(page, shared)
             if time.monotonic() >= next_try_s:
                 next_try_s += _TRY_S / lesson.speed
                 await page.ask("trial", table=self._table, sequences=_SEQUENCES, keys="2")
                 lesson.tries[self.name] += 1
                 lesson.tried_s[self.name, lesson.tries[self.name]] = time.monotonic()
 
-    async def _edit(self, page: Page) -> None:
-        # A new angle each time, so that the draft says which edit it has.
+    async def _edit(self, page: Page, shared: PageTable) -> None:
+        # A new angle each time, so that the table says which edit it has.
         angle_deg = round(self._rng.uniform(-20, 20), 6)
         row = self._table["rows"][0]
+        before = shared.table
         row["angles_deg"] = [angle_deg, *row["angles_deg"][1:]]
-        await page.ask("edit", table=self._table, sequences=_SEQUENCES, by="hand")
+        await page.ask("table", **shared.write(self._table, _SEQUENCES))
+        told = {"before": before, "table": self._table, "sequences": _SEQUENCES, "by": "hand"}
+        await page.ask("edit", **told)
         self._acknowledged.append((time.monotonic(), angle_deg))
         self._lesson.edits[self.name] += 1
 
-    def _compare(self, draft: dict[str, Any] | None) -> None:
+    def _compare(self, table: dict[str, Any] | None) -> None:
         """Count the lost edits that were acknowledged more than 2 s before the last kill."""
-        angle_deg = draft["table"]["rows"][0]["angles_deg"][0] if draft else None
+        angle_deg = table["rows"][0]["angles_deg"][0] if table else None
         killed_s = self._lesson.killed_s[-1] if self._lesson.killed_s else 0.0
         newest_deg = self._table["rows"][0]["angles_deg"][0]
         # The newest edit may have been kept although the kill came before its acknowledgement.
@@ -259,9 +263,9 @@ def _lost_evidence(folder: Path, lesson: Lesson) -> int:
     kept = file.evidence()
     edits = Counter(one.student for one in kept if isinstance(one.evidence, Edited))
     tries = Counter(one.student for one in kept if isinstance(one.evidence, Tried))
-    drafts = [read_draft(one) for one in file.documents() if one.name == DRAFT]
+    tables = [from_kept(one.content) for one in file.documents() if one.name == TABLE]
     file.close()
-    assert all(isinstance(draft, Draft) for draft in drafts)
+    assert all(tables)
     return (lesson.edits - edits).total() + (lesson.tries - tries).total()
 
 

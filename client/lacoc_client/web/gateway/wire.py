@@ -54,7 +54,7 @@ class MessageKind(IntEnum):
     STUDIO = 14
     PHASES = 15
     HANDED = 16
-    ELSEWHERE = 17
+    FORGOTTEN = 17
     CLASS = 18
     CARD = 19
     GONE = 20
@@ -62,6 +62,8 @@ class MessageKind(IntEnum):
     PROGRAMME = 22
     NOTICE = 23
     CROWD = 24
+    TABLE = 25
+    PEOPLE = 26
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]

@@ -12,7 +12,8 @@ from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_shared.studio import TrialReply
 
 TOKEN = "token"
-"""Name under which the hash of a student's token is kept."""
+"""Name under which the hashes of a student's tokens are kept."""
+_MOST_BROWSERS = 4
 
 
 class ClassStudent(Student):
@@ -26,8 +27,10 @@ class ClassStudent(Student):
 
     def __init__(self, name: str, diary: Diary, rules: Callable[[], StudentRules]) -> None:
         super().__init__(name, diary, rules)
-        self.token_hash = ""
-        """Hash of the token of the browser that may come in; "": the next one gets a token."""
+        self.token_hashes: tuple[str, ...] = ()
+        """Hashes of the tokens of the browsers that may come in, the newest last."""
+        self.is_admitting = True
+        """Whether the next browser with the class code gets a token."""
         self.seen_s = 0.0
         """Time when the student last did something, in seconds since 1970 (UTC)."""
         self.hand_up_s: float | None = None
@@ -39,8 +42,10 @@ class ClassStudent(Student):
         """Begin with what the class file has of this student, in the file's order."""
         documents = list(documents)
         self.diary.begin((one.evidence for one in evidence), documents)
+        self.open_kept()
         tokens = (one.content.decode() for one in documents if one.name == TOKEN)
-        self.token_hash = next(tokens, "")
+        self.token_hashes = tuple(next(tokens, "").split())
+        self.is_admitting = not self.token_hashes
         self.seen_s = evidence[-1].at_s if evidence else 0.0
         self.hand_up_s = hand_times((one.at_s, one.evidence) for one in evidence)
 
@@ -48,7 +53,7 @@ class ClassStudent(Student):
     def is_idle(self) -> bool:
         """Whether the student has no page open, and has never done more than come in."""
         did = any(not isinstance(one, JoinedClass) for one in self.diary.evidence)
-        return not (self.viewers or self.lessons or did or self.diary.draft)
+        return not (self.viewers or self.lessons or did or self.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
         """Note that the student did something; if it was a trial, `trial` is its reply."""
@@ -63,6 +68,11 @@ class ClassStudent(Student):
             self.hand_up_s = None
         elif self.hand_up_s is None:
             self.hand_up_s = time.time()
+
+    def add_token(self, token_hash: str) -> None:
+        """Let one more browser in with a token; the oldest of too many is not let in again."""
+        self.token_hashes = (*self.token_hashes, token_hash)[-_MOST_BROWSERS:]
+        self.is_admitting = False
 
     def card(self) -> Card:
         """Return the student's card."""
@@ -84,6 +94,6 @@ class ClassStudent(Student):
         self._last = now
         return now
 
-    def kept_token(self) -> Document:
-        """Return the token's hash as a class file keeps it."""
-        return Document(self.name, TOKEN, "", time.time(), self.token_hash.encode())
+    async def keep_token(self) -> None:
+        """Write the tokens' hashes to the disk."""
+        await self.diary.write(TOKEN, " ".join(self.token_hashes).encode())

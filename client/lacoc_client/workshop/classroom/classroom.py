@@ -138,14 +138,14 @@ class Classroom:
             student, token = self._known(hello), hello.token
         else:
             student, token = await self._newcomer(hello, where), new_token()
-            student.token_hash = new_token_hash(token)
-            await student.diary.write(student.kept_token())
+            student.add_token(new_token_hash(token))
+            await student.keep_token()
         if self.students.get(same_name(student.name)) is not student:
             raise UserError(say("class.enter"))  # forgotten while it came in
         return LetIn(student, token)
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
-        """Send a page what it shows first, and stop the student's other pages (`Host.greet`)."""
+        """Send a page what it shows first (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
         student.greet(viewer, lesson)
         student.seen_s = time.time()
@@ -214,9 +214,8 @@ class Classroom:
         self._tell_card(student)
 
     async def admit(self, student: ClassStudent) -> None:
-        """Let in, as this student, the next browser with the class code and the student's name."""
-        student.token_hash = ""
-        await student.diary.write(student.kept_token())
+        """Let in, as this student, one more browser with the class code and the student's name."""
+        student.is_admitting = True
 
     async def forget(self, student: ClassStudent) -> None:
         """Delete all that is kept of a student.
@@ -227,7 +226,7 @@ class Classroom:
         await student.diary.forget()
         if self.students.get(same_name(student.name)) is student:  # else another page was quicker
             del self.students[same_name(student.name)]
-        student.send_away(forgotten=True)
+        student.send_away()
         self._tell(wire.map_message(MessageKind.GONE, {"name": student.name}))
 
     async def evidence(self) -> list[Kept]:
@@ -253,7 +252,8 @@ class Classroom:
 
     def _known(self, hello: requests.Hello) -> ClassStudent:
         student = self.students.get(same_name(hello.name))
-        if student is None or not seal.verify_token(hello.token, student.token_hash):
+        hashes = () if student is None else student.token_hashes
+        if student is None or not any(seal.verify_token(hello.token, one) for one in hashes):
             raise UserError(say("class.unknown-token"))
         return student
 
@@ -276,9 +276,9 @@ class Classroom:
                 if (there := next((n for n in names if look_alike(n, name)), None)) is not None:
                     raise UserError(say("class.name-taken", name=there))
                 student = self._new(name)
-            elif student.token_hash:
+            elif not student.is_admitting:
                 raise UserError(say("class.name-taken", name=name))
-            student.token_hash = "-"  # nobody else takes the name while this is written
+            student.is_admitting = False  # nobody else takes the name while this is written
         await student.diary.add(JoinedClass())
         return student
 

@@ -3,10 +3,12 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from lacoc_client.workshop.design.learning.draft import NAME as DRAFT
-from lacoc_client.workshop.design.learning.draft import read_draft
+from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
+from lacoc_client.workshop.tables.document import TableDocument
+from lacoc_client.workshop.tables.draft import Draft
+from lacoc_client.workshop.tables.entries import draft_of
 from lacoc_robots.seat_files import USUAL_NAMES
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
@@ -16,22 +18,29 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[Document]) -> list[Document]:
-    """Return the gait and robot files of all drafts; tokens and settings are left out."""
+    """Return the gait and robot files of all tables; tokens and settings are left out."""
     found = []
     for one in kept:
-        draft = read_draft(one) if one.name == DRAFT else None
+        draft = _draft(one) if one.name == TABLE else None
         if draft is None:
             continue
         try:
             files = draft.files()
         except (FileRefused, UserError):
-            continue  # a cell without an angle, or a missing key: this project's page sends neither
+            continue  # a mistake in the table, such as an angle without a number
         found += [
             Document(one.student, name, one.version, one.at_s, file.data)
             for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]
     return found
+
+
+def _draft(kept: Document) -> Draft | None:
+    try:
+        return draft_of(TableDocument(kept.content).entries)
+    except UserError:
+        return None  # of another version of this program
 
 
 def export(path: Path) -> dict[str, bytes]:

@@ -16,10 +16,10 @@ from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.classroom import Classroom
 from lacoc_client.workshop.classroom.kept import EVIDENCE, TABLES, student_files
 from lacoc_client.workshop.design.design_page import parsed
-from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.requests import Hello, ParseAsk, RobotAsk, TrialAsk
 from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
+from lacoc_client.workshop.tables.draft import Draft
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -143,7 +143,7 @@ class TeacherPage:
         """Return the files of everybody who has a table, by nickname."""
         players = {}
         for student in self._class.students.values():
-            draft = student.diary.draft
+            draft = student.draft
             if draft is not None:
                 files = draft.files()
                 players[student.name] = files._replace(robot=files.robot or self._class.robot)
@@ -151,6 +151,6 @@ class TeacherPage:
 
 
 def _draft(student: ClassStudent) -> Draft:
-    if student.diary.draft is None:
+    if student.draft is None:
         raise UserError(say("class.no-table", name=student.name))
-    return student.diary.draft
+    return student.draft

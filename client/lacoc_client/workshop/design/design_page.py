@@ -15,12 +15,13 @@ from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import FileContent, file_bytes, read_file
 from lacoc_client.workshop.design.folder import Folder
 from lacoc_client.workshop.design.host import Host
-from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.learning.learner import Learner
 from lacoc_client.workshop.design.saving.robot_edit import edit_robot
 from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
 from lacoc_client.workshop.phases.evidence import Hand, Named, WentToPhase
 from lacoc_client.workshop.phases.facts import TrialFacts
+from lacoc_client.workshop.tables.draft import Draft
+from lacoc_client.workshop.tables.shared_table import TableUpdate
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_shared.messages import SentFile
@@ -94,7 +95,7 @@ class DesignPage:
             "robot": self._host.robot,
             "student": student.name or None,
             "token": entered.token,
-            "draft": None if hello.lesson else student.diary.draft,
+            "table": None if hello.lesson else student.table.opened(),
             "earned": student.diary.has_earned_sample,
             "steps": student.diary.lesson,
             "court": _court(self._host),
@@ -109,6 +110,12 @@ class DesignPage:
     def _answer(self, asked: requests.Asked, learner: Learner) -> None:
         answers = self._answers
         match asked:
+            case requests.TableAsk():
+                answers.later(asked.id, self._share(asked, learner))
+            case requests.PlaceAsk():
+                place = asked.row, asked.col, asked.typing
+                learner.student.table.move(self._viewer, *place)
+                answers.reply(asked.id, {})
             case requests.RobotAsk():
                 answers.later(asked.id, self._studio.robot(asked))
             case requests.TrialAsk():
@@ -167,6 +174,18 @@ class DesignPage:
             return None
         sample = msgspec.structs.replace(asked, table=table, sequences=None, guesses=())
         return (await self._studio.trial(sample))[0]
+
+    async def _share(self, asked: requests.TableAsk, learner: Learner) -> Any:
+        """Merge what the page did to the table; when this returns, it is on the disk."""
+        update = TableUpdate(
+            table=asked.table,
+            epoch=asked.epoch,
+            update=asked.update,
+            cells=asked.cells,
+            seen=asked.seen,
+            begins=asked.begins,
+        )
+        return await learner.student.table.take(self._viewer, update)
 
     async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
         """Check a table, and take its files to a court.

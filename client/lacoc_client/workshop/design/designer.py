@@ -71,7 +71,7 @@ class Designer:
         return LetIn(self._student)
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
-        """Tell a page what it shows first, and stop the other pages; see `Host.greet`."""
+        """Tell a page what it shows first; see `Host.greet`."""
         student.greet(viewer, lesson)
         viewer.send(self._folder_message(()))
         viewer.send(studio_message(self.studios))
@@ -94,6 +94,7 @@ class Designer:
         """Watch the folder and the studio until the block ends, and tell pages what changes."""
         self.studios.start()
         await self._student.diary.read()
+        self._student.open_kept()
         looking = asyncio.get_running_loop().create_task(self._look())
         try:
             yield

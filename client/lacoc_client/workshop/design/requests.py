@@ -9,6 +9,7 @@ from lacoc_client.workshop.design.saving.robot_edit import RobotEntry
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import LESSON_STEPS, By
 from lacoc_client.workshop.phases.facts import FootWay, Pace, Way
+from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.workbook.content import MAX_BYTES
 from lacoc_shared.messages import SentFile
 from lacoc_shared.studio import STUDIO_MAX_BYTES
@@ -21,6 +22,9 @@ PARSE_BYTES = MAX_BYTES + 4096
 MESSAGE_BYTES = 16 << 20
 """Longest message [bytes]; a longer one closes the connection."""
 
+UPDATE_BYTES = 96 << 10
+"""Longest update of a table [bytes]."""
+_MOST_CELLS = 4096
 _T = TypeVar("_T")
 Name = Annotated[str, msgspec.Meta(max_length=200)]
 _PhaseNumber = Annotated[int, msgspec.Meta(ge=0, le=6)]
@@ -116,27 +120,45 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
     """Whether the table is the coach's and is only watched; then the trial is no evidence."""
 
 
-class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
-    """Tell the gateway the table after an edit, as evidence for the phases."""
+class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
+    """Change the table that all its pages share."""
 
+    table: Name
+    """Which table; "": the student's own."""
+    epoch: Name
+    """Which document of it."""
+    update: Annotated[bytes, msgspec.Meta(max_length=UPDATE_BYTES)]
+    """What has changed, as Yjs writes it."""
+    cells: Annotated[tuple[Name, ...], msgspec.Meta(max_length=_MOST_CELLS)] = ()
+    """Names of the cells into which somebody typed."""
+    seen: Annotated[int, msgspec.Meta(ge=0)] = 0
+    """Number of the newest update that the page had taken in."""
+    begins: bool = False
+    """Whether it has what the page has put into an empty table."""
+
+
+class PlaceAsk(Ask, frozen=True, kw_only=True, tag="place"):
+    """Tell the other pages of the table where this one is."""
+
+    row: Annotated[int, msgspec.Meta(ge=-1, lt=MAX_KEYS * MAX_POSTURES_PER_KEY)]
+    col: Annotated[int, msgspec.Meta(ge=-1, lt=100)]
+    typing: Annotated[str, msgspec.Meta(max_length=100)] | None = None
+    """What is being typed there."""
+
+
+class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
+    """Tell the gateway what the student did to the table, as evidence for the phases."""
+
+    before: FileTable
+    """The table without this edit. What others did meanwhile is in both tables."""
     table: FileTable
     robot: SentFile | None = None
     sequences: Sequences | None = None
-    by: By | None = None
-    """None: this is no edit of the student's; a file was opened, or an edit was undone."""
+    by: By
     size: Literal["cell", "three", "table"] | None = None
     """If the student took over the coach's changes, the size of the coach's search."""
     guess: FootWay | None = None
     """The direction in which the student guessed, before the edit, that the foot will go."""
-    file: Name = ""
-    """Name of the file that is open; "": none."""
-    file_version: Name = ""
-    """Version of that file that the table was made from."""
-    saved: bool = False
-    """Whether the files have this table and this robot."""
-    robot_version: Name | None = None
-    """Version of the file that the robot was made from, if that file lacks changes of the robot;
-    "": the robot has no file; None: nothing is lacking."""
 
 
 class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
@@ -272,6 +294,8 @@ Asked = (
     | MapAsk
     | VariantsAsk
     | CancelAsk
+    | TableAsk
+    | PlaceAsk
     | EditAsk
     | CheckAsk
     | PlayAsk

@@ -91,7 +91,7 @@ export const MESSAGE_KINDS = [
   "studio",
   "phases",
   "handed",
-  "elsewhere",
+  "forgotten",
   "class",
   "card",
   "gone",
@@ -99,6 +99,8 @@ export const MESSAGE_KINDS = [
   "programme",
   "notice",
   "crowd",
+  "table",
+  "people",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */
@@ -577,16 +579,6 @@ export interface Phases {
   lesson_step: number;
   phases: PhaseState[];
   rules: StudentRules;
-}
-
-export interface Draft {
-  table: FileTable;
-  sequences: number[][] | null;
-  robot: SentFile | null;
-  file: string;
-  file_version: string;
-  saved: boolean;
-  robot_version: string | null;
 }
 
 export interface TookStep {

@@ -180,6 +180,45 @@ export interface ShowReply {
   trial: TrialReply;
 }
 
+/** A shared table as a page begins with it. */
+export interface OpenedTable {
+  /** Which table; "": the student's own. */
+  table: string;
+  /** Which document of it: only updates of the same one can be merged. */
+  epoch: string;
+  /** Number of the newest update. */
+  seq: number;
+  /** The document, as Yjs writes it; empty: it has no table yet. */
+  state: Uint8Array;
+  /** How many other pages have it open. */
+  others: number;
+}
+
+/** What happened to a shared table. */
+export interface TableNews {
+  table: string;
+  epoch: string;
+  seq: number;
+  update?: Uint8Array;
+  /** Another document takes the place of the one that was there. */
+  state?: Uint8Array;
+  /** Cells into which this page and another one typed without having seen each other's. */
+  clash?: { cells: string[]; by: number };
+}
+
+/** A page at a shared table. */
+export interface Person {
+  /** Counts the pages of the table, from 1. */
+  id: number;
+  /** "" for whoever designs alone. */
+  name: string;
+  /** -1: nowhere. */
+  row: number;
+  col: number;
+  /** What is being typed; null: nothing is. */
+  typing: string | null;
+}
+
 /** A table that the teacher of a class handed out. */
 export interface HandedTable {
   /** Counts the tables of the class, from 1. */
@@ -234,7 +273,9 @@ export type Message =
   | { kind: "programme"; body: Programme }
   | { kind: "tournament"; body: TournamentState }
   | { kind: "handed"; body: HandedTable }
-  | { kind: "elsewhere"; body: { forgotten: boolean } };
+  | { kind: "forgotten"; body: Record<string, never> }
+  | { kind: "table"; body: TableNews }
+  | { kind: "people"; body: { me: number; people: Person[] } };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
@@ -274,6 +315,8 @@ type DesignRequest =
   | "map"
   | "variants"
   | "cancel"
+  | "table"
+  | "place"
   | "edit"
   | "check"
   | "play"

@@ -10,13 +10,14 @@ import { isNarrow } from "../ui/screen";
 import { Settings } from "../ui/settings";
 import { Toasts, toast } from "../ui/toasts";
 import "./design/design.css";
-import { Elsewhere } from "./design/class/elsewhere";
+import { Forgotten } from "./design/class/forgotten";
 import { Join } from "./design/class/join";
 import { Offer } from "./design/class/offer";
 import { ConflictDialog, TroubleDialog } from "./design/files/conflict";
 import { FilesDialog, takeFiles } from "./design/files/dialog";
 import { Head } from "./design/head/head";
 import { LegPicture } from "./design/robot/legs";
+import { PeopleHere } from "./design/sharing/people_here";
 import { Side, type Tab } from "./design/side";
 import { Studio } from "./design/studio";
 import { Grid } from "./design/table/grid";
@@ -36,14 +37,17 @@ const dragging = signal(false);
 
 export default function Design() {
   const studio = useMemo(() => new Studio(), []);
-  const { sheet, trials, showing, coach, files, robot, gateway, membership } = studio;
+  const { sheet, trials, showing, coach, files, robot, gateway, membership, people } = studio;
   const open = useSignal<"" | "files" | "settings">("");
   const tab = useSignal<Tab>("trials");
   window.__studio = studio;
   const close = () => {
     open.value = "";
   };
-  const overlay = useMemo(() => ({ marks: coach.marks, target: trials.target }), [coach, trials]);
+  const overlay = useMemo(
+    () => ({ marks: coach.marks, target: trials.target, people: people.places }),
+    [coach, trials, people],
+  );
   useKeys(studio);
   useDrop(dragging, (taken) => void takeFiles(files, taken));
   useLeaving(studio);
@@ -92,6 +96,7 @@ export default function Design() {
       </div>
       <Stage picture={studio.picture} robot={robot.robot} sheet={sheet} showing={showing} />
       <section class="sheet" aria-label={t("design.grid")}>
+        <PeopleHere people={people} sheet={sheet} />
         <Grid
           sheet={sheet}
           overlay={overlay}
@@ -114,7 +119,7 @@ export default function Design() {
         />
       )}
       {settings}
-      <Elsewhere membership={membership} />
+      <Forgotten membership={membership} />
       <ConflictDialog files={files} />
       <TroubleDialog gateway={gateway} robot={robot} sheet={sheet} />
       <Dropping dragging={dragging}>{t("design.drop")}</Dropping>
@@ -174,13 +179,12 @@ function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
 }
 
 /** Tell the gateway all before the page goes, and ask before a table is lost. */
-function useLeaving({ files, learning, gateway, membership }: Studio): void {
+function useLeaving({ files, learning, sharing, gateway, membership }: Studio): void {
   useEffect(() => {
     const leave = (event: BeforeUnloadEvent) => {
-      if (membership.elsewhere.peek()) return;
-      const isOpen = gateway.state.peek().open && learning.gait() !== null;
+      if (membership.isForgotten.peek()) return;
       const isKept = membership.name.peek()
-        ? isOpen || learning.isTold.peek()
+        ? gateway.state.peek().open || (sharing.isKept.peek() && learning.isTold.peek())
         : files.isSaved.peek();
       if (!isKept) event.preventDefault();
     };
@@ -194,5 +198,5 @@ function useLeaving({ files, learning, gateway, membership }: Studio): void {
       removeEventListener("pagehide", tell);
       document.removeEventListener("visibilitychange", tell);
     };
-  }, [files, learning, gateway, membership]);
+  }, [files, learning, sharing, gateway, membership]);
 }

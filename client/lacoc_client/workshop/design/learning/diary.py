@@ -1,4 +1,4 @@
-"""Keeps the evidence of what one student does, and the student's newest table."""
+"""Keeps the evidence of what one student does, and reads the student's documents."""
 
 import asyncio
 import time
@@ -7,7 +7,6 @@ from typing import TypeVar
 
 import msgspec
 
-from lacoc_client.workshop.design.learning.draft import NAME, Draft, read_draft
 from lacoc_client.workshop.design.learning.keeper import Keeper
 from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.phases.class_file import Document
@@ -68,9 +67,9 @@ class Phases(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Diary:
-    """The evidence and the draft of one student; used from the event loop only.
+    """The evidence of one student; used from the event loop only.
 
-    If the file can't be opened, both are kept in memory until the program ends, and
+    If the file can't be opened, it is kept in memory until the program ends, and
     `Keeper.trouble` says why.
 
     Args:
@@ -86,11 +85,11 @@ class Diary:
         self._progress: StudentProgress | None = None
         self._reading = asyncio.Lock()
         self._is_forgotten = False
-        self.draft: Draft | None = None
-        """The newest table; None: there is none."""
+        self.documents: tuple[Document, ...] = ()
+        """The student's documents as earlier runs kept them."""
 
     async def read(self) -> None:
-        """Read the evidence and the draft that earlier runs kept, if there is a file."""
+        """Read the evidence and the documents that earlier runs kept, if there is a file."""
         if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
@@ -104,8 +103,7 @@ class Diary:
         self._is_read = True
         self._evidence[:0] = evidence
         self._progress = None
-        drafts = (read_draft(document) for document in documents if document.name == NAME)
-        self.draft = self.draft or next(drafts, None)
+        self.documents = tuple(documents)
 
     async def add(self, *evidence: Evidence) -> None:
         """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
@@ -128,20 +126,9 @@ class Diary:
             vote = store.vote(self._student, poll, choice, time.time())
             await _kept(asyncio.wrap_future(vote))
 
-    async def keep(self, draft: Draft, version: str) -> None:
-        """Keep the newest table; it is on the disk with the next evidence, or after about a second.
-
-        Args:
-            draft: the table.
-            version: name of the table's content.
-        """
-        self.draft = draft
-        store = await self._opened()
-        if store is not None and not self._is_forgotten:
-            store.keep(draft.kept(self._student, version, time.time()))
-
-    async def write(self, document: Document) -> None:
-        """Write data such as the student's token; if that fails, `Phases.trouble` says why."""
+    async def write(self, name: str, content: bytes, version: str = "") -> None:
+        """Write a document of the student; if that fails, `Phases.trouble` says why."""
+        document = Document(self._student, name, version, time.time(), content)
         store = await self._opened()
         if store is not None and not self._is_forgotten:
             await _kept(asyncio.wrap_future(store.write(document)))
@@ -234,7 +221,7 @@ class Diary:
         return AskedQuestion(name=found.name, ask=found.ask, choices=found.choices)
 
     async def _opened(self) -> ClassStore | None:
-        """Open the file and read this student's evidence and draft; None if it can't be opened."""
+        """Open the file and read this student's evidence; None if it can't be opened."""
         store = await self._keeper.opened()
         async with self._reading:
             if store is not None and not self._is_read:

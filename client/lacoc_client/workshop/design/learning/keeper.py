@@ -9,7 +9,7 @@ from lacoc_shared.words import Phrase
 
 
 class Keeper:
-    """A file of evidence and drafts; used from the event loop only.
+    """A file of evidence and tables; used from the event loop only.
 
     Where it can't be opened, nothing is kept, and `trouble` says why.
 

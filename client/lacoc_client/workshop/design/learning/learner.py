@@ -8,7 +8,6 @@ import msgspec
 
 from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.files import sent_gait
-from lacoc_client.workshop.design.learning.draft import Draft
 from lacoc_client.workshop.design.learning.student import Student
 from lacoc_client.workshop.design.learning.tried_rows import numbers, row_names
 from lacoc_client.workshop.design.table import FileTable
@@ -93,7 +92,6 @@ class Learner:
         self.student = student
         self._diary = student.diary
         self._sample = sample
-        self._before: FileTable | None = None
         self._last: dict[str, TrialFacts] = {}
         self._samples: dict[tuple[str, SentFile | None], TrialFacts | None] = {}
 
@@ -104,21 +102,9 @@ class Learner:
             FileRefused: with every mistake of the table or of the robot.
         """
         version = _version(asked.table, asked.sequences)
-        if asked.by is not None or self._diary.draft is not None:  # else nothing was changed yet
-            draft = Draft(
-                table=asked.table,
-                sequences=asked.sequences,
-                robot=asked.robot,
-                file=asked.file,
-                file_version=asked.file_version,
-                saved=asked.saved,
-                robot_version=asked.robot_version,
-            )
-            await self._diary.keep(draft, version)
-        before, self._before = self._before, asked.table
-        if before is None or asked.by is None or before.kind != asked.table.kind:
+        if asked.before.kind != asked.table.kind:
             return EditReply()
-        edit = edited(_rows(before), _rows(asked.table), version, asked.by)
+        edit = edited(_rows(asked.before), _rows(asked.table), version, asked.by)
         if edit is None:
             return EditReply()
         evidence: list[Evidence] = [edit]

@@ -1,6 +1,7 @@
 """A student at work: what was done, and the pages on which it is seen."""
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import msgspec
 
@@ -9,6 +10,12 @@ from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.rules import StudentRules
+from lacoc_client.workshop.tables.draft import Draft
+from lacoc_client.workshop.tables.shared_table import SharedTable
+from lacoc_shared.mistakes import UserError
+
+TABLE = "table"
+"""Name under which a student's table is kept."""
 
 
 class Student:
@@ -28,11 +35,28 @@ class Student:
         """The student's pages of /design."""
         self.lessons: dict[Viewer, None] = {}
         """The student's pages of the lesson of one leg, which change no table."""
+        self.own = SharedTable("", self._keep)
+        """The student's own table."""
+        self.table = self.own
+        """The table on which the student works."""
 
     @property
     def rules(self) -> StudentRules:
         """What the teacher allows."""
         return self._rules()
+
+    @property
+    def draft(self) -> Draft | None:
+        """The newest table on which the student works; None: nothing was changed yet."""
+        return self.table.draft
+
+    def open_kept(self) -> None:
+        """Begin with the table that the diary has read."""
+        for one in self.diary.documents:
+            if one.name == TABLE:
+                with suppress(UserError):  # of another version of this program
+                    self.own = SharedTable("", self._keep, one.content, one.version)
+        self.table = self.own
 
     def tell(self) -> None:
         """Tell all pages how far the student is."""
@@ -44,7 +68,7 @@ class Student:
             viewer.send(message)
 
     def greet(self, viewer: Viewer, lesson: bool) -> None:
-        """Take in a page that was let in; a page of /design stops the others.
+        """Take in a page that was let in.
 
         Args:
             viewer: the page.
@@ -53,29 +77,26 @@ class Student:
         if lesson:
             self.lessons[viewer] = None
             return
-        self.send_away()
         self.viewers[viewer] = None
+        self.table.add(viewer, self.name)
 
     def leave(self, viewer: Viewer) -> None:
         """Remove a page that has gone."""
         self.viewers.pop(viewer, None)
         self.lessons.pop(viewer, None)
+        self.table.leave(viewer)
 
-    def send_away(self, forgotten: bool = False) -> None:
-        """Refuse further requests from all pages of /design, and tell the pages why.
-
-        Two pages at work would lose each other's changes: only the newest one works.
-
-        Args:
-            forgotten: whether the student was deleted, so that pages of the lesson end too; else
-                another page was opened.
-        """
-        message = wire.map_message(MessageKind.ELSEWHERE, {"forgotten": forgotten})
-        for pages in (self.viewers, self.lessons) if forgotten else (self.viewers,):
-            for viewer in pages:
+    def send_away(self) -> None:
+        """Tell all pages that the student was deleted, and refuse what they ask from now on."""
+        message = wire.map_message(MessageKind.FORGOTTEN, {})
+        for pages in (self.viewers, self.lessons):
+            for viewer in (*pages,):
                 viewer.send(message)
                 viewer.can_act = False
-            pages.clear()
+                self.leave(viewer)
+
+    async def _keep(self, state: bytes, epoch: str) -> None:
+        await self.diary.write(TABLE, state, epoch)
 
     def phases_message(self) -> bytes:
         """Return the message that says how far the student is."""

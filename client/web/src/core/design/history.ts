@@ -1,6 +1,7 @@
 /** Keeps the table that is edited, and all its steps for undo and redo. */
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
+import { changesBetween } from "./rebase";
 import { type Columns, type Row, refit, type Table } from "./table";
 
 interface Step {
@@ -52,12 +53,48 @@ export class History {
     });
   }
 
+  /** Replace a robot in all steps. */
+  useRobot(before: unknown, now: unknown): void {
+    this.steps.value = this.steps
+      .peek()
+      .map((step) => (step.robot === before ? { ...step, robot: now } : step));
+  }
+
   /** Give all steps the columns of another robot with as many legs; this is no step to undo. */
   refit(columns: Columns): void {
     this.steps.value = this.steps.peek().map((step) => {
       const table = refit(step.table, columns) ?? step.table;
       return { ...step, table, version: this.numberOf(table) };
     });
+  }
+
+  /**
+   * Take in what others did: every step has it, so undo takes back only what was done here. Steps
+   * that have nothing of their own any more are left out.
+   *
+   * @returns What it makes of the tables that were steps before.
+   */
+  rebase(to: Table): (table: Table) => Table {
+    const change = changesBetween(this.table.peek(), to);
+    const before = this.steps.peek();
+    const at = this.at.peek();
+    const kept: Step[] = [];
+    let now = 0;
+    before.forEach((step, index) => {
+      const table = change(step.table);
+      const version = this.numberOf(table);
+      const last = kept.at(-1);
+      if (last?.version === version && last.robot === step.robot) {
+        // The newest name stays: it says what undo leads back from.
+        kept[kept.length - 1] = { ...last, table };
+      } else kept.push({ ...step, table, version });
+      if (index === at) now = kept.length - 1;
+    });
+    batch(() => {
+      this.steps.value = kept;
+      this.at.value = now;
+    });
+    return change;
   }
 
   /**

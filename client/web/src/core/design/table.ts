@@ -45,6 +45,11 @@ export interface Columns {
   readonly ranges: readonly Range[];
 }
 
+/** A table of the wire format, but cells may have texts. */
+export interface WireTable extends Omit<FileTable, "rows"> {
+  rows: readonly { key: number; posture: number; angles_deg: readonly Cell[] }[];
+}
+
 /** Why a cell has no angle. */
 export type Wrong = "empty" | "number" | "range";
 
@@ -124,7 +129,7 @@ export function columnsOf(robot: RobotReply): Columns {
 }
 
 /** Make a table from a table of the wire format; angles outside the ranges become texts. */
-export function fromWire(wire: FileTable, columns: Columns): Table {
+export function fromWire(wire: WireTable, columns: Columns): Table {
   const fits = wire.legs === columns.legs.length;
   const legs = fits ? columns.legs : Array.from({ length: wire.legs }, (_, leg) => String(leg));
   const ranges = fits ? columns.ranges : legs.flatMap(() => LEVELS.map(() => USUAL_RANGE));

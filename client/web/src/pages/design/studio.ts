@@ -19,6 +19,8 @@ import { Gateway } from "./gateway";
 import { hasEarned, Learning } from "./learning/learning";
 import { Numbers } from "./robot/numbers";
 import { RobotInUse } from "./robot/robot";
+import { People } from "./sharing/people";
+import { Sharing } from "./sharing/sharing";
 import { takeGivenLeg } from "./table/given_leg";
 import { Sheet } from "./table/sheet";
 import { Trials } from "./trials/trials";
@@ -45,6 +47,7 @@ export class Studio {
       before: (by) => this.learning.tell(by),
       changed: (by, size) => this.learning.edited(by, size),
       turned: (before, now) => this.files.shapes.turned(before, now),
+      merged: (before, now) => this.learning.merged(before, now),
       legsChanged: () => this.trials.forget(),
       worked: () => this.showing.rest(),
     },
@@ -53,7 +56,7 @@ export class Studio {
   readonly learning: Learning = new Learning(
     this.gateway,
     () => sentGait(this.sheet, this.robot),
-    () => this.files.base(),
+    () => this.sheet.table.peek(),
   );
   readonly trials: Trials = new Trials(
     this.gateway,
@@ -71,6 +74,14 @@ export class Studio {
     this.trials,
   );
   readonly files: Files = new Files(this.gateway, this.sheet, this.robot, this.can);
+  readonly people = new People(this.gateway, this.sheet, this.membership);
+  readonly sharing = new Sharing(
+    this.gateway,
+    this.sheet,
+    this.robot,
+    this.files.file,
+    (cells, by) => this.people.clashed(cells, by),
+  );
   readonly numbers = new Numbers(this.robot, this.files);
   readonly court = new Court(this.gateway, this.sheet, this.robot);
   readonly handed = new Handed(this.membership, this.files);
@@ -96,6 +107,7 @@ export class Studio {
     this.files,
     this.robot,
     this.sheet,
+    this.sharing,
     () => this.trials.all.peek().length > 0,
   );
   /** The timer after which the first things are asked for again. */
@@ -103,12 +115,7 @@ export class Studio {
   /** null: not greeted yet. */
   private greeting: Greeting | null = null;
 
-  constructor() {
-    // A file that was saved, or another one that was opened: what is on the page is its table.
-    this.files.file.subscribe(() => {
-      if (this.sheet.table.peek()) this.learning.edited(null);
-    });
-  }
+  constructor() {}
 
   private async greet(): Promise<void> {
     let greeting: Greeting;
@@ -122,13 +129,14 @@ export class Studio {
     this.membership.entered(greeting);
     // What is on the page is somebody else's.
     if (before !== undefined && before !== greeting.student) location.reload();
-    const { student, draft, earned } = greeting;
+    const { student, table, earned } = greeting;
+    this.sharing.greet(table);
+    this.people.greet();
     this.court.leads.value = greeting.court;
     this.greeting = greeting;
     const isAlone = student === null;
     this.can.value = { ...this.can.peek(), save: isAlone, sample: isAlone || earned };
     if (this.opening.isOpen) {
-      if (student !== null && draft) this.opening.again(draft);
       this.learning.greet();
       this.trials.goOn();
     } else void this.openFirst();
@@ -148,10 +156,14 @@ export class Studio {
       this.search.progress.value = body;
     } else if (kind === "handed") {
       this.handed.newest.value = body;
-    } else if (kind === "elsewhere") {
+    } else if (kind === "table") {
+      this.sharing.take(body);
+    } else if (kind === "people") {
+      this.people.take(body);
+    } else if (kind === "forgotten") {
       this.gateway.end();
-      if (body.forgotten) this.trials.forget();
-      this.membership.elsewhere.value = body;
+      this.trials.forget();
+      this.membership.isForgotten.value = true;
     } else if (kind === "folder") {
       const { folder, files, changed } = body;
       this.files.folder.value = { folder, files };

@@ -56,8 +56,8 @@ export class Attendance {
     }
   }
 
-  private take({ kind, body }: Message): void {
-    if (kind === "elsewhere" && body.forgotten) this.leave();
+  private take({ kind }: Message): void {
+    if (kind === "forgotten") this.leave();
   }
 
   private leave(): void {

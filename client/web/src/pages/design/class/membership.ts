@@ -6,7 +6,7 @@ import { type Refused, Unanswered } from "../../../core/connection";
 import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
 import type { Phrase } from "../../../core/phrase";
 import { place as kept } from "../../../core/place";
-import type { Draft, SentFile } from "../../../core/wire";
+import type { OpenedTable, SentFile } from "../../../core/wire";
 
 /** What the gateway says to a page that it has let in. */
 export interface Greeting {
@@ -15,8 +15,8 @@ export interface Greeting {
   /** The nickname in a class; null: whoever designs alone. */
   student: string | null;
   token: string | null;
-  /** The newest table that the gateway got; null: none. */
-  draft: Draft | null;
+  /** The table that all pages of the student share. */
+  table: OpenedTable;
   /** Whether phase 4 is done, so that a page without a table begins with the sample. */
   earned: boolean;
   /** Where a table can be taken; null: nowhere. */
@@ -39,8 +39,8 @@ export class Membership {
   readonly name = signal<string | null>(null);
   /** null: the page needs no form. */
   readonly door = signal<Door | null>(null);
-  /** Why this page may do nothing any more; null: it may. */
-  readonly elsewhere = signal<{ forgotten: boolean } | null>(null);
+  /** Whether the teacher has deleted the student: this page can do nothing any more. */
+  readonly isForgotten = signal(false);
   private typed: { code: string; name: string } | null = null;
 
   /** What a hello shows. */

@@ -9,15 +9,14 @@ import "./class.css";
 interface Props {
   name: string;
   learning: Learning;
-  isOpen: boolean;
+  /** Whether the gateway's disk has the table. */
+  isShared: boolean;
   onFiles: () => void;
 }
 
-export function StudentName({ name, learning, isOpen, onFiles }: Props) {
-  // A change that is on its way is as good as kept.
-  const isTold = learning.isTold.value || (isOpen && learning.gait() !== null);
+export function StudentName({ name, learning, isShared, onFiles }: Props) {
   const trouble = learning.phases.value?.trouble;
-  const isKept = isTold && !trouble;
+  const isKept = isShared && !trouble;
   const title = trouble ? said(trouble) : t("design.files");
   return (
     <button class="button name" type="button" title={title} onClick={onFiles}>

@@ -1,7 +1,15 @@
 /** The file that the table comes from: open, take in, save, and what to do where it has changed. */
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
-import { columnsOf, fromWire, standing, type Table, toWire } from "../../../core/design/table";
+import type { Content } from "../../../core/design/entries";
+import {
+  columnsOf,
+  fromWire,
+  standing,
+  type Table,
+  toWire,
+  type WireTable,
+} from "../../../core/design/table";
 import { download, sequences } from "../../../core/files";
 import type { Phrase } from "../../../core/phrase";
 import type { FileTable, FolderFile, Mistake } from "../../../core/wire";
@@ -11,7 +19,7 @@ import type { Can } from "../can";
 import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
 import type { By, Sheet } from "../table/sheet";
-import { type Base, keysFrom } from "./gait";
+import { keysFrom } from "./gait";
 import { NO_FILE, type OpenFile, Shapes } from "./open_file";
 
 /** A file that has another content than the page thought. */
@@ -51,14 +59,20 @@ export const NOTHING = { table: null, robot: null, mistakes: [] };
 const POSTURES = "Loco-data.txt";
 const LOCOMOTION = "LocoTra-data.txt";
 
+/** The table of a content. */
+export function wireOf({ kind, legs, rows }: Content): WireTable {
+  const angles = rows.map(({ key, posture, cells }) => ({ key, posture, angles_deg: cells }));
+  return { kind, legs, rows: angles };
+}
+
 export class Files {
   readonly folder = signal<{ folder: string; files: readonly FolderFile[] }>({
     folder: "",
     files: [],
   });
-  readonly file = signal<OpenFile>({ ...NO_FILE, saved: 0 });
+  readonly file = signal<OpenFile>({ ...NO_FILE, saved: "" });
   readonly conflict = signal<Conflict | null>(null);
-  readonly isSaved = computed(() => this.file.value.saved === this.sheet.version.value);
+  readonly isSaved = computed(() => this.file.value.saved === this.sheet.digest.value);
   /** Whether somebody chose to begin with a new table or the sample: no file takes its place. */
   isAskedFor = false;
   readonly shapes: Shapes;
@@ -162,13 +176,13 @@ export class Files {
   /**
    * Begin with a robot and a table, where there is one for its legs.
    *
-   * @param sent The digits of each key, as they were sent; null: they stay as they are.
+   * @param keys The digits of each key; null: they stay as they are.
    */
   beginWith(
     robot: ReadRobot,
-    table: FileTable | null,
+    table: WireTable | null,
     file = NO_FILE,
-    sent: number[][] | null = null,
+    keys: readonly string[] | null = null,
   ): void {
     batch(() => {
       this.robot.use(robot);
@@ -176,7 +190,6 @@ export class Files {
         this.begin(standing(robot.reply));
         return;
       }
-      const keys = sent && keysFrom(fromWire(table, columnsOf(robot.reply)), sent);
       if (keys) sequences.value = keys;
       this.show(table, file);
     });
@@ -198,17 +211,6 @@ export class Files {
     return isChanged;
   }
 
-  /** What a gateway that keeps the table is told of its file. */
-  base(): Base {
-    const { name, version } = this.file.peek();
-    const robot = this.robot.isSaved.peek() ? null : this.robot.versionOf(this.robot.name.peek());
-    if (!this.can.peek().save) {
-      return { file: "", file_version: "", saved: false, robot_version: robot };
-    }
-    const saved = this.isSaved.peek() && robot === null;
-    return { file: name, file_version: version, saved, robot_version: robot };
-  }
-
   /** Walk with the robot of a file, or, where its text is null, with the workshop's hexapod. */
   private async useRobot(name: string, text: string | null): Promise<void> {
     this.takeRobot(t("design.step.otherRobot"), await this.robot.read(name, text));
@@ -227,11 +229,11 @@ export class Files {
         // The student's own table comes back with undo, and its robot with it.
         const name = t("design.step.robot", { name: read.reply.name });
         this.sheet.put(name, standing(read.reply), null, { robot: read });
-        this.file.value = { ...NO_FILE, saved: this.sheet.version.peek() };
+        this.file.value = { ...NO_FILE, saved: this.sheet.digest.peek() };
       } else {
         const isSaved = this.isSaved.peek();
         this.sheet.refit(step, read, gesture);
-        if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.version.peek() };
+        if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.digest.peek() };
       }
     });
   }
@@ -241,8 +243,17 @@ export class Files {
     this.isAskedFor = true;
     batch(() => {
       this.sheet.put(step, table, null);
-      this.file.value = { ...NO_FILE, saved: 0 };
+      this.file.value = { ...NO_FILE, saved: "" };
     });
+  }
+
+  /** Put what was not saved in place of this table, in one step. */
+  takeUnsaved(name: string, content: Content): void {
+    const robot = this.robot.robot.peek();
+    if (!robot) return;
+    const table = fromWire(wireOf(content), columnsOf(robot));
+    this.sheet.put(name, table, null, { keys: content.keys });
+    this.checkLegs();
   }
 
   private begin(table: Table, file = NO_FILE): void {
@@ -251,11 +262,11 @@ export class Files {
       const isOnly = !this.can.peek().save && this.sheet.table.peek() !== null;
       if (isOnly) this.sheet.put(t("design.step.open"), table, null);
       else this.sheet.open(table);
-      this.file.value = { ...file, saved: this.sheet.version.peek() };
+      this.file.value = { ...file, saved: this.sheet.digest.peek() };
     });
   }
 
-  private show(wire: FileTable, file = NO_FILE): void {
+  private show(wire: WireTable, file = NO_FILE): void {
     const robot = this.robot.robot.peek();
     if (!robot) return;
     this.begin(fromWire(wire, columnsOf(robot)), file);
@@ -309,7 +320,7 @@ export class Files {
   async save(name: string, force = false): Promise<void> {
     const table = this.sent();
     if (!table) return;
-    const saved = this.sheet.version.peek();
+    const saved = this.sheet.digest.peek();
     const own = this.file.peek();
     // Over a file that was not opened here nothing is saved unasked.
     const version = own.name === name ? own.version : "";
@@ -359,7 +370,7 @@ export class Files {
     const { name, version } = conflict;
     const table = fromWire(conflict.table, columnsOf(robot));
     this.sheet.put(t("design.step.theirs"), table, null);
-    this.file.value = { name, version, saved: this.sheet.version.peek() };
+    this.file.value = { name, version, saved: this.sheet.digest.peek() };
     this.conflict.value = null;
   }
 

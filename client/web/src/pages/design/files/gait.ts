@@ -14,20 +14,6 @@ export interface SentGait {
   sequences: number[][] | null;
 }
 
-/** What is told of the file that the table was made from. */
-export interface Base {
-  /** Its name; "": none. */
-  file: string;
-  file_version: string;
-  /** Whether it has this table. */
-  saved: boolean;
-  /**
-   * Version of the file that the robot was made from, where that file lacks the robot's changes;
-   * "": it has no file; null: nothing is lacking.
-   */
-  robot_version: string | null;
-}
-
 /** The table as it is now; null while a cell has no angle. */
 export function sentGait(sheet: Sheet, robot: RobotInUse): SentGait | null {
   const table = sheet.table.peek();

@@ -10,8 +10,8 @@ export interface OpenFile {
   name: string;
   /** The file's version when it was read or saved last. */
   version: string;
-  /** The table's version that the file has. */
-  saved: number;
+  /** The digest of the table that the file has. */
+  saved: string;
 }
 
 export const NO_FILE = { name: "", version: "" };
@@ -37,7 +37,7 @@ export class Shapes {
     const known = this.left.get(shapeOf(now));
     const legs = this.robot.robot.peek()?.legs.length;
     if (known?.robot && legs !== now.legs.length) this.robot.use(known.robot);
-    this.file.value = known?.file ?? { ...NO_FILE, saved: 0 };
+    this.file.value = known?.file ?? { ...NO_FILE, saved: "" };
   }
 }
 

@@ -2,17 +2,19 @@
 
 import { signal } from "@preact/signals";
 import { Refused } from "../../../core/connection";
+import { type Content, digestOf } from "../../../core/design/entries";
 import { columnsOf, fromWire } from "../../../core/design/table";
 import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
 import type { Phrase } from "../../../core/phrase";
-import type { Draft, FolderFile, SentFile } from "../../../core/wire";
+import type { FileTable, FolderFile, SentFile } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
 import type { Greeting } from "../class/membership";
 import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
+import type { Sharing } from "../sharing/sharing";
 import type { Sheet } from "../table/sheet";
-import { type Files, NOTHING, type Parsed, type Read } from "./files";
+import { type Files, NOTHING, type Parsed, type Read, wireOf } from "./files";
 
 export class Opening {
   /** How far the first things to see are opened. */
@@ -26,6 +28,7 @@ export class Opening {
     private readonly files: Files,
     private readonly robot: RobotInUse,
     private readonly sheet: Sheet,
+    private readonly sharing: Sharing,
     private readonly isTried: () => boolean,
   ) {}
 
@@ -37,21 +40,25 @@ export class Opening {
    * Open the first things to see, once: the robot and the table that somebody was working on, or
    * the folder's first gait, else a new table, or the sample if somebody has earned it.
    */
-  async first({ robot: given, student, draft, earned }: Greeting): Promise<void> {
+  async first({ robot: given, student, table: shared, earned }: Greeting): Promise<void> {
     if (this.is !== "closed") return;
     this.is = "opening";
     try {
-      const own = draft && (student !== null || !draft.saved) ? draft : null;
+      const there = this.sharing.content();
+      const isLive = student !== null || shared.others > 0;
+      const own = there && (isLive || !isSaved(there)) ? there : null;
       const robot = await this.firstRobot(given, own);
-      if (student !== null && own) {
-        this.files.beginWith(robot, own.table, undefined, own.sequences);
-        // Also a table for a robot with another number of legs.
-        this.files.take(t("design.step.newest"), own.table, own.sequences, null);
+      // What came meanwhile counts too.
+      const newest = own && (this.sharing.content() ?? own);
+      if (newest && isLive) {
+        const { name, version, digest } = newest.file;
+        this.files.beginWith(robot, wireOf(newest), { name, version }, newest.keys);
+        this.files.file.value = { name, version, saved: digest };
       } else {
         if (student !== null) sequences.value = SAMPLE_SEQUENCES; // not those of another student
-        const name = own ? own.file : this.firstGait();
-        const there = this.find((file) => file.name === name)?.name ?? "";
-        const read = there || earned ? await this.firstTable(there) : null;
+        const name = own ? own.file.name : this.firstGait();
+        const known = this.find((file) => file.name === name)?.name ?? "";
+        const read = known || earned ? await this.firstTable(known) : null;
         const file = read?.version ? { name, version: read.version } : undefined;
         this.files.beginWith(robot, read?.table ?? null, file);
         this.gateway.tell(read?.notes);
@@ -59,24 +66,12 @@ export class Opening {
       }
       this.is = "open";
       this.waitsFor.value = null;
+      this.sharing.begin();
     } catch (error) {
       this.is = "closed";
       if (mayPass(error)) this.waitsFor.value = error.why;
       else this.gateway.refuse(error);
     }
-  }
-
-  /**
-   * Take in, in a class, that the student worked on another page while this one was not connected:
-   * the newest table is one step from what is here.
-   */
-  again(draft: Draft): void {
-    const { sheet, files } = this;
-    const robot = this.robot.robot.peek();
-    const history = sheet.history.peek();
-    if (!robot || !history || history.has(fromWire(draft.table, columnsOf(robot)))) return;
-    files.take(t("design.step.newest"), draft.table, draft.sequences, null);
-    toast(t("design.newest"));
   }
 
   /** Take in that another program saved a file of the folder. */
@@ -100,6 +95,11 @@ export class Opening {
     try {
       const { table, version } = await this.gateway.ask<Read>("read", { name });
       if (!table || version === files.file.peek().version) return;
+      if (this.isShown(table)) {
+        // Another window of this page has saved it.
+        files.file.value = { name, version, saved: this.sheet.digest.peek() };
+        return;
+      }
       files.conflict.value = { ...NOTHING, name, version, table, when: "open", of: "table" };
       // Nothing of one's own would be lost.
       if (files.isSaved.peek()) {
@@ -133,14 +133,14 @@ export class Opening {
    * Put what was not saved in place of the file's table, in one step. If the file has changed
    * since, ask, as if the page had been open all the time.
    */
-  private goOn(draft: Draft, read: (Parsed & { version: string }) | null): void {
+  private goOn(content: Content, read: (Parsed & { version: string }) | null): void {
     const { files } = this;
-    if (!files.take(t("design.step.draft"), draft.table, draft.sequences, null)) return;
-    const { file: name, file_version: version } = draft;
+    files.takeUnsaved(t("design.step.draft"), content);
+    const { name, version } = content.file;
     const base = files.file.peek();
-    if (name && name !== base.name) files.file.value = { name, version: "", saved: 0 };
+    if (name && name !== base.name) files.file.value = { name, version: "", saved: "" };
     else if (name && read?.table && version !== base.version) {
-      files.file.value = { name, version, saved: 0 };
+      files.file.value = { name, version, saved: "" };
       const { table, version: now } = read;
       files.conflict.value = {
         ...NOTHING,
@@ -155,21 +155,22 @@ export class Opening {
     toast(t("design.draft"));
   }
 
-  /** The robot of the draft, of the command line, of the folder, or the workshop's. */
-  private async firstRobot(given: SentFile | null, draft: Draft | null): Promise<ReadRobot> {
+  /** The robot of the shared table, of the command line, of the folder, or the workshop's. */
+  private async firstRobot(given: SentFile | null, own: Content | null): Promise<ReadRobot> {
     try {
-      if (draft) {
-        const robot = draft.robot as SentFile | null;
-        if (robot && draft.robot_version !== null) {
-          if (draft.robot_version) this.robot.learn(robot.name, draft.robot_version, null);
-          return { ...(await this.robotIn(robot)), isEdited: true };
+      if (own) {
+        const { robot, file } = own;
+        if (robot && file.robotVersion !== null) {
+          if (file.robotVersion) this.robot.learn(robot.name, file.robotVersion, null);
+          return { ...(await this.robot.read(robot.name, robot.text)), isEdited: true };
         }
-        const name = this.find((file) => file.slot === "robot" && file.name === robot?.name)?.name;
-        return await (name ? this.robotOf(name) : this.robotIn(robot));
+        const name = this.find((one) => one.slot === "robot" && one.name === robot?.name)?.name;
+        if (name) return await this.robotOf(name);
+        return await this.robot.read(robot?.name ?? "", robot?.text ?? null);
       }
       if (given) return await this.robotIn(given);
-      const own = this.find((file) => file.slot === "robot");
-      return await (own ? this.robotOf(own.name) : this.robotIn(null));
+      const found = this.find((file) => file.slot === "robot");
+      return await (found ? this.robotOf(found.name) : this.robotIn(null));
     } catch (error) {
       if (mayPass(error)) throw error;
       this.gateway.refuse(error);
@@ -200,6 +201,14 @@ export class Opening {
     }
   }
 
+  /** Whether the page shows what a file has. */
+  private isShown(table: FileTable): boolean {
+    const now = this.sheet.table.peek();
+    const robot = this.robot.robot.peek();
+    if (!now || !robot) return false;
+    return digestOf(fromWire(table, columnsOf(robot))) === digestOf(now);
+  }
+
   private firstGait(): string {
     const gait =
       this.find(({ slot }) => slot === "postures") ??
@@ -210,6 +219,11 @@ export class Opening {
   private find(wanted: (file: FolderFile) => boolean): FolderFile | undefined {
     return this.files.folder.peek().files.find(wanted);
   }
+}
+
+/** Whether a file has the table, and all changes of its robot. */
+function isSaved(content: Content): boolean {
+  return content.file.digest === digestOf(content) && content.file.robotVersion === null;
 }
 
 /** Whether something was refused for another reason than what is in a file. */

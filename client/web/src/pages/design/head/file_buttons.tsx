@@ -27,7 +27,7 @@ export function FileButtons({ studio, onFiles }: Props) {
           <StudentName
             name={student}
             learning={learning}
-            isOpen={studio.gateway.state.value.open}
+            isShared={studio.sharing.isKept.value}
             onFiles={onFiles}
           />
           <HandButton learning={learning} />

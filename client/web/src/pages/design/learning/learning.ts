@@ -1,8 +1,11 @@
 /** The phases: how far the student is, and what is sent as evidence (workshop 3-1, 4-2). */
 
 import { signal } from "@preact/signals";
-import type { AnswerReply, Judged, Phases } from "../../../core/wire";
-import type { Base, SentGait } from "../files/gait";
+import { Unanswered } from "../../../core/connection";
+import { changesBetween } from "../../../core/design/rebase";
+import { mapRows, type Table, toWire, withCells, wrongOf } from "../../../core/design/table";
+import type { AnswerReply, FileTable, Judged, Phases } from "../../../core/wire";
+import type { SentGait } from "../files/gait";
 import type { Gateway } from "../gateway";
 import type { By } from "../table/sheet";
 
@@ -29,6 +32,14 @@ interface Untold {
   timer: number;
 }
 
+/** An edit as it is told. */
+interface ToldEdit extends SentGait {
+  before: FileTable;
+  by: By;
+  size: string | null;
+  guess: string | null;
+}
+
 export class Learning {
   /** How far the student is; null: not known yet. */
   readonly phases = signal<Phases | null>(null);
@@ -41,31 +52,32 @@ export class Learning {
   /** Whether the gateway has the table as it is now. */
   readonly isTold = signal(true);
   private untold: Untold | null = null;
-  /** Count of edits whose reply is not there yet. */
-  private asked = 0;
-  /** The table that the gateway is known to have; null: none. */
-  private known: (SentGait & Base) | null = null;
+  /** The table without what is untold; others' changes are in it. null: none is there yet. */
+  private before: Table | null = null;
+  /** Edits whose reply is not there yet, in order. */
+  private readonly asked = new Set<ToldEdit>();
   private greeted = false;
 
   /**
    * @param gait The table as it is now; null while a cell has no angle.
-   * @param base What is told of its file.
+   * @param table The table as it is now.
    */
   constructor(
     private readonly gateway: Gateway,
     readonly gait: () => SentGait | null,
-    private readonly base: () => Base,
+    private readonly table: () => Table | null,
   ) {}
 
   /** The gateway knows this page and its student, and may take evidence. */
   greet(): void {
     this.greeted = true;
-    // A new connection compares an edit with what came before it: what was changed meanwhile counts.
-    if (this.known && this.untold) {
-      this.gateway.ask("edit", { ...this.known, by: null }).catch(() => undefined);
-    }
-    this.edited(null);
+    for (const edit of this.asked) this.ask(edit);
     this.tell();
+  }
+
+  /** Take in that others have changed the table: that is no edit of this student. */
+  merged(from: Table, to: Table): void {
+    if (this.before) this.before = changesBetween(from, to)(this.before);
   }
 
   /** Go to a phase, forward or back. */
@@ -95,11 +107,15 @@ export class Learning {
 
   /** Tell the gateway of an edit, after a moment in which more of the same kind may come. */
   edited(by: By, size: string | null = null): void {
+    // What could not be told yet, because a cell has no angle, is told with what comes now.
+    const first = this.untold ?? (by && { by, size });
     if (this.untold) clearTimeout(this.untold.timer);
-    // What could not be told yet, because a cell has no angle, is told with this.
-    const first = this.untold?.by ? this.untold : { by, size };
+    if (!first || !this.before) {
+      this.before = this.table();
+      return;
+    }
     const timer = window.setTimeout(() => this.tell(), TELL_MS);
-    this.untold = { ...first, timer };
+    this.untold = { by: first.by, size: first.size, timer };
     this.isTold.value = false;
   }
 
@@ -112,26 +128,45 @@ export class Learning {
     const { untold } = this;
     if (!untold || untold.by === butBy || !this.greeted) return;
     const gait = this.gait();
-    if (!gait) return;
+    const now = this.table();
+    if (!gait || !now || !this.before) return;
     clearTimeout(untold.timer);
     this.untold = null;
+    const before = toWire(filled(this.before, now)) ?? gait.table;
+    this.before = now;
     const guess = untold.by === "hand" ? this.footGuess.peek() : null;
     if (guess) this.footGuess.value = null;
-    const { by, size } = untold;
-    const told = { ...gait, ...this.base() };
-    this.asked += 1;
-    this.gateway.ask<{ guess: Judged | null }>("edit", { ...told, by, size, guess }).then(
+    const edit = { ...gait, before, by: untold.by, size: untold.size, guess };
+    this.asked.add(edit);
+    this.ask(edit);
+  }
+
+  private ask(edit: ToldEdit): void {
+    this.gateway.ask<{ guess: Judged | null }>("edit", edit).then(
       (reply) => {
-        if (guess) this.judged.value = reply.guess;
-        this.known = told;
-        this.asked -= 1;
-        this.isTold.value = !this.untold && !this.asked;
+        if (edit.guess) this.judged.value = reply.guess;
+        this.settle(edit);
       },
-      () => {
-        // The next edit tells it, or the next connection.
-        this.asked -= 1;
-        this.untold ??= untold;
+      (error: unknown) => {
+        // Without an answer it is told again by the next connection.
+        const isLost = error instanceof Unanswered || !this.gateway.state.peek().open;
+        if (!isLost) this.settle(edit);
       },
     );
   }
+
+  private settle(edit: ToldEdit): void {
+    this.asked.delete(edit);
+    this.isTold.value = !this.untold && !this.asked.size;
+  }
+}
+
+/** A table whose cells without an angle have those of another one. */
+function filled(table: Table, from: Table): Table {
+  return mapRows(table, (row) => {
+    const other = from.rows.find(({ key, posture }) => key === row.key && posture === row.posture);
+    return withCells(row, (cell, col) =>
+      wrongOf(cell) === null ? cell : (other?.cells[col] ?? cell),
+    );
+  });
 }

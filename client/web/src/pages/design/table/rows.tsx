@@ -10,15 +10,19 @@ import {
   wrongOf,
 } from "../../../core/design/table";
 import { seam } from "../../../core/design/tools";
+import type { Person } from "../../../core/wire";
 import { type MessageName, t } from "../../../i18n";
 import type { Marked } from "../coach/coach";
 import { cellId, classes, jointName, rowName } from "../names";
+import { COLOURS } from "../sharing/colours";
 import type { Place, Sheet } from "./sheet";
 
 /** What others show in the table. */
 export interface Overlay {
   /** What the coach says of cells, by row and column; null: nothing. */
   marks: ReadonlySignal<ReadonlyMap<number, ReadonlyMap<number, Marked>> | null>;
+  /** The other pages of the table, by the cell where they are: "row col". */
+  people: ReadonlySignal<ReadonlyMap<string, Person>>;
   /** The row whose posture is the target at the moment shown; -1: none. */
   target: ReadonlySignal<number>;
 }
@@ -42,6 +46,7 @@ export function GridTable({ sheet, overlay, table, focus, commit, edit }: TableP
   const sequence = sheet.sequence.value ?? [];
   const target = overlay.target.value;
   const weights = overlay.marks.value;
+  const people = overlay.people.value;
   const unpasted = byRow(sheet.unpasted.value);
   const last = table.rows.length - 1;
   const isSequence = table.kind === "locomotion";
@@ -107,6 +112,7 @@ export function GridTable({ sheet, overlay, table, focus, commit, edit }: TableP
             lit={lit}
             weights={weights?.get(index) ?? null}
             unpasted={unpasted.get(index) ?? null}
+            people={people}
             onSelect={() => {
               sheet.select({ row: index, col: 0 }, { row: index, col: row.cells.length - 1 });
               focus();
@@ -190,6 +196,7 @@ interface RowProps {
   right: number;
   lit: ReadonlySet<number>;
   weights: ReadonlyMap<number, Marked> | null;
+  people: ReadonlyMap<string, Person>;
   /** Why what was pasted can't stand, by column. */
   unpasted: ReadonlyMap<number, string> | null;
   onSelect: () => void;
@@ -216,6 +223,7 @@ function GridRow(props: RowProps) {
       </th>
       {row.cells.map((cell, col) => {
         const marked = weights?.get(col);
+        const person = props.people.get(`${index} ${col}`);
         return (
           <td
             key={col}
@@ -234,9 +242,15 @@ function GridRow(props: RowProps) {
               "data-unpasted": true,
               title: props.unpasted.get(col)!,
             })}
+            {...(person && { "data-colour": person.id % COLOURS })}
             {...(marked && { style: `--weight: ${marked.share}`, title: marked.text })}
           >
             {cell}
+            {person?.typing != null && (
+              <span class="typing" aria-hidden="true">
+                {person.typing}
+              </span>
+            )}
             {marked && (
               <span class="marks" aria-hidden="true">
                 <i data-effect={marked.up} />

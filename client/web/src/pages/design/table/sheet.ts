@@ -1,6 +1,7 @@
 /** The table that is edited: its steps, the place in it, and the key whose rows are worked on. */
 
 import { batch, computed, type Signal, signal } from "@preact/signals";
+import { digestOf } from "../../../core/design/entries";
 import { History } from "../../../core/design/history";
 import { sequenceOf } from "../../../core/design/rows";
 import {
@@ -30,6 +31,8 @@ export interface Followers {
   before(by?: By): void;
   /** The table has changed. */
   changed(by: By, size: string | null): void;
+  /** Others have changed the table. */
+  merged(before: Table, now: Table): void;
   /** The table got another kind or another number of legs. */
   turned(before: Table, now: Table): void;
   /** Another table with another number of legs was opened. */
@@ -62,6 +65,8 @@ export class Sheet {
   readonly history = signal<History | null>(null);
   readonly table = computed<Table | null>(() => this.history.value?.table.value ?? null);
   readonly version = computed(() => this.history.value?.version.value ?? 0);
+  /** Name of the table's content. */
+  readonly digest = computed(() => (this.table.value ? digestOf(this.table.value) : ""));
   readonly bad = computed(() => (this.table.value ? badCells(this.table.value) : []));
 
   readonly active = signal<Place>({ row: 0, col: 0 });
@@ -89,7 +94,7 @@ export class Sheet {
   readonly mirrors = signal(false);
 
   /** Steps that changed the keys' sequences too. */
-  private readonly keySteps: KeyStep[] = [];
+  private keySteps: KeyStep[] = [];
 
   /** @param robot The robot on the page; each step brings back its own. */
   constructor(
@@ -188,6 +193,39 @@ export class Sheet {
     const isChanged = this.table.peek() !== from || keys !== null;
     if (isChanged) this.followers.changed(by, size);
     return isChanged;
+  }
+
+  /** Take in what others did to the table: it is no step of this page. */
+  merge(table: Table): void {
+    const history = this.history.peek();
+    const from = this.table.peek();
+    if (!history || !from) return;
+    batch(() => {
+      const change = history.rebase(table);
+      this.keySteps = this.keySteps.map((step) => ({
+        ...step,
+        from: change(step.from),
+        to: change(step.to),
+      }));
+      if (from.legs.length !== table.legs.length) this.followers.legsChanged();
+      if (!this.sequence.peek()) {
+        this.key.value = sequenceOf(table, FORWARD, sequences.peek()) ? FORWARD : 0;
+      }
+      this.stayInside();
+    });
+    this.followers.merged(from, table);
+  }
+
+  /** Take in that others have chosen another robot: it is no step of this page. */
+  useRobot(robot: ReadRobot): void {
+    const before = this.robot.peek();
+    batch(() => {
+      this.robot.value = robot;
+      const history = this.history.peek();
+      history?.useRobot(before, robot);
+      history?.refit(columnsOf(robot.reply));
+      if (before?.reply.legs.length !== robot.reply.legs.length) this.followers.legsChanged();
+    });
   }
 
   /** Give the keys of level B other sequences. */

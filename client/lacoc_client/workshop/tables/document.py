@@ -1,0 +1,129 @@
+"""The document of a shared table: it merges updates of pages, and believes only tables.
+
+Pages merge in the same way with Yjs. An update that would make anything else than a table is
+taken back before anybody else sees it.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pycrdt import Doc, Map
+
+from lacoc_client.workshop.tables.entries import ENTRIES_MOST, Entry, is_entry
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+STATE_BYTES = 512 << 10
+"""Longest state of a document [bytes]; an update that makes it longer is refused."""
+COMPACT_BYTES = 48 << 10
+"""A state that is longer by so much than that of the same table without a past is replaced by
+it [bytes]."""
+
+_ROOT = "table"
+
+
+class TableDocument:
+    """The merged edits of all pages of one table; no clock, network or disk.
+
+    Args:
+        state: a state to begin with; b"": an empty table.
+
+    Raises:
+        UserError: if the state is none of a table.
+    """
+
+    def __init__(self, state: bytes = b"") -> None:
+        self.state = b""
+        """The whole document, as a page can merge it."""
+        self._entries: dict[str, Entry] = {}
+        self._changes: set[str] = set()
+        self._load(b"")
+        if state:
+            self.merge(state)
+        self._compact_bytes = len(self.state) + COMPACT_BYTES
+
+    @property
+    def entries(self) -> Mapping[str, Entry]:
+        """All entries by name."""
+        return self._entries
+
+    def merge(self, update: bytes) -> bool:
+        """Merge an update of a page; return whether it has changed an entry.
+
+        Raises:
+            UserError: if the update can't be read, or makes no table; then nothing has changed.
+        """
+        before, entries = self.state, dict(self._entries)
+        self._changes.clear()
+        try:
+            self._document.apply_update(update)
+            self.state = bytes(self._document.get_update())
+            self._check()
+        except (UserError, ValueError, TypeError) as error:
+            self._restore(before, entries)
+            if isinstance(error, UserError):
+                raise
+            raise UserError(say("tables.unreadable")) from None
+        except BaseException as error:
+            self._restore(before, entries)
+            if type(error).__name__ == "PanicException":  # the library is written in Rust
+                raise UserError(say("tables.unreadable")) from None
+            raise
+        return self._entries != entries
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the past of the table makes it worth while to begin a document without it."""
+        return len(self.state) > self._compact_bytes
+
+    def fresh(self) -> "TableDocument":
+        """Return a document with the same entries and no past, which merges with no page's."""
+        return document_of(self._entries)
+
+    def _check(self) -> None:
+        """Take in what has changed.
+
+        Raises:
+            UserError: if the document is no table, or too large.
+        """
+        if len(self.state) > STATE_BYTES:
+            raise UserError(say("tables.too-large"))
+        if list(self._document.keys()) != [_ROOT]:
+            raise UserError(say("tables.unreadable"))
+        for name in self._changes:
+            # What the event itself says is wrong where updates came in another order.
+            value = self._map.get(name)
+            if value is None:
+                self._entries.pop(name, None)
+                continue
+            if not is_entry(name, value):
+                raise UserError(say("tables.unreadable"))
+            self._entries[name] = value
+        if len(self._entries) > ENTRIES_MOST:
+            raise UserError(say("tables.too-large"))
+
+    def _restore(self, state: bytes, entries: dict[str, Entry]) -> None:
+        self._load(state)
+        self._entries = entries
+        self._changes.clear()
+
+    def _load(self, state: bytes) -> None:
+        self._document: Doc[Any] = Doc()
+        self._map: Map[Any] = self._document.get(_ROOT, type=Map)
+        if state:
+            self._document.apply_update(state)
+        self.state = state
+        self._watching = self._map.observe(self._changed)
+
+    def _changed(self, event: Any) -> None:
+        self._changes.update(event.keys)
+
+
+def document_of(entries: Mapping[str, Entry]) -> TableDocument:
+    """Make a document with these entries and no past."""
+    document: Doc[Any] = Doc()
+    root: Map[Any] = document.get(_ROOT, type=Map)
+    with document.transaction():
+        for name, value in entries.items():
+            root[name] = value
+    return TableDocument(bytes(document.get_update()))

@@ -1,0 +1,70 @@
+/** What a page has done to a shared table, and the gateway has not confirmed yet. */
+
+import { mergedUpdates } from "./shared_table";
+
+/** What goes to the gateway at once. */
+export interface Parcel {
+  update: Uint8Array;
+  /** Names of the cells into which somebody typed. */
+  cells: string[];
+  /** Whether it has what the page has put into an empty table: no other page may have been quicker. */
+  begins: boolean;
+}
+
+export class Outbox {
+  private waiting: Parcel | null = null;
+  private sent: Parcel | null = null;
+
+  /** Whether the gateway has confirmed all. */
+  get isEmpty(): boolean {
+    return !this.waiting && !this.sent;
+  }
+
+  /** Names of the cells that were typed into, and are not confirmed. */
+  get cells(): ReadonlySet<string> {
+    return new Set([...(this.sent?.cells ?? []), ...(this.waiting?.cells ?? [])]);
+  }
+
+  /** Whether the gateway does not have yet what the page began the table with. */
+  get begins(): boolean {
+    return Boolean(this.sent?.begins || this.waiting?.begins);
+  }
+
+  add(update: Uint8Array, cells: readonly string[], begins: boolean): void {
+    // What a page begins with was typed by nobody.
+    this.waiting = joined(this.waiting, { update, cells: begins ? [] : [...cells], begins });
+  }
+
+  /** Take what waits, unless a parcel is on its way. */
+  next(): Parcel | null {
+    if (this.sent) return null;
+    this.sent = this.waiting;
+    this.waiting = null;
+    return this.sent;
+  }
+
+  /** The gateway has confirmed the parcel. */
+  confirmed(): void {
+    this.sent = null;
+  }
+
+  /** The parcel may not have come: it goes again, with what came since. */
+  returned(): void {
+    if (this.sent) this.waiting = joined(this.sent, this.waiting);
+    this.sent = null;
+  }
+
+  /** Forget all. */
+  clear(): void {
+    this.sent = this.waiting = null;
+  }
+}
+
+function joined(one: Parcel | null, other: Parcel | null): Parcel | null {
+  if (!one || !other) return one ?? other;
+  return {
+    update: mergedUpdates([one.update, other.update]),
+    cells: [...new Set([...one.cells, ...other.cells])],
+    begins: one.begins || other.begins,
+  };
+}

@@ -1,0 +1,120 @@
+/**
+ * A table that several pages edit at once: a Yjs document with an entry for each cell.
+ *
+ * Documents that have merged the same updates show the same table, in whatever order they came. Of
+ * two numbers for a cell the later one stays; where neither page had seen the other's, all pages
+ * keep the same one.
+ */
+
+import * as Y from "yjs";
+import {
+  type Content,
+  cellNamed,
+  contentOf,
+  type Entry,
+  headEntries,
+  isSameCell,
+  rowEntry,
+  shapeOf,
+} from "./entries";
+
+const OWN = "own";
+
+export class SharedTable {
+  private readonly doc = new Y.Doc();
+  private readonly entries = this.doc.getMap<Entry>("table");
+  /** Names of the entries that the write that is under way has changed. */
+  private names: string[] = [];
+
+  /** @param told Gets each update of this page, with the names of its cells. */
+  constructor(told: (update: Uint8Array, cells: readonly string[]) => void) {
+    this.doc.on("update", (update: Uint8Array, origin: unknown) => {
+      if (origin !== OWN) return;
+      const cells = this.names.filter(cellNamed);
+      this.names = [];
+      told(update, cells);
+    });
+  }
+
+  get isEmpty(): boolean {
+    return this.entries.size === 0;
+  }
+
+  /** The table; null: there is none yet. */
+  content(): Content | null {
+    return contentOf(this.entries, this.entries.keys());
+  }
+
+  /** An entry, such as that of a cell. */
+  get(name: string): Entry | undefined {
+    return this.entries.get(name);
+  }
+
+  /** Change what differs from a content, in one update; nothing differs: nothing happens. */
+  write(content: Content): void {
+    const shape = shapeOf(content);
+    this.doc.transact(() => {
+      if (this.entries.get("shape") !== shape) this.forgetRows();
+      for (const [name, value] of headEntries(content)) this.set(name, value);
+      const rows = new Set<string>();
+      for (const row of content.rows) {
+        const name = rowEntry(shape, row);
+        rows.add(name);
+        let isChanged = !this.entries.has(name);
+        row.cells.forEach((cell, col) => {
+          if (isSameCell(this.entries.get(`${name}/${col}`), cell)) return;
+          this.set(`${name}/${col}`, cell);
+          isChanged = true;
+        });
+        // Said again: another page may have removed the row at the same time.
+        if (isChanged) this.entries.set(name, true);
+      }
+      for (const name of [...this.entries.keys()]) {
+        // The cells of a row that was removed stay, for whoever goes on with it.
+        if (name.split("/").length === 2 && !rows.has(name)) this.entries.delete(name);
+      }
+    }, OWN);
+  }
+
+  /** Set entries as they are. */
+  put(entries: Iterable<readonly [string, Entry | undefined]>): void {
+    this.doc.transact(() => {
+      for (const [name, value] of entries) {
+        if (value !== undefined) this.set(name, value);
+      }
+    }, OWN);
+  }
+
+  /** Merge an update of another page. */
+  take(update: Uint8Array): void {
+    Y.applyUpdate(this.doc, update, "other");
+  }
+
+  /** The whole document as an update. */
+  state(): Uint8Array {
+    return Y.encodeStateAsUpdate(this.doc);
+  }
+
+  /** What a document of this state lacks; null: nothing. */
+  missingIn(state: Uint8Array): Uint8Array | null {
+    const known = state.length ? Y.encodeStateVectorFromUpdate(state) : undefined;
+    const update = Y.encodeStateAsUpdate(this.doc, known);
+    const { structs } = Y.decodeUpdate(update);
+    return structs.length ? update : null;
+  }
+
+  private set(name: string, value: Entry): void {
+    if (this.entries.get(name) === value) return;
+    this.entries.set(name, value);
+    this.names.push(name);
+  }
+
+  private forgetRows(): void {
+    for (const name of [...this.entries.keys()]) if (name.includes("/")) this.entries.delete(name);
+  }
+}
+
+/** Updates as one. */
+export function mergedUpdates(updates: readonly Uint8Array[]): Uint8Array {
+  return updates.length === 1 ? updates[0]! : Y.mergeUpdates([...updates]);
+}

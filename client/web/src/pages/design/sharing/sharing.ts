@@ -1,0 +1,285 @@
+/** The table as all its pages share it: what is done here goes out, what others do comes in. */
+
+import { batch, computed, effect, type Signal, signal } from "@preact/signals";
+import { Refused, Unanswered } from "../../../core/connection";
+import {
+  type Content,
+  cellNamed,
+  digestOf,
+  type Entry,
+  type RobotText,
+} from "../../../core/design/entries";
+import { Outbox } from "../../../core/design/outbox";
+import { SharedTable } from "../../../core/design/shared_table";
+import { columnsOf, readCell, type Table, USUAL_RANGE } from "../../../core/design/table";
+import { sequences } from "../../../core/files";
+import type { OpenedTable, TableNews } from "../../../core/wire";
+import type { OpenFile } from "../files/open_file";
+import type { Gateway } from "../gateway";
+import type { ReadRobot, RobotInUse } from "../robot/robot";
+import type { Sheet } from "../table/sheet";
+
+/** Two updates of this page have at least so much time between them. */
+const PACE_MS = 40;
+const READ_AGAIN_MS = 2000;
+
+export class Sharing {
+  /** Whether everything that was done here is on the gateway's disk. */
+  readonly isKept = signal(true);
+  private shared = this.fresh();
+  private readonly outbox = new Outbox();
+  /** Name and document of the table; null: not greeted yet. */
+  private name: string | null = null;
+  private epoch = "";
+  /** Number of the newest update that was taken in. */
+  private seen = 0;
+  /** Whether what is on the page goes into the document. */
+  private readonly isOn = signal(false);
+  /** Whether the first things are being opened into an empty table. */
+  private begins = false;
+  /** The robot that others have chosen, until it is read. */
+  private readonly coming = signal<{ robot: RobotText | null } | null>(null);
+  private timer = 0;
+
+  /** What is on the page; null: nothing yet. */
+  private readonly local = computed<Content | null>(() => {
+    const table = this.sheet.table.value;
+    if (!table) return null;
+    const { kind, legs, rows } = table;
+    const used = this.robot.used.value;
+    const own = used?.text == null ? null : { name: used.name, text: used.text };
+    const robot = this.coming.value ? this.coming.value.robot : own;
+    const { name, version, saved } = this.file.value;
+    const lacking = this.robot.isSaved.value ? null : this.robot.versionOf(used?.name ?? "");
+    return {
+      kind,
+      legs: legs.length,
+      rows,
+      keys: sequences.value,
+      robot,
+      file: { name, version, digest: saved, robotVersion: lacking },
+    };
+  });
+
+  /**
+   * @param file The file that the table comes from.
+   * @param clashed Somebody typed into the same cells at the same time.
+   */
+  constructor(
+    private readonly gateway: Gateway,
+    private readonly sheet: Sheet,
+    private readonly robot: RobotInUse,
+    private readonly file: Signal<OpenFile>,
+    private readonly clashed: (cells: readonly string[], by: number) => void,
+  ) {
+    effect(() => {
+      const content = this.local.value;
+      if (this.isOn.value && content) this.shared.write(content);
+    });
+  }
+
+  /** The table in the document; null: it is empty. */
+  content(): Content | null {
+    return this.shared.content();
+  }
+
+  /** The gateway has let the page in, for the first time or again. */
+  greet(opened: OpenedTable): void {
+    const isOther = this.name !== null && this.name !== opened.table;
+    const isAhead = !opened.state.length && !this.shared.isEmpty && !isOther;
+    this.outbox.returned();
+    const isLate = this.outbox.begins && opened.state.length > 0;
+    if (this.name === null || isLate || (this.epoch !== opened.epoch && !isAhead)) {
+      this.change(opened, isOther);
+      this.send();
+      return;
+    }
+    this.epoch = opened.epoch; // the gateway has lost its document, and gets this one
+    if (opened.state.length) this.shared.take(opened.state);
+    this.show();
+    const missing = this.shared.missingIn(opened.state);
+    if (missing) this.outbox.add(missing, [], this.begins);
+    this.send();
+    this.seen = opened.seq;
+  }
+
+  /** Take in a message of the gateway. */
+  take(news: TableNews): void {
+    if (news.state) {
+      this.change({ ...news, state: news.state, others: 0 }, news.table !== this.name);
+      this.send();
+    } else if (news.epoch === this.epoch) {
+      if (news.update) {
+        this.shared.take(news.update);
+        this.show();
+      }
+      if (news.clash) this.clashed(news.clash.cells, news.clash.by);
+      this.seen = news.seq;
+    }
+  }
+
+  /** The first things are open: from now on the document has what is on the page. */
+  begin(): void {
+    if (this.isOn.peek()) return;
+    this.begins = this.shared.isEmpty;
+    this.isOn.value = true;
+    this.begins = false;
+  }
+
+  /** Go on with another document, and add what the gateway does not have of the old one. */
+  private change(opened: OpenedTable, isOther: boolean): void {
+    const own = new Map<string, Entry | undefined>();
+    if (!isOther) for (const name of this.outbox.cells) own.set(name, this.shared.get(name));
+    this.outbox.clear();
+    this.shared = this.fresh();
+    this.name = opened.table;
+    this.epoch = opened.epoch;
+    this.seen = opened.seq;
+    if (opened.state.length) this.shared.take(opened.state);
+    if (!this.isOn.peek()) return;
+    this.shared.put(own);
+    const content = this.content();
+    if (content) this.show(isOther);
+    else {
+      const local = this.local.peek();
+      if (local) this.shared.write(local);
+    }
+  }
+
+  /** A document; its updates go out. */
+  private fresh(): SharedTable {
+    const shared: SharedTable = new SharedTable((update, cells) => {
+      if (shared !== this.shared) return;
+      this.outbox.add(update, cells, this.begins);
+      this.isKept.value = false;
+      this.send();
+    });
+    return shared;
+  }
+
+  private send(): void {
+    clearTimeout(this.timer);
+    const parcel = this.name === null ? null : this.outbox.next();
+    if (!parcel) {
+      this.isKept.value = this.outbox.isEmpty;
+      return;
+    }
+    this.isKept.value = false;
+    const { epoch } = this;
+    const fields = { table: this.name, epoch, seen: this.seen, ...parcel };
+    const sentMs = performance.now();
+    this.gateway.ask<{ seq: number }>("table", fields).then(
+      () => {
+        if (epoch !== this.epoch) return;
+        this.outbox.confirmed();
+        const rest = Math.max(0, sentMs + PACE_MS - performance.now());
+        this.isKept.value = this.outbox.isEmpty;
+        this.timer = window.setTimeout(() => this.send(), rest);
+      },
+      (error: unknown) => {
+        if (epoch !== this.epoch) return;
+        this.outbox.returned();
+        if (error instanceof Unanswered || !this.gateway.state.peek().open) return; // greets again
+        if ((error as Refused).why.code === "gateway.too-much") {
+          this.timer = window.setTimeout(() => this.send(), READ_AGAIN_MS);
+          return;
+        }
+        // Nobody can take it: this page goes on with what all others have.
+        if ((error as Refused).why.code !== "tables.older") {
+          this.outbox.clear();
+          this.gateway.refuse(error);
+        }
+        this.epoch = "";
+        void this.gateway.greetAgain();
+      },
+    );
+  }
+
+  /** Show what the document has. */
+  private show(isOther = false): void {
+    const content = this.content();
+    const before = this.sheet.table.peek();
+    if (!content || !before || !this.isOn.peek()) return;
+    batch(() => {
+      const table = this.tableOf(content);
+      if (isOther) this.sheet.open(table);
+      else if (digestOf(before) !== digestOf(table)) this.sheet.merge(table);
+      if (content.keys.join() !== sequences.peek().join()) sequences.value = content.keys;
+      const { name, version, digest } = content.file;
+      const file = this.file.peek();
+      if (file.name !== name || file.version !== version || file.saved !== digest) {
+        this.file.value = { name, version, saved: digest };
+      }
+      this.useRobot(content);
+    });
+  }
+
+  private tableOf({ kind, legs, rows }: Content): Table {
+    const robot = this.robot.robot.peek();
+    const before = this.sheet.table.peek();
+    const fits = (count?: number) => count === legs;
+    const columns = fits(robot?.legs.length) && robot ? columnsOf(robot) : null;
+    const labels = columns?.legs ?? Array.from({ length: legs }, (_, leg) => String(leg));
+    const ranges = columns?.ranges ?? Array.from({ length: 3 * legs }, () => USUAL_RANGE);
+    const known = new Map(
+      (fits(before?.legs.length) ? before!.rows : []).map((row) => [
+        `${row.key}.${row.posture}`,
+        row,
+      ]),
+    );
+    return {
+      kind,
+      legs: labels,
+      ranges,
+      rows: rows.map((row) => {
+        const cells = row.cells.map((cell, col) => readCell(String(cell), ranges[col]!));
+        const old = known.get(`${row.key}.${row.posture}`);
+        // What has not changed stays the same object, as after any edit.
+        return old?.cells.every((cell, col) => cell === cells[col]) ? old : { ...row, cells };
+      }),
+    };
+  }
+
+  /** Use the robot that others have chosen. */
+  private useRobot({ robot: chosen }: Content): void {
+    const used = this.robot.used.peek();
+    const isSame = (used?.text ?? null) === (chosen?.text ?? null);
+    if (isSame && (!chosen || used?.name === chosen.name)) {
+      this.coming.value = null;
+      return;
+    }
+    const coming = { robot: chosen };
+    this.coming.value = coming;
+    void this.readRobot(coming);
+  }
+
+  private async readRobot(coming: { robot: RobotText | null }): Promise<void> {
+    let read: ReadRobot;
+    try {
+      read = await this.robot.read(coming.robot?.name ?? "", coming.robot?.text ?? null);
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      const again = () => this.coming.peek() === coming && void this.readRobot(coming);
+      setTimeout(again, READ_AGAIN_MS);
+      return;
+    }
+    if (this.coming.peek() !== coming) return;
+    const content = this.content();
+    batch(() => {
+      this.sheet.useRobot({ ...read, isEdited: content?.file.robotVersion !== null });
+      this.coming.value = null;
+      if (content) this.sheet.merge(this.tableOf(content));
+    });
+  }
+}
+
+/** The cells of a clash that are in a table, as places. */
+export function placesOf(table: Table, names: readonly string[]): { row: number; col: number }[] {
+  return names.flatMap((name) => {
+    const cell = cellNamed(name);
+    const row = table.rows.findIndex(
+      ({ key, posture }) => key === cell?.key && posture === cell.posture,
+    );
+    return cell && row >= 0 ? [{ row, col: cell.col }] : [];
+  });
+}

@@ -1,0 +1,262 @@
+"""Tests of the document of a shared table, and of the table that passes edits on."""
+
+import asyncio
+import random
+from typing import Any
+
+import pytest
+from aside import run_async
+from hypothesis import given
+from hypothesis import strategies as st
+from page_table import PageTable
+from pycrdt import Array, Doc, Map
+
+from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.workshop.tables import document as documents
+from lacoc_client.workshop.tables.document import TableDocument, document_of
+from lacoc_client.workshop.tables.entries import ENTRIES_MOST, Entry, draft_of
+from lacoc_client.workshop.tables.shared_table import SharedTable, TableUpdate
+from lacoc_shared.mistakes import UserError
+
+
+def standing(rows: int = 9) -> dict[str, Entry]:
+    """Return a table of six legs whose angles are all 0."""
+    entries: dict[str, Entry] = {"shape": "p6", "keys": "0,8765,1234"}
+    for key in range(rows):
+        entries[f"p6/{key}.0"] = True
+        entries |= {f"p6/{key}.0/{col}": 0.0 for col in range(18)}
+    return entries
+
+
+def page_of(document: TableDocument) -> PageTable:
+    opened = {"table": "", "epoch": "", "seq": 0, "state": document.state}
+    return PageTable(opened)
+
+
+def angle_of(document: TableDocument, key: int, col: int) -> Entry:
+    return document.entries[f"p6/{key}.0/{col}"]
+
+
+def test_four_pages_converge_and_nothing_is_lost() -> None:
+    """Four pages make 1,000 random edits each, with outages: gateway and pages agree at the end.
+
+    Each number that nobody else typed over is there.
+    """
+    rng = random.Random(3)
+    document = document_of(standing())
+    pages = [page_of(document) for _ in range(4)]
+    waiting: list[list[bytes]] = [[] for _ in pages]
+    typed: dict[str, float] = {}
+    for number in range(1000):
+        for who, page in enumerate(pages):
+            cell = f"p6/{rng.randrange(9)}.0/{4 * rng.randrange(4) + who}"
+            typed[cell] = number + who / 10
+            waiting[who].append(page.put({cell: typed[cell]})["update"])
+            if rng.random() < 0.1:  # it is online for a moment
+                for update in waiting[who]:
+                    document.merge(update)
+                waiting[who].clear()
+                page.take(document.state)
+    # Those of one page come in order: pycrdt loses entries otherwise.
+    while left := [updates for updates in waiting if updates]:
+        document.merge(rng.choice(left).pop(0))
+    for page in pages:
+        page.take(document.state)
+        assert page.entries == document.entries
+    assert {name: document.entries[name] for name in typed} == typed
+
+
+def test_a_draft_is_the_table_with_its_keys_and_robot() -> None:
+    """A cell without an angle makes no draft; rows of sequences are numbered without gaps."""
+    entries = standing(3)
+    draft = draft_of({**entries, "robot": '{"name":"a.toml","text":"[body]"}'})
+    assert draft is not None
+    assert draft.sequences == ((0,), (0,), (0,)), "keys without all their postures"
+    assert draft.robot is not None
+    assert (draft.robot.name, draft.robot.data) == ("a.toml", b"[body]")
+    assert draft_of({**entries, "p6/1.0/3": "x"}) is None
+    assert draft_of({}) is None
+    gaps: dict[str, Entry] = {"shape": "l1"}
+    for place in ("0.0", "2.1", "2.3"):
+        gaps |= {f"l1/{place}": True, **{f"l1/{place}/{col}": 1.0 for col in range(3)}}
+    found = draft_of(gaps)
+    assert found is not None
+    assert [(row.key, row.posture) for row in found.table.rows] == [(0, 0), (1, 0), (1, 1)]
+
+
+WRONG: list[dict[str, Any]] = [
+    {"other": 1.0},
+    {"p6/1.0/18": 1.0},
+    {"p33/1.0/1": 1.0},
+    {"p6/1.0/1": float("inf")},
+    {"p6/1.0/1": "x" * 201},
+    {"p6/1.0": 1.0},
+    {"p6/1.0/1": True},
+    {"p6/1.0/1?": 5.0},
+    {"shape": "q6"},
+    {"robot": "x" * 40_001},
+    {"p6/1.0/1": Map({"a": 1.0})},
+    {"p6/1.0/1": Array([1.0])},
+]
+
+
+@pytest.mark.parametrize("entries", WRONG, ids=lambda one: str(one)[:40])
+def test_what_is_no_table_changes_nothing(entries: dict[str, Any]) -> None:
+    """An entry that no table has is refused, also in an update with right ones."""
+    document = document_of(standing())
+    state, before = document.state, dict(document.entries)
+    update = page_of(document).put({"p6/2.0/2": 7.0, **entries})["update"]
+    with pytest.raises(UserError):
+        document.merge(update)
+    assert (document.state, document.entries) == (state, before)
+    assert document.merge(page_of(document).put({"p6/2.0/2": 7.0})["update"])
+    assert angle_of(document, 2, 2) == 7.0
+
+
+def test_other_roots_are_refused() -> None:
+    """A document with another root than the table's is none."""
+    document = document_of(standing())
+    other: Doc[Any] = Doc()
+    other.get("text", type=Array).append("hidden")
+    with pytest.raises(UserError):
+        document.merge(bytes(other.get_update()))
+    assert angle_of(document, 1, 1) == 0.0
+
+
+@given(st.binary(max_size=200))
+def test_no_bytes_break_a_document(data: bytes) -> None:
+    """Whatever a page sends as an update, it is merged or refused, and the table stays one."""
+    document = document_of(standing(1))
+    before = dict(document.entries)
+    try:
+        document.merge(data)
+    except UserError:
+        assert document.entries == before
+    assert draft_of(document.entries) is not None
+
+
+def test_a_table_can_not_grow_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Too many entries are refused; a long past is cut off by a fresh document."""
+    document = document_of(standing())
+    many = {
+        f"p32/{key}.{row}/{col}": 1.0 for key in range(10) for row in range(10) for col in range(90)
+    }
+    assert len(many) > ENTRIES_MOST
+    with pytest.raises(UserError, match="too many rows"):
+        document.merge(page_of(document).put(many)["update"])
+    page = page_of(document)
+    edits = 0
+    while not document.is_long:
+        document.merge(page.put({f"p6/1.0/{edits % 18}": float(edits)})["update"])
+        edits += 1
+    assert edits > 1000
+    fresh = document.fresh()
+    assert fresh.entries == document.entries
+    assert len(fresh.state) < len(document.state) / 5
+    monkeypatch.setattr(documents, "STATE_BYTES", len(document.state))
+    with pytest.raises(UserError, match="too many rows"):
+        document.merge(page.put({"p6/1.0/1": 0.5, "p6/1.0/2": 0.5})["update"])
+
+
+class Wire:
+    """Where a page's messages go."""
+
+    keeps_up = True
+    heard_s = 0.0
+    drained = None
+
+    def __init__(self) -> None:
+        self.written: list[bytes] = []
+
+    def write(self, framed: bytes) -> None:
+        self.written.append(framed)
+
+    def watch_closely(self) -> None:
+        pass
+
+
+def told(page: PageTable, entries: dict[str, Any], **changes: Any) -> TableUpdate:
+    return TableUpdate(**{**page.put(entries), **changes})
+
+
+def test_edits_share_writes_and_wait_for_the_disk() -> None:
+    """A reply waits until its edit is on the disk; edits that come meanwhile share one write."""
+    kept: list[bytes] = []
+    going = asyncio.Event
+
+    async def edit() -> None:
+        free = going()
+
+        async def keep(state: bytes, epoch: str) -> None:
+            await free.wait()
+            kept.append(state)
+
+        table = SharedTable("", keep)
+        viewer = Viewer(Wire())
+        table.add(viewer, "Ada")
+        page = PageTable(table.opened())
+        takes = [asyncio.ensure_future(table.take(viewer, told(page, dict(standing()))))]
+        for number in range(20):
+            change = {"p6/1.0/1": float(number)}
+            takes.append(asyncio.ensure_future(table.take(viewer, told(page, change))))
+        await asyncio.sleep(0.05)
+        assert not any(take.done() for take in takes)
+        free.set()
+        await asyncio.gather(*takes)
+        assert len(kept) <= 3
+        assert TableDocument(kept[-1]).entries["p6/1.0/1"] == 19.0
+
+    run_async(edit)
+
+
+def test_a_table_that_was_only_opened_is_not_kept() -> None:
+    """What a page begins with is shared but not kept; with the last page it is gone."""
+    kept: list[bytes] = []
+
+    async def keep(state: bytes, epoch: str) -> None:
+        kept.append(state)
+
+    async def open_it() -> None:
+        table = SharedTable("", keep)
+        one, other = Viewer(Wire()), Viewer(Wire())
+        table.add(one, "")
+        table.add(other, "")
+        first, second = PageTable(table.opened()), PageTable(table.opened())
+        await table.take(one, told(first, dict(standing()), begins=True, cells=()))
+        with pytest.raises(UserError, match="older state"):
+            await table.take(other, told(second, dict(standing()), begins=True, cells=()))
+        assert (kept, table.draft) == ([], None)
+        third = PageTable(table.opened())
+        await table.take(other, told(third, {"p6/0.0/0": 5.0}))
+        assert table.draft is not None
+        assert len(kept) == 1
+        untouched = SharedTable("", keep)
+        untouched.add(one, "")
+        page = PageTable(untouched.opened())
+        await untouched.take(one, told(page, dict(standing()), begins=True, cells=()))
+        untouched.leave(one)
+        assert untouched.opened()["state"] == b""
+
+    run_async(open_it)
+
+
+def test_a_flood_at_one_table_is_refused() -> None:
+    """More updates than a table takes are refused, and change nothing."""
+
+    async def keep(state: bytes, epoch: str) -> None:
+        pass
+
+    async def flood() -> None:
+        table = SharedTable("", keep)
+        viewer = Viewer(Wire())
+        table.add(viewer, "")
+        page = PageTable(table.opened())
+        refused = 0
+        for number in range(1000):
+            try:
+                await table.take(viewer, told(page, {"p6/0.0/0": float(number)}))
+            except UserError as error:
+                refused += error.phrase.code == "gateway.too-much"
+        assert refused > 100
+
+    run_async(flood)
