@@ -235,6 +235,7 @@ def test_a_table_that_was_only_opened_is_not_kept() -> None:
         page = PageTable(untouched.opened())
         await untouched.take(one, told(page, dict(standing()), begins=True, cells=()))
         untouched.leave(one)
+        untouched.end()
         assert untouched.opened()["state"] == b""
 
     run_async(open_it)

@@ -1,4 +1,4 @@
-"""Tests of one table on several pages: two windows at a folder, and two devices of a student."""
+"""Tests of one table on several pages: two windows at a folder, a student's devices, a group."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -102,3 +102,80 @@ def test_a_student_works_on_two_devices(open_page: OpenPage, room: ClassRoom) ->
     tablet.sees(".people li", "ウィンドウ 1")
     assert tablet.page.evaluate("document.scrollingElement.scrollWidth") == 390
     assert violations(tablet.page) == []
+
+
+def joins_group(page: Pupil, name: str) -> None:
+    """Make or join a group, and wait until the page says so."""
+    page.page.click("#tab-group")
+    page.page.fill(".group input", name)
+    page.press("Enter")
+    page.sees(".group h3", name)
+
+
+def test_four_students_make_one_gait(room: ClassRoom, open_page: OpenPage, console: Any) -> None:
+    """Four students share a table with roles and a word; an outage loses nothing.
+
+    A number in somebody else's row is a proposal, which its owner takes in with one press. The
+    teacher has one card for the group.
+    """
+    console.expect_a_break()
+    ann, ben, cleo, dora = (Pupil(open_page, room.url) for _ in range(4))
+    group = {"Ann": ann, "Ben": ben, "Cleo": cleo, "Dora": dora}
+    for name, page in group.items():
+        page.joins(room, name)
+    ann.changes("33")
+    for page in group.values():
+        joins_group(page, "Ants")
+        page.cell_is(0, 0, "33")
+    expect(ann.find(".people li")).to_have_count(3)
+    expect(ann.find(".group-members li")).to_have_count(4)
+    assert violations(ann.page) == []
+
+    ann.page.click(".group-roles button >> nth=0")
+    ben.page.click(".group-roles button >> nth=1")
+    ben.sees("#gait-grid th[title='Ann designs this row']")
+    ben.go(1, 2)
+    ben.type("44")
+    ben.is_toasted("your number for row 1")
+    ben.cell_is(1, 2, "044")  # the number, and the proposal over it
+    ann.sees(".proposals", "Ben proposes 44°")
+    assert violations(ann.page) == []
+    ann.page.click(".proposals >> text=Take it in")
+    for page in group.values():
+        page.cell_is(1, 2, "44")
+    ann.misses(".proposals")
+
+    for page in (cleo, dora):
+        page.page.fill(".group-words input", "calm")
+        page.press("Enter")
+    ann.sees(".group-words p", "calm")
+
+    gateway = psutil.Process(room.process.pid)
+    gateway.suspend()
+    try:
+        for number, page in enumerate(group.values()):
+            page.sees(".banner", "connection")
+            page.go(0, 6 + number)
+            page.type(f"5{number}")
+        ann.sees(".bar .name small", "not kept yet")
+    finally:
+        gateway.resume()
+    for page in group.values():
+        for number in range(4):
+            page.cell_is(0, 6 + number, f"5{number}")
+        expect(page.find(".bar .name small")).to_have_text("everything is kept")
+
+    teacher = Designer(open_page, room.url, locale="ja-JP")
+    teacher.open("/class", room.key)
+    teacher.sees(".class-group", "Ants")
+    expect(teacher.find(".class-group .member")).to_have_count(4)
+    expect(teacher.find(".students > li")).to_have_count(1)
+    assert violations(teacher.page) == []
+    teacher.page.select_option("select[name=recipient]", "Ants")
+    teacher.page.click("text=見本 >> nth=0")
+    for page in group.values():
+        page.sees(".banner", "見本")
+    dora.page.click("#tab-group")
+    dora.page.click("text=Leave the group")
+    dora.sees(".group h3", "Work as a group")
+    expect(teacher.find(".class-group .member")).to_have_count(3)

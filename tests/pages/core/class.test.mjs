@@ -102,3 +102,16 @@ test("after the end of a stretch its begin follows", () => {
   );
   assert.equal(c.looped(5, 0, 0), 0);
 });
+
+test("a group has one card, where its first member stands", () => {
+  const ants = { name: "Ants", members: ["b", "d"], roles: {}, word: "", handed: null };
+  const cards = ["a", "b", "c", "d"].map((name) => card(name));
+  const shown = c
+    .dealt(cards, [ants])
+    .map(({ group, cards: own }) => [group?.name ?? "", names(own)]);
+  assert.deepEqual(shown, [
+    ["", "a"],
+    ["Ants", "b d"],
+    ["", "c"],
+  ]);
+});

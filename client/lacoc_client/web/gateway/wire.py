@@ -64,6 +64,7 @@ class MessageKind(IntEnum):
     CROWD = 24
     TABLE = 25
     PEOPLE = 26
+    GROUP = 27
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]

@@ -5,7 +5,7 @@ import time
 from collections.abc import AsyncIterator, Iterable, Sequence
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast, get_args
 
 import msgspec
 
@@ -15,10 +15,12 @@ from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.web.office.links import qr_code
 from lacoc_client.workshop.classroom.class_student import ClassStudent
+from lacoc_client.workshop.classroom.groups.group_state import Role
+from lacoc_client.workshop.classroom.groups.groups import OF_GROUP, Groups
+from lacoc_client.workshop.classroom.groups.handed import Handed
 from lacoc_client.workshop.classroom.state import (
     NOBODY,
     ClassState,
-    Handed,
     fresh_state,
     read_state,
 )
@@ -96,6 +98,7 @@ class Classroom:
         """The teacher's pages."""
         self.tournament = Tournament(folder, self._tell_tournament)
         self._keeper = Keeper(folder / CLASS_FILE)
+        self.groups = Groups(self._store, self._keep_groups, self.students)
         self._robot_name = robot or WORKSHOPS_ROBOT
         self._guesses = Guesses()
         self._coming = asyncio.Lock()
@@ -127,8 +130,11 @@ class Classroom:
         for document in documents.pop(NOBODY, []):
             self.state = read_state(document) or self.state
         await asyncio.wrap_future(store.write(self.state.kept()))
+        of_groups = [name for name in documents if name.startswith(OF_GROUP)]
+        kept_groups = [one for name in of_groups for one in documents.pop(name)]
         for name in dict.fromkeys((*evidence, *documents)):
             self._new(name).begin(evidence.get(name, []), documents.get(name, []))
+        self.groups.begin(self.state.groups, kept_groups)
 
     # What students do
 
@@ -152,14 +158,18 @@ class Classroom:
         viewer.send(folder_message("", None))
         viewer.send(studio_message(self.studios))
         viewer.send(student.phases_message())
-        if self.state.handed is not None:
-            viewer.send(_handed_message(self.state.handed))
+        if (handed := self._handed(student)) is not None:
+            viewer.send(handed.message())
+        self.groups.tell(self.groups.of(student))
+        viewer.send(self.groups.message(student))
         self._tell_card(student)
 
     def leave(self, student: Student, viewer: Viewer) -> None:
         """Remove a page that has gone, and tell the teacher (`Host.leave`)."""
         assert isinstance(student, ClassStudent)
         student.leave(viewer)
+        if (state := self.groups.of(student)) is not None:
+            self.groups.tell(state)
         self._tell_card(student)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
@@ -168,6 +178,20 @@ class Classroom:
         student.learned(trial)
         student.tell()
         self._tell_card(student)
+
+    async def group(self, student: Student, asked: requests.GroupAsk) -> None:
+        """Do what a student asks of the groups (`Host.group`)."""
+        assert isinstance(student, ClassStudent)
+        match asked.act:
+            case "join":
+                await self.groups.join(student, asked.text)
+            case "leave":
+                await self.groups.leave(student)
+            case "role":
+                await self.groups.set_role(student, _role(asked.text))
+            case "word":
+                await self.groups.vote(student, asked.text)
+                student.tell()
 
     def sample(self) -> FileContent:
         """Read the robot's sample postures; empty if the robot has no sample. May block."""
@@ -197,14 +221,37 @@ class Classroom:
         await self._set(code=new_code())
 
     async def hand_out(
-        self, title: str, table: FileTable, sequences: tuple[tuple[int, ...], ...] | None
+        self,
+        title: str,
+        table: FileTable,
+        sequences: tuple[tuple[int, ...], ...] | None,
+        group: str = "",
     ) -> None:
-        """Offer a table to all students, also to those who come later."""
-        number = 1 + (self.state.handed.number if self.state.handed else 0)
+        """Offer a table to all students, also to those who come later, or to a group.
+
+        Raises:
+            UserError: if there is no group of this name.
+        """
+        number = self.state.handed_count + 1
         handed = Handed(number=number, title=title, table=table, sequences=sequences)
-        await self._set(handed=handed)
+        if group:
+            await self.groups.hand_out(group, handed)
+            await self._set(handed_count=number)
+            return
+        await self._set(handed=handed, handed_count=number)
         for student in self.students.values():
-            student.send(_handed_message(handed))
+            student.send(handed.message())
+
+    async def put_into_group(self, student: ClassStudent, name: str) -> None:
+        """Put a student into a group, or out of it ("").
+
+        Raises:
+            UserError: if the group is full, or the name is none.
+        """
+        if name:
+            await self.groups.join(student, name)
+        else:
+            await self.groups.leave(student)
 
     async def lower(self, student: ClassStudent) -> None:
         """Take a student's hand down."""
@@ -224,6 +271,7 @@ class Classroom:
             UserError: if the class file can't be written; then the student stays.
         """
         await student.diary.forget()
+        await self.groups.forget(student)
         if self.students.get(same_name(student.name)) is student:  # else another page was quicker
             del self.students[same_name(student.name)]
         student.send_away()
@@ -337,6 +385,16 @@ class Classroom:
                 for student in self.students.values():
                     self._tell_card(student)
 
+    async def _keep_groups(self) -> None:
+        await self._set(groups=tuple(self.groups.states.values()))
+
+    def _handed(self, student: ClassStudent) -> Handed | None:
+        """Return the last table that was handed out to a student; None: there was none."""
+        state = self.groups.of(student)
+        both = (self.state.handed, state.handed if state is not None else None)
+        found = [one for one in both if one is not None]
+        return max(found, key=lambda one: one.number, default=None)
+
     def _tell_card(self, student: ClassStudent) -> None:
         # Whoever has just been forgotten has no card.
         if self.students.get(same_name(student.name)) is student:
@@ -371,6 +429,16 @@ class Classroom:
             "studios": studios,
             "why": why,
             "handed": handed and {"number": handed.number, "title": handed.title},
+            "groups": [
+                {
+                    "name": one.name,
+                    "members": one.members,
+                    "roles": one.roles,
+                    "word": one.word,
+                    "handed": one.handed and one.handed.title,
+                }
+                for one in self.state.groups
+            ],
             "cards": None if cards is None else list(cards),
         }
         return wire.map_message(MessageKind.CLASS, body)
@@ -389,5 +457,8 @@ def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
     return groups
 
 
-def _handed_message(handed: Handed) -> bytes:
-    return wire.map_message(MessageKind.HANDED, msgspec.structs.asdict(handed))
+def _role(text: str) -> Role:
+    for role in get_args(Role):
+        if role == text:
+            return cast(Role, role)
+    raise UserError(say("groups.no-role", role=text))

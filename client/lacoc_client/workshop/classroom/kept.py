@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from lacoc_client.workshop.classroom.groups.groups import OF_GROUP
+from lacoc_client.workshop.classroom.state import NAME, NOBODY, read_state
 from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
@@ -18,7 +20,13 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[Document]) -> list[Document]:
-    """Return the gait and robot files of all tables; tokens and settings are left out."""
+    """Return the gait and robot files of all tables; tokens and settings are left out.
+
+    The table of a group is under the group's name.
+    """
+    kept = list(kept)
+    states = [read_state(one) for one in kept if (one.student, one.name) == (NOBODY, NAME)]
+    owners = {OF_GROUP + one.id: one.name for state in states if state for one in state.groups}
     found = []
     for one in kept:
         draft = _draft(one) if one.name == TABLE else None
@@ -29,7 +37,7 @@ def student_files(kept: Iterable[Document]) -> list[Document]:
         except (FileRefused, UserError):
             continue  # a mistake in the table, such as an angle without a number
         found += [
-            Document(one.student, name, one.version, one.at_s, file.data)
+            Document(owners.get(one.student, one.student), name, one.version, one.at_s, file.data)
             for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]

@@ -1,27 +1,18 @@
-"""The settings of a class: code, key, rules, and the table that was handed out."""
+"""The settings of a class: code, key, rules, groups, and the table that was handed out."""
 
 import time
 
 import msgspec
 
 from lacoc_client.web.gateway.home import new_key
+from lacoc_client.workshop.classroom.groups.group_state import GroupState
+from lacoc_client.workshop.classroom.groups.handed import Handed
 from lacoc_client.workshop.design.learning.rules import FREE, StudentRules
-from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_shared.contest.codes import new_code
 
 NAME, NOBODY = "class", ""
 """Name under which it is kept, and the student whose it is: nobody's."""
-
-
-class Handed(msgspec.Struct, frozen=True, kw_only=True):
-    """A table that the teacher handed out."""
-
-    number: int
-    """Counts the tables of the class, from 1."""
-    title: str
-    table: FileTable
-    sequences: tuple[tuple[int, ...], ...] | None = None
 
 
 class ClassState(msgspec.Struct, frozen=True, kw_only=True):
@@ -33,7 +24,10 @@ class ClassState(msgspec.Struct, frozen=True, kw_only=True):
     """The page key of the teacher: it is the same after each start, so pages stay open."""
     rules: StudentRules = FREE
     handed: Handed | None = None
-    """The last table that was handed out."""
+    """The last table that was handed out to all."""
+    handed_count: int = 0
+    """How many tables were handed out, to all or to groups."""
+    groups: tuple[GroupState, ...] = ()
 
     def kept(self) -> Document:
         """Return the settings as a class file keeps them."""

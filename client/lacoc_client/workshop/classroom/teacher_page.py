@@ -85,6 +85,8 @@ class TeacherPage:
                 await self._hand_out(asked)
             case ParseAsk():
                 value = await asyncio.to_thread(parsed, asked)
+            case requests.SeatAsk():
+                await group.put_into_group(group.find(asked.student), asked.group)
             case requests.LowerAsk():
                 await group.lower(group.find(asked.student))
             case requests.AdmitAsk():
@@ -110,12 +112,12 @@ class TeacherPage:
     async def _hand_out(self, asked: requests.HandOutAsk) -> None:
         if asked.student is not None:
             draft = _draft(self._class.find(asked.student))
-            await self._class.hand_out(asked.title, draft.table, draft.sequences)
+            await self._class.hand_out(asked.title, draft.table, draft.sequences, asked.group)
             return
         table = asked.table or (await asyncio.to_thread(self._class.sample)).table
         if table is None:
             raise UserError(say("class.no-sample"))
-        await self._class.hand_out(asked.title, table, asked.sequences)
+        await self._class.hand_out(asked.title, table, asked.sequences, asked.group)
 
     async def _show(self, student: ClassStudent) -> dict[str, Any]:
         """Let a student's robot walk; return robot, trial and table for the big screen."""
@@ -140,13 +142,16 @@ class TeacherPage:
         return {"name": TABLES, "data": await asyncio.to_thread(tables_zip, files)}
 
     def _players(self) -> dict[str, SeatFiles]:
-        """Return the files of everybody who has a table, by nickname."""
+        """Return the files of everybody who has a table, by nickname or name of the group."""
+        students = [one for one in self._class.students.values() if one.table is one.own]
+        drafts = {one.name: one.draft for one in students if one.draft is not None}
+        for state, draft in self._class.groups.drafts().values():
+            name = state.name if state.name not in drafts else f"{state.name} (group)"
+            drafts[name] = draft
         players = {}
-        for student in self._class.students.values():
-            draft = student.draft
-            if draft is not None:
-                files = draft.files()
-                players[student.name] = files._replace(robot=files.robot or self._class.robot)
+        for name, draft in drafts.items():
+            files = draft.files()
+            players[name] = files._replace(robot=files.robot or self._class.robot)
         return players
 
 

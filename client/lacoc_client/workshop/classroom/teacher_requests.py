@@ -17,12 +17,22 @@ class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
 
 
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
-    """Offer a table to everybody: this one, that of a student, or else the sample."""
+    """Offer a table to all or to a group: this one, that of a student, or else the sample."""
 
     title: Name = ""
     table: FileTable | None = None
     sequences: Sequences | None = None
     student: Name | None = None
+    group: Name = ""
+    """To whom; "": to all."""
+
+
+class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
+    """Put a student into a group."""
+
+    student: Name
+    group: Name
+    """A group that is not there yet is made; "": the student works alone."""
 
 
 class LowerAsk(Ask, frozen=True, kw_only=True, tag="lower"):
@@ -78,6 +88,7 @@ Asked = (
     | HandOutAsk
     | ParseAsk
     | LowerAsk
+    | SeatAsk
     | AdmitAsk
     | ForgetAsk
     | NewCodeAsk

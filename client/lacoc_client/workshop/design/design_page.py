@@ -116,6 +116,8 @@ class DesignPage:
                 place = asked.row, asked.col, asked.typing
                 learner.student.table.move(self._viewer, *place)
                 answers.reply(asked.id, {})
+            case requests.GroupAsk():
+                answers.later(asked.id, self._group(asked, learner))
             case requests.RobotAsk():
                 answers.later(asked.id, self._studio.robot(asked))
             case requests.TrialAsk():
@@ -186,6 +188,10 @@ class DesignPage:
             begins=asked.begins,
         )
         return await learner.student.table.take(self._viewer, update)
+
+    async def _group(self, asked: requests.GroupAsk, learner: Learner) -> dict[str, Any]:
+        await self._host.group(learner.student, asked)
+        return {}
 
     async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
         """Check a table, and take its files to a court.

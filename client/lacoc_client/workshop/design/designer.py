@@ -85,6 +85,10 @@ class Designer:
         """Tell all pages how far the student is; see `Host.learned`."""
         student.tell()
 
+    async def group(self, student: Student, asked: requests.GroupAsk) -> None:
+        """Refuse: whoever has the page key shares the table without a group."""
+        raise UserError(say("groups.not-here"))
+
     def sample(self) -> FileContent:
         """Read the robot's sample postures from the disk; empty if the robot has no sample."""
         return sample_postures(self._robot_name)

@@ -55,6 +55,13 @@ class Host(Protocol):
             trial: the trial, if that is what the student did.
         """
 
+    async def group(self, student: Student, asked: requests.GroupAsk) -> None:
+        """Do what a student asks of the groups.
+
+        Raises:
+            UserError: if it can't be done, or there are no groups here.
+        """
+
     def sample(self) -> FileContent:
         """Read the robot's sample postures; empty if the robot has no sample. May block."""
 

@@ -221,6 +221,14 @@ class VoteAsk(Ask, frozen=True, kw_only=True, tag="vote"):
     choice: Literal["A", "B"]
 
 
+class GroupAsk(Ask, frozen=True, kw_only=True, tag="group"):
+    """Join or make a group, leave it, take a role, or vote for a word."""
+
+    act: Literal["join", "leave", "role", "word"]
+    text: Annotated[str, msgspec.Meta(max_length=40)] = ""
+    """Name of the group, the role ("forward", "turn" or ""), or the word."""
+
+
 class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):
     """Raise the hand for help, or take it down."""
 
@@ -306,6 +314,7 @@ Asked = (
     | NameAsk
     | VoteAsk
     | HandAsk
+    | GroupAsk
 )
 """Every request of a page."""
 

@@ -104,12 +104,19 @@ class SharedTable:
         self.people[viewer] = Person(id=free, name=name)
         self._tell_people()
 
+    def show(self, viewer: Viewer, name: str) -> None:
+        """Take in a page that has had another table open."""
+        viewer.send(self._message({"state": self._document.state}))
+        self.add(viewer, name)
+
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page; a table that nobody has changed ends with its last page."""
-        if self.people.pop(viewer, None) is None:
-            return
-        self._tell_people()
-        if not self.people and not self.is_touched:
+        """Remove a page."""
+        if self.people.pop(viewer, None) is not None:
+            self._tell_people()
+
+    def end(self) -> None:
+        """Forget a table that nobody has changed: the last page of its student has gone."""
+        if not self.is_touched:
             self._begin(TableDocument(), new_token())
 
     def move(self, viewer: Viewer, row: int, col: int, typing: str | None) -> None:

@@ -1,6 +1,6 @@
 /** A class as its teacher sees it: who needs help first, names on a projector, times. */
 
-import type { Card, StudentRules } from "./wire";
+import type { Card, ClassGroup, StudentRules } from "./wire";
 
 /** The reasons for help, the most urgent first. */
 const NEEDS: readonly Card["need"][] = ["hand", "stuck", "quiet", ""];
@@ -49,6 +49,30 @@ export function placed(shown: readonly string[], cards: readonly Card[], holds: 
     return index < 0 ? shown.length : index;
   };
   return sorted.toSorted((one, other) => place(one) - place(other));
+}
+
+/** A card of a group has those of its members; whoever works alone has one without a group. */
+export interface Dealt {
+  group: ClassGroup | null;
+  cards: Card[];
+}
+
+/** Put the cards of a group together, where the first of them stands. */
+export function dealt(cards: readonly Card[], groups: readonly ClassGroup[]): Dealt[] {
+  const found: Dealt[] = [];
+  const known = new Map<ClassGroup, Dealt>();
+  for (const card of cards) {
+    const group = groups.find(({ members }) => members.includes(card.name)) ?? null;
+    const there = group && known.get(group);
+    if (there) {
+      there.cards.push(card);
+      continue;
+    }
+    const one = { group, cards: [card] };
+    if (group) known.set(group, one);
+    found.push(one);
+  }
+  return found;
 }
 
 /** Replace a student's card, or add it. */

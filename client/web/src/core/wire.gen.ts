@@ -101,6 +101,7 @@ export const MESSAGE_KINDS = [
   "crowd",
   "table",
   "people",
+  "group",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */

@@ -170,6 +170,7 @@ export interface ClassState {
   /** Why there is no studio. */
   why: Phrase | null;
   handed: { number: number; title: string } | null;
+  groups: ClassGroup[];
   cards: Card[] | null;
 }
 
@@ -204,6 +205,39 @@ export interface TableNews {
   state?: Uint8Array;
   /** Cells into which this page and another one typed without having seen each other's. */
   clash?: { cells: string[]; by: number };
+}
+
+export interface GroupMember {
+  name: string;
+  /** What the member designs: "forward" rows 1 to 4, "turn" rows 5 to 8; "": nothing special. */
+  role: "" | "forward" | "turn";
+  online: boolean;
+}
+
+/** The groups of a class, and a student's own. */
+export interface GroupNews {
+  /** All groups, with the count of their members. */
+  groups: { name: string; members: number }[];
+  /** null: the student works alone. */
+  group: {
+    name: string;
+    members: GroupMember[];
+    words: { word: string; by: string; votes: number }[];
+    /** The word with most votes; "": none. */
+    word: string;
+    /** The word for which this student has voted; "": none. */
+    voted: string;
+  } | null;
+}
+
+/** A group as the teacher sees it. */
+export interface ClassGroup {
+  name: string;
+  members: string[];
+  roles: Record<string, GroupMember["role"]>;
+  word: string;
+  /** Title of the last table that was handed out to it; null: none. */
+  handed: string | null;
 }
 
 /** A page at a shared table. */
@@ -275,6 +309,7 @@ export type Message =
   | { kind: "handed"; body: HandedTable }
   | { kind: "forgotten"; body: Record<string, never> }
   | { kind: "table"; body: TableNews }
+  | { kind: "group"; body: GroupNews }
   | { kind: "people"; body: { me: number; people: Person[] } };
 
 /** What a page asks for; each request is answered by a reply with its id. */
@@ -317,6 +352,7 @@ type DesignRequest =
   | "cancel"
   | "table"
   | "place"
+  | "group"
   | "edit"
   | "check"
   | "play"
@@ -331,6 +367,7 @@ type ClassRequest =
   | "rules"
   | "hand_out"
   | "lower"
+  | "seat"
   | "admit"
   | "forget"
   | "new_code"

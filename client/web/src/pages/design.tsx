@@ -18,6 +18,7 @@ import { FilesDialog, takeFiles } from "./design/files/dialog";
 import { Head } from "./design/head/head";
 import { LegPicture } from "./design/robot/legs";
 import { PeopleHere } from "./design/sharing/people_here";
+import { Proposals } from "./design/sharing/proposals";
 import { Side, type Tab } from "./design/side";
 import { Studio } from "./design/studio";
 import { Grid } from "./design/table/grid";
@@ -37,7 +38,8 @@ const dragging = signal(false);
 
 export default function Design() {
   const studio = useMemo(() => new Studio(), []);
-  const { sheet, trials, showing, coach, files, robot, gateway, membership, people } = studio;
+  const { sheet, trials, showing, coach, files, robot, gateway, membership, people, group } =
+    studio;
   const open = useSignal<"" | "files" | "settings">("");
   const tab = useSignal<Tab>("trials");
   window.__studio = studio;
@@ -45,8 +47,8 @@ export default function Design() {
     open.value = "";
   };
   const overlay = useMemo(
-    () => ({ marks: coach.marks, target: trials.target, people: people.places }),
-    [coach, trials, people],
+    () => ({ marks: coach.marks, target: trials.target, people: people.places, group }),
+    [coach, trials, people, group],
   );
   useKeys(studio);
   useDrop(dragging, (taken) => void takeFiles(files, taken));
@@ -96,7 +98,8 @@ export default function Design() {
       </div>
       <Stage picture={studio.picture} robot={robot.robot} sheet={sheet} showing={showing} />
       <section class="sheet" aria-label={t("design.grid")}>
-        <PeopleHere people={people} sheet={sheet} />
+        <PeopleHere people={people} group={studio.group} sheet={sheet} />
+        <Proposals group={studio.group} sheet={sheet} />
         <Grid
           sheet={sheet}
           overlay={overlay}

@@ -58,6 +58,16 @@ class Student:
                     self.own = SharedTable("", self._keep, one.content, one.version)
         self.table = self.own
 
+    def sit_at(self, table: SharedTable) -> None:
+        """Work on another table from now on; all pages take it."""
+        if table is self.table:
+            return
+        for viewer in self.viewers:
+            self.table.leave(viewer)
+        self.table = table
+        for viewer in self.viewers:
+            table.show(viewer, self.name)
+
     def tell(self) -> None:
         """Tell all pages how far the student is."""
         self.send(self.phases_message())
@@ -85,6 +95,8 @@ class Student:
         self.viewers.pop(viewer, None)
         self.lessons.pop(viewer, None)
         self.table.leave(viewer)
+        if not self.viewers:
+            self.own.end()
 
     def send_away(self) -> None:
         """Tell all pages that the student was deleted, and refuse what they ask from now on."""

@@ -48,6 +48,21 @@ export interface CellName {
 
 const PLACE = /^[pl]\d+\/(\d)\.(\d+)(?:\/(\d+))?$/;
 
+/** What somebody proposes for a cell. */
+export interface ProposalEntry extends CellName {
+  /** Name of its entry. */
+  name: string;
+  text: string;
+  by: string;
+}
+
+/** The proposal that an entry is; null: it is none. */
+export function proposalIn(name: string, entry: Entry): ProposalEntry | null {
+  const cell = name.endsWith("?") ? cellNamed(name.slice(0, -1)) : null;
+  const value = parsed<{ text: string; by: string } | null>(entry, null);
+  return cell && value ? { ...cell, name, text: String(value.text), by: String(value.by) } : null;
+}
+
 /** The shape of a table, with which the names of its cells begin. */
 export const shapeOf = ({ kind, legs }: Pick<Content, "kind" | "legs">) => `${kind[0]}${legs}`;
 

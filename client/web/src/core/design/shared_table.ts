@@ -14,6 +14,8 @@ import {
   type Entry,
   headEntries,
   isSameCell,
+  type ProposalEntry,
+  proposalIn,
   rowEntry,
   shapeOf,
 } from "./entries";
@@ -82,6 +84,29 @@ export class SharedTable {
       for (const [name, value] of entries) {
         if (value !== undefined) this.set(name, value);
       }
+    }, OWN);
+  }
+
+  /** What is proposed in the table that there is. */
+  proposals(): ProposalEntry[] {
+    const shape = `${this.entries.get("shape")}/`;
+    return [...this.entries.entries()].flatMap(([name, entry]) => {
+      const found = name.startsWith(shape) ? proposalIn(name, entry) : null;
+      return found ? [found] : [];
+    });
+  }
+
+  /** Propose values for cells, by the names of the cells. */
+  propose(values: Iterable<readonly [string, string]>, by: string): void {
+    this.doc.transact(() => {
+      for (const [name, text] of values) this.set(`${name}?`, JSON.stringify({ text, by }));
+    }, OWN);
+  }
+
+  /** Remove entries, such as proposals. */
+  remove(names: readonly string[]): void {
+    this.doc.transact(() => {
+      for (const name of names) if (this.entries.has(name)) this.entries.delete(name);
     }, OWN);
   }
 

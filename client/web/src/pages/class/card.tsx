@@ -119,7 +119,7 @@ export function lessonStep({ lesson_step: step }: Card): string {
 }
 
 /** A card in words. */
-function summary(teacher: Teacher, card: Card): string {
+export function summary(teacher: Teacher, card: Card): string {
   const parts = [
     news(teacher, card),
     card.hand_up_s !== null && card.stuck && said(card.stuck),

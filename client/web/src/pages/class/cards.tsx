@@ -2,8 +2,10 @@
 
 import { useSignal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
+import { dealt } from "../../core/class";
 import { t } from "../../i18n";
 import { StudentCard } from "./card";
+import { GroupCard } from "./group_card";
 import type { Teacher } from "./teacher";
 
 const GLIDE_MS = 450;
@@ -22,8 +24,9 @@ export function Cards({ teacher }: { teacher: Teacher }) {
   const hold = useHold(teacher);
   /** The card that Tab leads to; arrow keys lead on to the others. */
   const current = useSignal("");
-  useGlide(list, order.map(({ name }) => name).join("\n"));
-  const stop = order.findIndex(({ name }) => name === current.value);
+  useGlide(list, order.map(({ name }) => name).join("\n") + JSON.stringify(teacher.groups.value));
+  const isThere = order.some(({ name }) => name === current.value);
+  const first = isThere ? current.value : order[0]?.name;
   if (!teacher.state.value) return <div />; // the banner says why
   return (
     <section class="all" aria-label={t("class.cards")}>
@@ -41,10 +44,24 @@ export function Cards({ teacher }: { teacher: Teacher }) {
             step(event);
           }}
         >
-          {order.map((card, index) => {
-            const isStop = stop < 0 ? index === 0 : index === stop;
-            return <StudentCard key={card.name} teacher={teacher} card={card} isStop={isStop} />;
-          })}
+          {dealt(order, teacher.groups.value).map(({ group, cards }) =>
+            group ? (
+              <GroupCard
+                key={`group ${group.name}`}
+                teacher={teacher}
+                group={group}
+                cards={cards}
+                stop={first}
+              />
+            ) : (
+              <StudentCard
+                key={cards[0]!.name}
+                teacher={teacher}
+                card={cards[0]!}
+                isStop={cards[0]!.name === first}
+              />
+            ),
+          )}
         </ol>
       ) : (
         <p class="nobody">{t("class.nobody")}</p>
@@ -57,9 +74,10 @@ export function Cards({ teacher }: { teacher: Teacher }) {
 /** Go to another card with the arrow keys, also to the row above or below. */
 function step(event: KeyboardEvent): void {
   const list = event.currentTarget as HTMLElement;
-  const items = [...list.children] as HTMLElement[];
-  const at = items.findIndex((item) => item.contains(event.target as Node));
-  const columns = items.filter(({ offsetTop }) => offsetTop === items[0]?.offsetTop).length;
+  const items = [...list.querySelectorAll<HTMLElement>("button.student")];
+  const at = items.indexOf(event.target as HTMLElement);
+  const cards = [...list.children] as HTMLElement[];
+  const columns = cards.filter(({ offsetTop }) => offsetTop === cards[0]?.offsetTop).length;
   const steps: Record<string, number> = {
     ArrowRight: 1,
     ArrowLeft: -1,
@@ -71,7 +89,7 @@ function step(event: KeyboardEvent): void {
   const by = steps[event.key];
   if (by === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
   event.preventDefault();
-  items[at + by]?.querySelector("button")?.focus();
+  items[at + by]?.focus();
 }
 
 function nameOf(target: EventTarget | null): string {

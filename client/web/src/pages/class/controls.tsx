@@ -96,7 +96,11 @@ function HandOut({ teacher }: { teacher: Teacher }) {
     <section aria-label={t("class.handOut")}>
       <h2>{t("class.handOut")}</h2>
       <div class="row">
-        <button class="button" type="button" onClick={() => void teacher.handOut(sample)}>
+        <button
+          class="button"
+          type="button"
+          onClick={() => void teacher.handOut(sample, { group: teacher.recipient.peek() })}
+        >
           {sample}
         </button>
         <input
@@ -115,12 +119,38 @@ function HandOut({ teacher }: { teacher: Teacher }) {
           {t("class.handOut.file")}
         </label>
       </div>
+      <Recipient teacher={teacher} />
       <p class="muted">
         {handed
           ? t("class.handOut.last", { title: teacher.hide(handed.title) })
           : t("class.handOut.hint")}
       </p>
     </section>
+  );
+}
+
+/** To whom a table is handed out. */
+function Recipient({ teacher }: { teacher: Teacher }) {
+  const groups = teacher.groups.value;
+  if (!groups.length) return null;
+  return (
+    <label class="field">
+      <span>{t("class.handOut.to")}</span>
+      <select
+        name="recipient"
+        value={teacher.recipient.value}
+        onChange={(event) => {
+          teacher.recipient.value = event.currentTarget.value;
+        }}
+      >
+        <option value="">{t("class.handOut.all")}</option>
+        {groups.map(({ name }) => (
+          <option key={name} value={name}>
+            {teacher.hide(name)}
+          </option>
+        ))}
+      </select>
+    </label>
   );
 }
 
@@ -179,7 +209,7 @@ function Titled({ teacher, handout }: { teacher: Teacher; handout: Handout }) {
           event.preventDefault();
           const named = title.value.trim() || handout.title;
           close();
-          void teacher.handOut(named, { table });
+          void teacher.handOut(named, { table, group: teacher.recipient.peek() });
         }}
       >
         <p class="muted">
@@ -196,6 +226,7 @@ function Titled({ teacher, handout }: { teacher: Teacher; handout: Handout }) {
             }}
           />
         </label>
+        <Recipient teacher={teacher} />
         <button class="button strong" type="submit">
           {t("class.handOut.go")}
         </button>

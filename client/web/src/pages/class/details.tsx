@@ -1,6 +1,7 @@
 /** A student's card in full, and what the teacher can do for this student. */
 
 import { useSignal } from "@preact/signals";
+import { useId } from "preact/hooks";
 import type { Card } from "../../core/wire";
 import { type MessageName, said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
@@ -33,6 +34,7 @@ export function Details({ teacher }: { teacher: Teacher }) {
           </dl>
         </section>
         <Progress card={card} />
+        <Grouping teacher={teacher} student={card.name} />
         <Acts teacher={teacher} card={card} onClose={close} />
       </div>
     </Dialog>
@@ -109,6 +111,47 @@ function Progress({ card }: { card: Card }) {
       </progress>
       {card.missing && <p class="muted">{said(card.missing)}</p>}
     </section>
+  );
+}
+
+/** The group of a student, and what puts the student into another one. */
+function Grouping({ teacher, student }: { teacher: Teacher; student: string }) {
+  const own = teacher.groups.value.find(({ members }) => members.includes(student))?.name ?? "";
+  const draft = useSignal<string | null>(null);
+  const list = useId();
+  const name = (draft.value ?? own).trim();
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void teacher.act("seat", { student, group: name });
+        draft.value = null;
+      }}
+    >
+      <label class="field">
+        <span>{t("class.group")}</span>
+        <input
+          name="group"
+          value={draft.value ?? own}
+          list={list}
+          maxLength={20}
+          autocomplete="off"
+          placeholder={t("class.group.none")}
+          onInput={(event) => {
+            draft.value = event.currentTarget.value;
+          }}
+        />
+      </label>
+      <datalist id={list}>
+        {teacher.groups.value.map((group) => (
+          <option key={group.name} value={group.name} />
+        ))}
+      </datalist>
+      <button class="button" type="submit" disabled={name === own}>
+        {t("class.group.set")}
+      </button>
+    </form>
   );
 }
 

@@ -83,6 +83,9 @@ export class Teacher {
     this.shown = order.map(({ name }) => name);
     return order;
   });
+  readonly groups = computed(() => this.state.value?.groups ?? []);
+  /** The group to which a table is handed out; "": to all. */
+  readonly recipient = signal("");
   readonly here = computed(() => this.cards.value.filter(({ online }) => online).length);
   readonly hands = computed(
     () => this.cards.value.filter((card) => card.online && card.need === "hand").length,
@@ -165,9 +168,17 @@ export class Teacher {
   }
 
   /** Hand out a table, that of a student, or else the sample. */
-  async handOut(title: string, what: { table?: FileTable; student?: string } = {}): Promise<void> {
-    if ((await this.act("hand_out", { title, ...what })) === null) return;
-    toast(t("class.handOut.done", { title }), "yes");
+  async handOut(
+    title: string,
+    what: { table?: FileTable; student?: string; group?: string } = {},
+  ): Promise<void> {
+    const group = this.groups.peek().find(({ name }) => name === what.group)?.name ?? "";
+    if ((await this.act("hand_out", { title, ...what, group })) === null) return;
+    const to = this.hide(group);
+    toast(
+      group ? t("class.handOut.doneTo", { title, to }) : t("class.handOut.done", { title }),
+      "yes",
+    );
   }
 
   async save(what: "evidence" | "tables"): Promise<void> {

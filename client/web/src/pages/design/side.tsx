@@ -5,12 +5,13 @@ import { t } from "../../i18n";
 import { CoachPanel } from "./coach/panel";
 import { PhasePanel } from "./learning/panel";
 import { Robot } from "./robot/facts";
+import { GroupPanel } from "./sharing/group_panel";
 import type { Studio } from "./studio";
 import { TrialList } from "./trials/list";
 import { Result } from "./trials/result";
 import "./side.css";
 
-const TABS = ["trials", "phase", "coach", "robot"] as const;
+const TABS = ["trials", "phase", "coach", "robot", "group"] as const;
 export type Tab = (typeof TABS)[number];
 
 interface Props {
@@ -22,7 +23,10 @@ export function Side({ studio, tab }: Props) {
   const { sheet, trials, showing, robot } = studio;
   const can = studio.can.value;
   const tabs = TABS.filter(
-    (name) => (can.learn || name !== "phase") && (can.coach || name !== "coach"),
+    (name) =>
+      (can.learn || name !== "phase") &&
+      (can.coach || name !== "coach") &&
+      (studio.group.news.value || name !== "group"),
   );
   return (
     <aside class="side">
@@ -87,6 +91,7 @@ export function Side({ studio, tab }: Props) {
             trials={trials}
           />
         )}
+        {tab.value === "group" && <GroupPanel group={studio.group} />}
         {tab.value === "robot" && (
           <Robot robot={robot} numbers={studio.numbers} files={studio.files} can={can} />
         )}

@@ -19,6 +19,7 @@ import { Gateway } from "./gateway";
 import { hasEarned, Learning } from "./learning/learning";
 import { Numbers } from "./robot/numbers";
 import { RobotInUse } from "./robot/robot";
+import { Group } from "./sharing/group";
 import { People } from "./sharing/people";
 import { Sharing } from "./sharing/sharing";
 import { takeGivenLeg } from "./table/given_leg";
@@ -47,6 +48,7 @@ export class Studio {
       before: (by) => this.learning.tell(by),
       changed: (by, size) => this.learning.edited(by, size),
       turned: (before, now) => this.files.shapes.turned(before, now),
+      guard: (before, after) => this.group.guard(before, after),
       merged: (before, now) => this.learning.merged(before, now),
       legsChanged: () => this.trials.forget(),
       worked: () => this.showing.rest(),
@@ -75,13 +77,14 @@ export class Studio {
   );
   readonly files: Files = new Files(this.gateway, this.sheet, this.robot, this.can);
   readonly people = new People(this.gateway, this.sheet, this.membership);
-  readonly sharing = new Sharing(
+  readonly sharing: Sharing = new Sharing(
     this.gateway,
     this.sheet,
     this.robot,
     this.files.file,
     (cells, by) => this.people.clashed(cells, by),
   );
+  readonly group: Group = new Group(this.gateway, this.sheet, this.sharing, this.membership);
   readonly numbers = new Numbers(this.robot, this.files);
   readonly court = new Court(this.gateway, this.sheet, this.robot);
   readonly handed = new Handed(this.membership, this.files);
@@ -114,8 +117,6 @@ export class Studio {
   private asksAgain = 0;
   /** null: not greeted yet. */
   private greeting: Greeting | null = null;
-
-  constructor() {}
 
   private async greet(): Promise<void> {
     let greeting: Greeting;
@@ -158,6 +159,8 @@ export class Studio {
       this.handed.newest.value = body;
     } else if (kind === "table") {
       this.sharing.take(body);
+    } else if (kind === "group") {
+      this.group.news.value = body;
     } else if (kind === "people") {
       this.people.take(body);
     } else if (kind === "forgotten") {

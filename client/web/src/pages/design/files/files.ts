@@ -1,6 +1,6 @@
 /** The file that the table comes from: open, take in, save, and what to do where it has changed. */
 
-import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
+import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import type { Content } from "../../../core/design/entries";
 import {
   columnsOf,
@@ -84,6 +84,13 @@ export class Files {
     private readonly can: ReadonlySignal<Can>,
   ) {
     this.shapes = new Shapes(robot, this.file);
+    // Another page of the table has answered the question.
+    effect(() => {
+      const { name, version } = this.file.value;
+      const asked = this.conflict.peek();
+      const isAnswered = asked?.name === name && asked.version === version;
+      if (isAnswered && asked.of === "table") this.conflict.value = null;
+    });
   }
 
   /** The name under which the table is saved without asking. */

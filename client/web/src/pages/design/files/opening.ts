@@ -67,6 +67,8 @@ export class Opening {
       this.is = "open";
       this.waitsFor.value = null;
       this.sharing.begin();
+      // Its file may have changed while no page looked, or another page asks about it just now.
+      if (newest && student === null && newest.file.name) void this.changed(newest.file.name);
     } catch (error) {
       this.is = "closed";
       if (mayPass(error)) this.waitsFor.value = error.why;

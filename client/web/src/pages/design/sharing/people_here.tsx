@@ -4,10 +4,17 @@ import { t } from "../../../i18n";
 import { placeName } from "../names";
 import type { Sheet } from "../table/sheet";
 import { COLOURS } from "./colours";
+import type { Group } from "./group";
 import type { People } from "./people";
 import "./people.css";
 
-export function PeopleHere({ people, sheet }: { people: People; sheet: Sheet }) {
+interface Props {
+  people: People;
+  group: Group;
+  sheet: Sheet;
+}
+
+export function PeopleHere({ people, group, sheet }: Props) {
   const others = people.others.value;
   const table = sheet.table.value;
   if (!others.length || !table) return null;
@@ -22,7 +29,7 @@ export function PeopleHere({ people, sheet }: { people: People; sheet: Sheet }) 
           <li key={id}>
             <button
               type="button"
-              data-colour={id % COLOURS}
+              data-colour={(group.colour(person.name) || id) % COLOURS}
               title={at}
               aria-label={at}
               disabled={!isSomewhere}

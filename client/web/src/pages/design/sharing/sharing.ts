@@ -7,9 +7,13 @@ import {
   cellNamed,
   digestOf,
   type Entry,
+  type ProposalEntry,
   type RobotText,
+  rowEntry,
+  shapeOf,
 } from "../../../core/design/entries";
 import { Outbox } from "../../../core/design/outbox";
+import type { Proposed } from "../../../core/design/roles";
 import { SharedTable } from "../../../core/design/shared_table";
 import { columnsOf, readCell, type Table, USUAL_RANGE } from "../../../core/design/table";
 import { sequences } from "../../../core/files";
@@ -26,7 +30,11 @@ const READ_AGAIN_MS = 2000;
 export class Sharing {
   /** Whether everything that was done here is on the gateway's disk. */
   readonly isKept = signal(true);
+  /** What partners propose. */
+  readonly proposals = signal<readonly ProposalEntry[]>([]);
   private shared = this.fresh();
+  /** What was typed into tables that this page has left, and the gateway does not have. */
+  private readonly left = new Map<string, ReadonlyMap<string, Entry | undefined>>();
   private readonly outbox = new Outbox();
   /** Name and document of the table; null: not greeted yet. */
   private name: string | null = null;
@@ -118,6 +126,20 @@ export class Sharing {
     }
   }
 
+  /** Propose cells of rows that others own. */
+  propose(table: Table, proposed: readonly Proposed[], by: string): void {
+    const shape = shapeOf({ kind: table.kind, legs: table.legs.length });
+    const values = proposed.map(
+      ({ row, col, cell }) => [`${rowEntry(shape, row)}/${col}`, String(cell)] as const,
+    );
+    this.shared.propose(values, by);
+  }
+
+  /** Remove proposals, by the names of their entries. */
+  dismiss(names: readonly string[]): void {
+    this.shared.remove(names);
+  }
+
   /** The first things are open: from now on the document has what is on the page. */
   begin(): void {
     if (this.isOn.peek()) return;
@@ -128,8 +150,11 @@ export class Sharing {
 
   /** Go on with another document, and add what the gateway does not have of the old one. */
   private change(opened: OpenedTable, isOther: boolean): void {
-    const own = new Map<string, Entry | undefined>();
-    if (!isOther) for (const name of this.outbox.cells) own.set(name, this.shared.get(name));
+    const unsent = new Map<string, Entry | undefined>();
+    for (const name of this.outbox.cells) unsent.set(name, this.shared.get(name));
+    if (isOther && unsent.size) this.left.set(this.name ?? "", unsent);
+    const own = isOther ? this.left.get(opened.table) : unsent;
+    this.left.delete(opened.table);
     this.outbox.clear();
     this.shared = this.fresh();
     this.name = opened.table;
@@ -137,7 +162,7 @@ export class Sharing {
     this.seen = opened.seq;
     if (opened.state.length) this.shared.take(opened.state);
     if (!this.isOn.peek()) return;
-    this.shared.put(own);
+    if (own) this.shared.put(own);
     const content = this.content();
     if (content) this.show(isOther);
     else {
@@ -152,6 +177,7 @@ export class Sharing {
       if (shared !== this.shared) return;
       this.outbox.add(update, cells, this.begins);
       this.isKept.value = false;
+      this.lookForProposals();
       this.send();
     });
     return shared;
@@ -195,8 +221,14 @@ export class Sharing {
     );
   }
 
+  private lookForProposals(): void {
+    const found = this.shared.proposals();
+    if (found.length || this.proposals.peek().length) this.proposals.value = found;
+  }
+
   /** Show what the document has. */
   private show(isOther = false): void {
+    this.lookForProposals();
     const content = this.content();
     const before = this.sheet.table.peek();
     if (!content || !before || !this.isOn.peek()) return;

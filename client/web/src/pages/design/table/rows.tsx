@@ -15,6 +15,7 @@ import { type MessageName, t } from "../../../i18n";
 import type { Marked } from "../coach/coach";
 import { cellId, classes, jointName, rowName } from "../names";
 import { COLOURS } from "../sharing/colours";
+import type { Group, Proposal } from "../sharing/group";
 import type { Place, Sheet } from "./sheet";
 
 /** What others show in the table. */
@@ -23,6 +24,8 @@ export interface Overlay {
   marks: ReadonlySignal<ReadonlyMap<number, ReadonlyMap<number, Marked>> | null>;
   /** The other pages of the table, by the cell where they are: "row col". */
   people: ReadonlySignal<ReadonlyMap<string, Person>>;
+  /** Who owns rows, and what is proposed for them. */
+  group: Group;
   /** The row whose posture is the target at the moment shown; -1: none. */
   target: ReadonlySignal<number>;
 }
@@ -47,6 +50,10 @@ export function GridTable({ sheet, overlay, table, focus, commit, edit }: TableP
   const target = overlay.target.value;
   const weights = overlay.marks.value;
   const people = overlay.people.value;
+  const proposed = new Map<number, Proposal[]>();
+  for (const one of overlay.group.proposals.value) {
+    proposed.set(one.row, [...(proposed.get(one.row) ?? []), one]);
+  }
   const unpasted = byRow(sheet.unpasted.value);
   const last = table.rows.length - 1;
   const isSequence = table.kind === "locomotion";
@@ -113,6 +120,9 @@ export function GridTable({ sheet, overlay, table, focus, commit, edit }: TableP
             weights={weights?.get(index) ?? null}
             unpasted={unpasted.get(index) ?? null}
             people={people}
+            group={overlay.group}
+            owners={overlay.group.owners(table, row).map(({ name }) => name)}
+            proposed={proposed.get(index) ?? null}
             onSelect={() => {
               sheet.select({ row: index, col: 0 }, { row: index, col: row.cells.length - 1 });
               focus();
@@ -197,6 +207,10 @@ interface RowProps {
   lit: ReadonlySet<number>;
   weights: ReadonlyMap<number, Marked> | null;
   people: ReadonlyMap<string, Person>;
+  group: Group;
+  /** Nicknames of those who own the row. */
+  owners: readonly string[];
+  proposed: readonly Proposal[] | null;
   /** Why what was pasted can't stand, by column. */
   unpasted: ReadonlyMap<number, string> | null;
   onSelect: () => void;
@@ -213,7 +227,16 @@ function GridRow(props: RowProps) {
         activeCol >= 0 && "active",
       )}
     >
-      <th scope="row" onClick={props.onSelect} title={t("design.selectRow")}>
+      <th
+        scope="row"
+        onClick={props.onSelect}
+        title={
+          props.owners.length
+            ? t("design.group.owner", { name: props.owners.join(", ") })
+            : t("design.selectRow")
+        }
+        {...(props.owners[0] && { "data-colour": props.group.colour(props.owners[0]) % COLOURS })}
+      >
         <span class="row-name">{rowName(row, props.isSequence)}</span>
         {step >= 0 && !props.isSequence && (
           <span class="step" title={t("design.step.of", { step: step + 1 })}>
@@ -223,6 +246,7 @@ function GridRow(props: RowProps) {
       </th>
       {row.cells.map((cell, col) => {
         const marked = weights?.get(col);
+        const proposal = props.proposed?.find((one) => one.col === col);
         const person = props.people.get(`${index} ${col}`);
         return (
           <td
@@ -242,10 +266,17 @@ function GridRow(props: RowProps) {
               "data-unpasted": true,
               title: props.unpasted.get(col)!,
             })}
-            {...(person && { "data-colour": person.id % COLOURS })}
+            {...(person && {
+              "data-colour": (props.group.colour(person.name) || person.id) % COLOURS,
+            })}
             {...(marked && { style: `--weight: ${marked.share}`, title: marked.text })}
           >
             {cell}
+            {proposal && (
+              <span class="proposed" data-colour={props.group.colour(proposal.by) % COLOURS}>
+                {proposal.text}
+              </span>
+            )}
             {person?.typing != null && (
               <span class="typing" aria-hidden="true">
                 {person.typing}

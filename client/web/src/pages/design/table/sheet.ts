@@ -27,6 +27,8 @@ export type By = "hand" | "tool" | "paste" | "coach" | "lesson" | null;
 
 /** Who is told what happens to the table. */
 export interface Followers {
+  /** An edit without what the student may not change. */
+  guard(before: Table, after: Table): Table;
   /** A step comes. What was done before can be told now; edits made `by` the same may wait. */
   before(by?: By): void;
   /** The table has changed. */
@@ -153,7 +155,8 @@ export class Sheet {
     const whole = (before: Table) => {
       const after = change(before);
       const fits = after.rows.length === before.rows.length;
-      return halves.length && fits ? follow(before, after, halves) : after;
+      const whole = halves.length && fits ? follow(before, after, halves) : after;
+      return this.followers.guard(before, whole);
     };
     batch(() => {
       this.unpasted.value = [];

@@ -1,0 +1,176 @@
+"""Tests of the groups of a class: pure ones, and some with a real gateway."""
+
+import os
+import signal
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from class_room import ClassRoom, StudentPage, TeacherPage
+from page_connection import Refused
+from page_table import PageTable
+from test_class import SEQUENCES, closing, code_of, comes, edit, room, teacher
+
+from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_client.workshop.classroom.groups.group_state import MEMBERS_MOST, GroupState
+from lacoc_shared.mistakes import UserError
+
+__all__ = ["closing", "room", "teacher"]
+
+
+def test_a_group_has_four_members_at_most() -> None:
+    """A fifth member is refused; whoever leaves takes role and vote along."""
+    group = GroupState(id="1", name="Ants")
+    for name in "ABCD":
+        group = group.joined(name)
+    assert len(group.members) == MEMBERS_MOST
+    assert group.joined("A") == group
+    with pytest.raises(UserError):
+        group.joined("E")
+    group = group.with_role("A", "forward").voted("A", "calm").left("A")
+    assert (group.members, group.roles, group.votes) == (("B", "C", "D"), {}, {})
+    assert [(one.word, one.by) for one in group.words] == [("calm", "")]
+
+
+def test_the_word_with_most_votes_is_the_groups() -> None:
+    """Each member has one vote and may change it; of equal words the first one counts."""
+    group = GroupState(id="1", name="Ants", members=("A", "B", "C"))
+    assert group.word == ""
+    group = group.voted("A", "calm").voted("B", "proud")
+    assert group.word == "calm"
+    group = group.voted("C", "proud")
+    assert (group.word, group.count("proud")) == ("proud", 2)
+    group = group.voted("B", "calm").voted("C", "calm")
+    assert (group.word, group.count("proud")) == ("calm", 0)
+    for number in range(30):
+        group = group.voted("A", f"word {number}")
+    assert len(group.words) <= 4, "nobody fills the list alone"
+
+
+def takes(page: StudentPage) -> None:
+    """Take in what the others at the table have done."""
+    for news in page.told[MessageKind.TABLE]:
+        if "state" in news:
+            page.shared = PageTable({**news, "others": 0})
+        elif news.get("update") and news["epoch"] == page.shared.opened["epoch"]:
+            page.shared.take(news["update"])
+            page.shared.seen = news["seq"]
+    page.told[MessageKind.TABLE].clear()
+
+
+def joins(page: StudentPage, name: str) -> None:
+    page.ask("group", act="join", text=name)
+    page.until(lambda: page.last(MessageKind.GROUP).get("group"))
+    takes(page)
+
+
+@pytest.mark.slow
+def test_a_group_has_one_table_and_one_word(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """Four students edit the founder's table; roles, words and a hand-out are the group's own."""
+    ann = comes(closing, room, "Ann")
+    table = edit(ann, ann.sample(), 3.5)
+    others = [comes(closing, room, name) for name in ("Ben", "Cleo", "Dora")]
+    joins(ann, "Ants")
+    assert ann.shared.table == table
+    for page in others:
+        joins(page, "ants")
+        assert page.shared.table == table
+    outsider = comes(closing, room, "Otto")
+    with pytest.raises(Refused) as refusal:
+        outsider.ask("group", act="join", text="Ants")
+    assert code_of(refusal) == "groups.full"
+
+    for number, page in enumerate(others):
+        page.ask("table", **page.shared.put({f"p6/{number + 1}.0/0": 10.0 + number}))
+    ann.until(lambda: len(ann.told[MessageKind.TABLE]) >= 3)
+    takes(ann)
+    assert ann.shared.table is not None
+    assert [row["angles_deg"][0] for row in ann.shared.table["rows"][1:4]] == [10.0, 11.0, 12.0]
+    for page, word in zip((ann, *others), ("calm", "proud", "proud", "proud"), strict=True):
+        page.ask("group", act="word", text=word)
+    ann.ask("group", act="role", text="forward")
+    others[0].until(lambda: others[0].last(MessageKind.GROUP)["group"]["word"] == "proud")
+    others[0].until(
+        lambda: others[0].last(MessageKind.GROUP)["group"]["members"][0]["role"] == "forward"
+    )
+    assert others[0].phases["word"] == "proud"
+    teacher.until(lambda: teacher.group["groups"] and teacher.group["groups"][0]["word"] == "proud")
+    assert teacher.group["groups"][0]["members"] == ["Ann", "Ben", "Cleo", "Dora"]
+
+    teacher.ask("hand_out", title="For the ants", group="Ants")
+    ann.until(lambda: ann.last(MessageKind.HANDED).get("title") == "For the ants")
+    outsider.ask("ping", t=0)
+    assert outsider.last(MessageKind.HANDED).get("title") != "For the ants"
+    assert teacher.ask("show", student="Dora")["table"] == ann.shared.table
+
+    others[0].ask("group", act="leave")
+    others[0].until(lambda: others[0].last(MessageKind.GROUP)["group"] is None)
+    takes(others[0])
+    assert others[0].shared.table is None, "the own table, which is still empty"
+    teacher.ask("seat", student="Otto", group="Ants")
+    outsider.until(lambda: outsider.last(MessageKind.GROUP)["group"])
+    takes(outsider)
+    assert outsider.shared.table == ann.shared.table
+
+
+@pytest.mark.slow
+def test_what_a_partner_typed_is_foreign(room: ClassRoom, closing: ExitStack) -> None:
+    """Evidence has for each student what this student typed, and nothing of a partner's."""
+    eli, fay = comes(closing, room, "Eli"), comes(closing, room, "Fay")
+    joins(eli, "Bees")
+    joins(fay, "Bees")
+    table: dict[str, Any] = eli.sample()
+    eli.ask("table", **eli.shared.write(table, SEQUENCES))
+    mine = edit(eli, table, 77.0)
+    fay.until(lambda: len(fay.told[MessageKind.TABLE]) >= 2)
+    takes(fay)
+    assert fay.shared.table == mine
+    row = {**mine["rows"][1], "angles_deg": [88.0, *mine["rows"][1]["angles_deg"][1:]]}
+    fay.edits({**mine, "rows": [mine["rows"][0], row, *mine["rows"][2:]]})
+    teacher = room.teacher()
+    closing.callback(teacher.close)
+    lines = teacher.ask("export", what="evidence")["data"].decode("utf-8-sig").splitlines()
+    edits = {name: [line for line in lines if f",{name},edited" in line] for name in ("Eli", "Fay")}
+    assert ["77.0" in str(edits[name]) for name in ("Eli", "Fay")] == [True, False]
+    assert ["88.0" in str(edits[name]) for name in ("Eli", "Fay")] == [False, True]
+
+
+@pytest.mark.slow
+def test_kill_9_in_the_middle_of_group_work_loses_nothing(
+    tmp_path: Path, closing: ExitStack
+) -> None:
+    """After kill -9 the group is back with every edit that was answered, also the very last one."""
+    room = ClassRoom(tmp_path)
+    gil, hana = room.student("Gil"), room.student("Hana")
+    edit(gil, gil.sample(), 1.0)
+    joins(gil, "Crabs")
+    joins(hana, "Crabs")
+    gil.ask("group", act="word", text="calm")
+    hana.ask("group", act="role", text="turn")
+    for number in range(20):
+        for page, col in ((gil, 1), (hana, 2)):
+            page.ask("table", **page.shared.put({f"p6/{number % 9}.0/{col}": float(number)}))
+    os.kill(room.process.pid, signal.SIGKILL)
+    room.process.communicate()
+
+    again = ClassRoom(tmp_path, room.listen)
+    closing.callback(again.close)
+    back = comes(closing, again, "Hana", hana.hello["token"])
+    back.until(lambda: back.last(MessageKind.GROUP).get("group"))
+    group = back.last(MessageKind.GROUP)["group"]
+    assert [one["name"] for one in group["members"]] == ["Gil", "Hana"]
+    assert (group["word"], group["members"][1]["role"]) == ("calm", "turn")
+    for number in range(11, 20):
+        for col in (1, 2):
+            assert back.shared.entries[f"p6/{number % 9}.0/{col}"] == number
+
+    teacher = again.teacher()
+    closing.callback(teacher.close)
+    teacher.ask("forget", student="Hana")
+    teacher.until(lambda: teacher.group["groups"][0]["members"] == ["Gil"])
+    teacher.ask("forget", student="Gil")
+    teacher.until(lambda: teacher.group["groups"] == [])
+    assert not any(b"group\n" in file.read_bytes() for file in tmp_path.glob("lacoc-class*"))
