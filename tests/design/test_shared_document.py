@@ -14,7 +14,12 @@ from pycrdt import Array, Doc, Map
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.workshop.tables import document as documents
 from lacoc_client.workshop.tables.document import TableDocument, document_of
-from lacoc_client.workshop.tables.entries import ENTRIES_MOST, Entry, draft_of
+from lacoc_client.workshop.tables.entries import (
+    ENTRIES_MOST,
+    Entry,
+    draft_of,
+    without_proposals,
+)
 from lacoc_client.workshop.tables.shared_table import SharedTable, TableUpdate
 from lacoc_shared.mistakes import UserError
 
@@ -82,6 +87,13 @@ def test_a_draft_is_the_table_with_its_keys_and_robot() -> None:
     found = draft_of(gaps)
     assert found is not None
     assert [(row.key, row.posture) for row in found.table.rows] == [(0, 0), (1, 0), (1, 1)]
+
+
+def test_what_somebody_proposed_can_be_removed() -> None:
+    """Only the proposals of this person go."""
+    kept: dict[str, Entry] = {**standing(1), "p6/0.0/1?": '{"text":"4","by":"Ben"}'}
+    entries: dict[str, Entry] = {**kept, "p6/0.0/2?": '{"text":"5","by":"Ann"}'}
+    assert without_proposals(entries, "Ann") == kept
 
 
 WRONG: list[dict[str, Any]] = [

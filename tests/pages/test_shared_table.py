@@ -85,7 +85,7 @@ def room(tmp_path: Path, built_pages: Path) -> Iterator[ClassRoom]:
         yield room
 
 
-def test_a_student_works_on_two_devices(open_page: OpenPage, room: ClassRoom) -> None:
+def test_a_student_works_on_two_devices(room: ClassRoom, open_page: OpenPage) -> None:
     """A tablet that the teacher lets in has the table; what is typed on it is on the laptop too."""
     laptop = Pupil(open_page, room.url)
     laptop.joins(room, "Mia")
@@ -137,7 +137,7 @@ def test_four_students_make_one_gait(room: ClassRoom, open_page: OpenPage, conso
     ben.go(1, 2)
     ben.type("44")
     ben.is_toasted("your number for row 1")
-    ben.cell_is(1, 2, "044")  # the number, and the proposal over it
+    ben.cell_is(1, 2, "-4544")  # the number, and the proposal over it
     ann.sees(".proposals", "Ben proposes 44°")
     assert violations(ann.page) == []
     ann.page.click(".proposals >> text=Take it in")

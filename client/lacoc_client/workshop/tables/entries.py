@@ -41,6 +41,10 @@ _KINDS: dict[str, Literal["postures", "locomotion"]] = {"p": "postures", "l": "l
 _LONG = ("robot", "file")
 
 
+class _ProposalEntry(msgspec.Struct, frozen=True):
+    by: str
+
+
 class _RobotEntry(msgspec.Struct, frozen=True):
     name: str
     text: str
@@ -67,6 +71,15 @@ def is_entry(name: object, value: object) -> bool:
     if isinstance(value, str):
         return len(value) <= TEXT_MOST
     return not proposed and isinstance(value, float) and math.isfinite(value)
+
+
+def without_proposals(entries: Mapping[str, Entry], by: str) -> dict[str, Entry]:
+    """Return entries without what somebody has proposed."""
+    return {
+        name: value
+        for name, value in entries.items()
+        if not name.endswith("?") or _proposer(str(value)) != by
+    }
 
 
 def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
@@ -135,6 +148,13 @@ def _sequences(
         fits = sequence and known.issuperset(sequence)
         found.append(sequence if fits else (table.rows[0].key,))
     return tuple(found)
+
+
+def _proposer(text: str) -> str:
+    try:
+        return msgspec.json.decode(text, type=_ProposalEntry).by
+    except msgspec.DecodeError:
+        return ""
 
 
 def _robot(text: str) -> SentFile | None:

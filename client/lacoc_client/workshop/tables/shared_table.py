@@ -10,9 +10,9 @@ import msgspec
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
-from lacoc_client.workshop.tables.document import TableDocument
+from lacoc_client.workshop.tables.document import TableDocument, document_of
 from lacoc_client.workshop.tables.draft import Draft
-from lacoc_client.workshop.tables.entries import draft_of
+from lacoc_client.workshop.tables.entries import draft_of, without_proposals
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
@@ -164,6 +164,11 @@ class SharedTable:
     def fresh(self) -> TableDocument:
         """Return a document with the same table, for somebody else."""
         return self._document.fresh()
+
+    async def forget(self, name: str) -> None:
+        """Cut off the past of the table, and remove what somebody has proposed."""
+        self.replace(document_of(without_proposals(self._document.entries, name)))
+        await self.keep_now()
 
     async def keep_now(self) -> None:
         """Write the table to the disk."""

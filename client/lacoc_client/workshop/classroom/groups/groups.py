@@ -132,8 +132,7 @@ class Groups:
         table = self._tables[state.id]
         await self._leave(student)
         if state.id in self.states:
-            table.replace(table.fresh())
-            await table.keep_now()
+            await table.forget(student.name)
         await self._tell()
 
     async def set_role(self, student: ClassStudent, role: Role) -> None:

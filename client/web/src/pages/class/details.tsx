@@ -122,7 +122,7 @@ function Grouping({ teacher, student }: { teacher: Teacher; student: string }) {
   const name = (draft.value ?? own).trim();
   return (
     <form
-      class="row"
+      class="row grouping"
       onSubmit={(event) => {
         event.preventDefault();
         void teacher.act("seat", { student, group: name });

@@ -24,7 +24,7 @@ export function GroupCard({ teacher, group, cards, stop }: Props) {
       <span class="who">
         <b>{name}</b>
         {group.word && <i>{group.word}</i>}
-        <small>{speed(Number.isFinite(best) ? best : null)}</small>
+        {Number.isFinite(best) && <small>{speed(best)} mm/s</small>}
       </span>
       <Feet card={walked} />
       {cards.map((card) => (
