@@ -15,6 +15,7 @@ import { played, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
+import { ChanceBar } from "../ui/chance";
 import { Introductions } from "../ui/introductions";
 import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
@@ -116,13 +117,14 @@ export default function Watch() {
 
 function Hud() {
   const match = shownMatch.value;
-  const between = useBetween(court) && court.directed;
+  const between = useBetween(court);
   return (
     <>
       <div class="top">
         <Brand />
         <header class="head">
           <ScoreBug match={shown} />
+          <ChanceBar match={shown} />
           <Hint match={shown} />
           <OnAir court={court} />
         </header>

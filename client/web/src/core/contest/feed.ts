@@ -20,6 +20,7 @@ export class Feed {
 
   /** Begin; the function that is returned ends it. */
   start(): () => void {
+    this.#timer = 0; // it may have ended before
     void this.#look();
     const back = () => {
       if (!document.hidden) void this.#look();

@@ -13,8 +13,15 @@ import { t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { chooseNoTeam, chosenTeam, TeamLink } from "./parts";
 import { MatchRow } from "./schedule";
-import { signed } from "./standings";
-import { expected, gameTitle, groupTitle, matchTitle, placeTitle, stageTitle } from "./words";
+import {
+  expected,
+  gameTitle,
+  groupTitle,
+  matchTitle,
+  placeTitle,
+  signed,
+  stageTitle,
+} from "./words";
 
 export function Teams({ sheet }: { sheet: ContestSheet }) {
   const wanted = useSignal("");
