@@ -32,7 +32,7 @@ import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
 import { Cheers, CheersSetting, Watching } from "./watch/cheers";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
-import { EventCard, useBetween } from "./watch/event";
+import { EventCard, useBetween, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import { NextOfTeams } from "./watch/next";
 import "./watch/frame.css";
@@ -80,6 +80,7 @@ const SHORTCUTS = {
 
 export default function Watch() {
   useShortcuts(SHORTCUTS);
+  useEvent(court);
   const hud = flag("hud", true);
   const beside = !isNarrow.value && panel.value && hud;
   const opening = useOpening(shown);

@@ -11,6 +11,7 @@ import {
 } from "../../core/contest/sheet";
 import { t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
+import { TeamPicture } from "../../ui/team_picture";
 import { chooseNoTeam, chosenTeam, TeamLink } from "./parts";
 import { MatchRow } from "./schedule";
 import {
@@ -135,6 +136,7 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
   return (
     <Dialog key={team.name} title={team.name} onClose={chooseNoTeam}>
       <div class="one-team">
+        <TeamPicture sheet={sheet} team={team.name} />
         <Marks team={team} />
         <dl class="figures">
           {ranks.map(({ view, table, row }) => (

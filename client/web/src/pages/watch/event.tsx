@@ -2,7 +2,7 @@
 
 import { useComputed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { Feed } from "../../core/contest/feed";
+import { eventFeed } from "../../core/contest/feed";
 import { nextGames, tableAhead } from "../../core/contest/games";
 import { type ContestSheet, stateOf, teamsOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
@@ -15,7 +15,6 @@ import "../../ui/opening.css";
 
 const GAMES_MOST = 3;
 const ROWS_MOST = 8;
-const feed = new Feed();
 
 /** Whether a court of an event waits for its next match; it changes only when the answer does. */
 export function useBetween(court: Court): boolean {
@@ -26,11 +25,16 @@ export function useBetween(court: Court): boolean {
   }).value;
 }
 
+/** Keep the sheet of the event new, for all that shows teams, tables and games. */
+export function useEvent(court: Court): void {
+  const desk = court.welcome.value?.desk;
+  useEffect(() => (desk ? eventFeed.start() : undefined), [desk]);
+}
+
 /** The event, how it stands, and its next games. */
 export function EventCard({ court }: { court: Court }) {
   const { contest = "", desk = false } = court.welcome.value ?? {};
-  useEffect(() => (desk ? feed.start() : undefined), [desk]);
-  const sheet = desk ? feed.sheet.value : null;
+  const sheet = desk ? eventFeed.sheet.value : null;
   const next = useComputed(() => (court.begun.value ? hint(court) : t("event.waits"))).value;
   const waits = directorBegins(court) || next;
   return (
