@@ -186,6 +186,7 @@ DESK_STRUCTS = (
     desk.Overviewed,
     desk.Effect,
     desk.CourtPlan,
+    desk.TeamPicture,
     desk.Said,
     links.TeamLink,
     links.RefereeLink,

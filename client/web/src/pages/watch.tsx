@@ -15,12 +15,13 @@ import { played, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
+import { ChanceBar } from "../ui/chance";
 import { Introductions } from "../ui/introductions";
 import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
-import { ResultCard } from "../ui/result";
+import { ResultCard, useResult } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
@@ -31,7 +32,7 @@ import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
 import { Cheers, CheersSetting, Watching } from "./watch/cheers";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
-import { EventCard, useBetween } from "./watch/event";
+import { EventCard, useBetween, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import { NextOfTeams } from "./watch/next";
 import "./watch/frame.css";
@@ -79,6 +80,7 @@ const SHORTCUTS = {
 
 export default function Watch() {
   useShortcuts(SHORTCUTS);
+  useEvent(court);
   const hud = flag("hud", true);
   const beside = !isNarrow.value && panel.value && hud;
   const opening = useOpening(shown);
@@ -116,13 +118,16 @@ export default function Watch() {
 
 function Hud() {
   const match = shownMatch.value;
-  const between = useBetween(court) && court.directed;
+  const isOver = useResult(shown);
+  const between =
+    useBetween(court) || (isOver && putAway.value === match && !!court.welcome.value?.desk);
   return (
     <>
       <div class="top">
         <Brand />
         <header class="head">
           <ScoreBug match={shown} />
+          <ChanceBar match={shown} />
           <Hint match={shown} />
           <OnAir court={court} />
         </header>

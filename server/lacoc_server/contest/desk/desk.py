@@ -38,11 +38,13 @@ from lacoc_shared.messages.desk import (
     ResumeContest,
     Rule,
     Said,
+    SeePicture,
     Shift,
     Staff,
     Substitute,
     TakeOut,
     TeamFiles,
+    TeamPicture,
     Tokens,
     Undraw,
 )
@@ -147,6 +149,10 @@ class Desk:
                 return organising.substitute(book, asked)
             case TakeOut():
                 return organising.take_out(book, asked)
+            case SeePicture(remove=False):
+                return TeamPicture(webp=entering.picture(book, asked.team) or b"")
+            case SeePicture():
+                return organising.remove_picture(book, asked.team)
             case Rule():
                 return organising.rule(book, asked)
             case Move() | PauseContest() | ResumeContest() | Shift() | Announce():

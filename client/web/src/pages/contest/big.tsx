@@ -1,7 +1,7 @@
 /** The contest on a projector: the match that is played; between matches tables, turned over by itself. */
 
 import { effect, type Signal, signal, useSignal } from "@preact/signals";
-import type { ComponentType } from "preact";
+import { type ComponentType, Fragment } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import type { NextGame } from "../../core/contest/games";
@@ -12,13 +12,14 @@ import { said, t } from "../../i18n";
 import { KeyHelp, type KeyRow } from "../../ui/key_help";
 import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
+import { TeamPicture } from "../../ui/team_picture";
 import { BracketView } from "./bracket";
-import { Standing, winnersTitle } from "./head";
+import { Standing } from "./head";
 import { LiveScore, live } from "./now";
 import { big } from "./parts";
 import { Standings } from "./standings";
 import { Ratings, ranked } from "./teams";
-import { expected, gameTitle, stageHeading, stageTitle } from "./words";
+import { expected, gameTitle, stageHeading, stageTitle, winnersTitle } from "./words";
 
 const SLIDE_MS = 12_000;
 const RATINGS_MOST = 9;
@@ -182,7 +183,10 @@ function Podium({ sheet }: { sheet: ContestSheet }) {
         {steps.map(({ rank, teams }) => (
           <li key={rank} data-rank={rank}>
             {teams.map((team) => (
-              <b key={team}>{team}</b>
+              <Fragment key={team}>
+                <TeamPicture sheet={sheet} team={team} />
+                <b>{team}</b>
+              </Fragment>
             ))}
             <span>{rank}</span>
           </li>

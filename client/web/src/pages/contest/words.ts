@@ -145,3 +145,14 @@ export function numberTitle(view: StageView, match: ContestMatch): string {
 export function courtOf(running: readonly Called[], match: ContestMatch): string {
   return running.find(({ pairing }) => pairing === match.pairing.id)?.court ?? "";
 }
+
+/** A number with its sign: "+3", "−2", "0". */
+export function signed(value: number): string {
+  return value > 0 ? `+${value}` : `${value}`.replace("-", "−");
+}
+
+/** What the winners are: teams that are equal in all are first together. */
+export function winnersTitle({ length }: readonly string[]): string {
+  if (length === 1) return t("contest.winner");
+  return t(length === 2 ? "contest.bothFirst" : "contest.allFirst");
+}
