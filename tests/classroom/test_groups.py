@@ -1,7 +1,9 @@
 """Tests of the groups of a class: pure ones, and some with a real gateway."""
 
+import io
 import os
 import signal
+import zipfile
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -105,6 +107,10 @@ def test_a_group_has_one_table_and_one_word(
     outsider.ask("ping", t=0)
     assert outsider.last(MessageKind.HANDED).get("title") != "For the ants"
     assert teacher.ask("show", student="Dora")["table"] == ann.shared.table
+
+    tables = teacher.ask("export", what="tables")
+    with zipfile.ZipFile(io.BytesIO(tables["data"])) as archive:
+        assert "Ants/Loco-data.txt" in archive.namelist()
 
     others[0].ask("group", act="leave")
     others[0].until(lambda: others[0].last(MessageKind.GROUP)["group"] is None)

@@ -196,6 +196,8 @@ class Pupil:
         await self._learner.stepped(requests.LessonAsk(id=0, step=step, robot=robot, **fields))
 
     def _reload(self) -> None:
+        self._told: FileTable | None = None
+        """The table without the edit that is told next; None: the page has just opened."""
         self._learner = Learner(Student("", self.diary, lambda: FREE), self._sample_trial)
 
     async def _change(self, cells: Cells, by: By, guess: FootWay | None = None) -> None:
@@ -206,8 +208,17 @@ class Pupil:
     async def _tell(self, by: By | None, guess: FootWay | None = None) -> None:
         size: Literal["table"] | None = "table" if by == "coach" else None
         table = self._table()
+        before, self._told = self._told or table, table
+        if by is None:
+            return  # a file was opened, or an edit undone: a page tells nothing
         ask = requests.EditAsk(
-            id=0, table=table, sequences=SEQUENCES, by=by, size=size, guess=guess
+            id=0,
+            before=before,
+            table=table,
+            sequences=SEQUENCES,
+            by=by,
+            size=size,
+            guess=guess,
         )
         await self._learner.edited(ask)
 
