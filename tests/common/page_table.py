@@ -6,7 +6,8 @@ from typing import Any
 import msgspec
 from pycrdt import Doc, Map
 
-from lacoc_client.workshop.tables.entries import Entry, draft_of
+from lacoc_client.workshop.tables.draft import draft_of
+from lacoc_client.workshop.tables.entries import Entry
 
 Table = dict[str, Any]
 

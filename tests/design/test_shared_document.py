@@ -14,10 +14,10 @@ from pycrdt import Array, Doc, Map
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.workshop.tables import document as documents
 from lacoc_client.workshop.tables.document import TableDocument, document_of
+from lacoc_client.workshop.tables.draft import draft_of
 from lacoc_client.workshop.tables.entries import (
     ENTRIES_MOST,
     Entry,
-    draft_of,
     without_proposals,
 )
 from lacoc_client.workshop.tables.shared_table import SharedTable, TableUpdate

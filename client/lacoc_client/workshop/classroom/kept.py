@@ -9,8 +9,7 @@ from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
 from lacoc_client.workshop.tables.document import TableDocument
-from lacoc_client.workshop.tables.draft import Draft
-from lacoc_client.workshop.tables.entries import draft_of
+from lacoc_client.workshop.tables.draft import Draft, draft_of
 from lacoc_robots.seat_files import USUAL_NAMES
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import FileRefused, UserError, text_of

@@ -1,12 +1,24 @@
 """The newest table of somebody, with all that is needed to let a robot walk with it."""
 
+from collections.abc import Mapping
+from typing import Literal
+
 import msgspec
 
 from lacoc_client.workshop.design.files import sent_gait
-from lacoc_client.workshop.design.table import FileTable
+from lacoc_client.workshop.design.table import FileRow, FileTable
+from lacoc_client.workshop.tables.entries import PLACE, SHAPE, Entry
 from lacoc_robots.seat_files import SeatFiles, with_level_b
+from lacoc_shared.gait.tables import JOINTS_PER_LEG
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
+
+_KINDS: dict[str, Literal["postures", "locomotion"]] = {"p": "postures", "l": "locomotion"}
+
+
+class _RobotEntry(msgspec.Struct, frozen=True):
+    name: str
+    text: str
 
 
 class Draft(msgspec.Struct, frozen=True, kw_only=True):
@@ -34,3 +46,79 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
             return with_level_b(files, self.sequences)
         except UserError:
             return files
+
+
+def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
+    """Return the table with its keys and robot; None while a cell has no angle."""
+    table = _table(entries)
+    if table is None:
+        return None
+    robot = _robot(str(entries.get("robot", "")))
+    return Draft(table=table, sequences=_sequences(entries, table), robot=robot)
+
+
+def _table(entries: Mapping[str, Entry]) -> FileTable | None:
+    shape = str(entries.get("shape", ""))
+    found = SHAPE.fullmatch(shape)
+    if found is None:
+        return None
+    kind, legs = _KINDS[found[1]], int(found[2])
+    places = sorted(
+        (int(place[4]), int(place[5]))
+        for place in map(PLACE.fullmatch, entries)
+        if place is not None and place[1] == shape and place[6] is None
+    )
+    rows = []
+    for key, posture in places:
+        cells = [
+            entries.get(f"{shape}/{key}.{posture}/{joint}")
+            for joint in range(JOINTS_PER_LEG * legs)
+        ]
+        angles = tuple(cell for cell in cells if isinstance(cell, float))
+        if len(angles) < len(cells):
+            return None
+        rows.append(FileRow(key=key, posture=posture, angles_deg=angles))
+    if not rows:
+        return None
+    numbered = _numbered(rows) if kind == "locomotion" else tuple(rows)
+    return FileTable(kind=kind, legs=legs, rows=numbered)
+
+
+def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
+    """Close the gaps that are left where rows were removed on one page and added on another."""
+    keys = sorted({row.key for row in rows})
+    counts = dict.fromkeys(keys, 0)
+    numbered = []
+    for row in rows:
+        numbered.append(
+            msgspec.structs.replace(row, key=keys.index(row.key), posture=counts[row.key])
+        )
+        counts[row.key] += 1
+    return tuple(numbered)
+
+
+def _sequences(
+    entries: Mapping[str, Entry], table: FileTable
+) -> tuple[tuple[int, ...], ...] | None:
+    """Return the digits of each key of level B; None if the table itself has them.
+
+    A key whose postures are not all there gets the first one: each key needs postures.
+    """
+    keys = entries.get("keys")
+    if table.kind == "locomotion" or not isinstance(keys, str):
+        return None
+    known = {row.key for row in table.rows}
+    found = []
+    for digits in keys.split(","):
+        sequence = tuple(int(digit) for digit in digits if digit in "0123456789")
+        fits = sequence and known.issuperset(sequence)
+        found.append(sequence if fits else (table.rows[0].key,))
+    return tuple(found)
+
+
+def _robot(text: str) -> SentFile | None:
+    try:
+        robot = msgspec.json.decode(text, type=_RobotEntry)
+        return SentFile(robot.name, robot.text.encode())
+    except (msgspec.DecodeError, UnicodeError):
+        return None  # the workshop's

@@ -11,8 +11,8 @@ from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.tables.document import TableDocument, document_of
-from lacoc_client.workshop.tables.draft import Draft
-from lacoc_client.workshop.tables.entries import draft_of, without_proposals
+from lacoc_client.workshop.tables.draft import Draft, draft_of
+from lacoc_client.workshop.tables.entries import without_proposals
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
