@@ -14,6 +14,7 @@ from playwright.sync_api import expect
 from show import violations
 from test_class_student import PHONE, TOLD, Pupil
 from test_design import Designer, write_sample
+from waiting import until
 
 pytestmark = pytest.mark.slow
 
@@ -144,6 +145,12 @@ def test_four_students_make_one_gait(room: ClassRoom, open_page: OpenPage, conso
     for page in group.values():
         page.cell_is(1, 2, "44")
     ann.misses(".proposals")
+
+    with room.teacher() as desk:
+        # Ben typed the number that Ann took in: it is his own.
+        until(lambda: "Ben,edited" in desk.ask("export", what="evidence")["data"].decode())
+        text = desk.ask("export", what="evidence")["data"].decode()
+        assert [line.split(",")[2] for line in text.splitlines() if "44.0" in line] == ["Ben"]
 
     for page in (cleo, dora):
         page.page.fill(".group-words input", "calm")

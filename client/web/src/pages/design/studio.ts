@@ -82,6 +82,7 @@ export class Studio {
     this.sheet,
     this.robot,
     this.files.file,
+    () => this.membership.name.peek() ?? "",
     (cells, by) => this.people.clashed(cells, by),
   );
   readonly group: Group = new Group(this.gateway, this.sheet, this.sharing, this.membership);

@@ -15,7 +15,15 @@ import {
 import { Outbox } from "../../../core/design/outbox";
 import type { Proposed } from "../../../core/design/roles";
 import { SharedTable } from "../../../core/design/shared_table";
-import { columnsOf, readCell, type Table, USUAL_RANGE } from "../../../core/design/table";
+import {
+  type Cell,
+  columnsOf,
+  mapRows,
+  readCell,
+  type Table,
+  USUAL_RANGE,
+  withCells,
+} from "../../../core/design/table";
 import { sequences } from "../../../core/files";
 import type { OpenedTable, TableNews } from "../../../core/wire";
 import type { OpenFile } from "../files/open_file";
@@ -71,6 +79,7 @@ export class Sharing {
 
   /**
    * @param file The file that the table comes from.
+   * @param me The nickname; "": whoever designs alone.
    * @param clashed Somebody typed into the same cells at the same time.
    */
   constructor(
@@ -78,6 +87,7 @@ export class Sharing {
     private readonly sheet: Sheet,
     private readonly robot: RobotInUse,
     private readonly file: Signal<OpenFile>,
+    private readonly me: () => string,
     private readonly clashed: (cells: readonly string[], by: number) => void,
   ) {
     effect(() => {
@@ -228,21 +238,50 @@ export class Sharing {
 
   /** Show what the document has. */
   private show(isOther = false): void {
-    this.lookForProposals();
     const content = this.content();
     const before = this.sheet.table.peek();
-    if (!content || !before || !this.isOn.peek()) return;
+    if (!content || !before || !this.isOn.peek()) {
+      this.lookForProposals();
+      return;
+    }
     batch(() => {
       const table = this.tableOf(content);
       if (isOther) this.sheet.open(table);
-      else if (digestOf(before) !== digestOf(table)) this.sheet.merge(table);
+      else if (digestOf(before) !== digestOf(table)) {
+        // What was proposed here and taken in was typed here.
+        const others = this.withoutOwn(before, table);
+        if (others !== table) this.sheet.merge(others);
+        this.sheet.merge(table, others === table ? null : "hand");
+      }
       if (content.keys.join() !== sequences.peek().join()) sequences.value = content.keys;
       const { name, version, digest } = content.file;
       const file = this.file.peek();
       if (file.name !== name || file.version !== version || file.saved !== digest) {
         this.file.value = { name, version, saved: digest };
       }
+      this.lookForProposals();
       this.useRobot(content);
+    });
+  }
+
+  /** A table without the numbers that were proposed here, and are taken in now. */
+  private withoutOwn(before: Table, table: Table): Table {
+    const me = this.me();
+    const own = this.proposals.peek().filter(({ by }) => by === me);
+    if (!me || !own.length || before.kind !== table.kind) return table;
+    return mapRows(table, (row) => {
+      const old = before.rows.find(
+        ({ key, posture }) => key === row.key && posture === row.posture,
+      );
+      const isOwn = (cell: Cell, col: number) =>
+        own.some(
+          (one) =>
+            one.key === row.key &&
+            one.posture === row.posture &&
+            one.col === col &&
+            one.text === String(cell),
+        );
+      return withCells(row, (cell, col) => (old && isOwn(cell, col) ? old.cells[col]! : cell));
     });
   }
 

@@ -198,11 +198,16 @@ export class Sheet {
     return isChanged;
   }
 
-  /** Take in what others did to the table: it is no step of this page. */
-  merge(table: Table): void {
+  /**
+   * Take in what others did to the table: it is no step of this page.
+   *
+   * @param by Where others took in what was typed here.
+   */
+  merge(table: Table, by: By = null): void {
     const history = this.history.peek();
     const from = this.table.peek();
     if (!history || !from) return;
+    if (by) this.followers.before(by);
     batch(() => {
       const change = history.rebase(table);
       this.keySteps = this.keySteps.map((step) => ({
@@ -216,7 +221,8 @@ export class Sheet {
       }
       this.stayInside();
     });
-    this.followers.merged(from, table);
+    if (by) this.followers.changed(by, null);
+    else this.followers.merged(from, table);
   }
 
   /** Take in that others have chosen another robot: it is no step of this page. */
