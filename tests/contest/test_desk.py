@@ -324,6 +324,14 @@ def test_a_stage_waits_for_the_organiser_s_draw(over: Room) -> None:
     assert [*check_history(over.facts, over.book.contest)] == []
 
 
+def test_the_draw_says_first_who_would_meet_again(over: Room) -> None:
+    """The organiser sees before the draw who has met already, and who meets at once."""
+    shown = over.view.to_draw
+    assert shown is not None
+    assert (shown.meet, shown.met) == (((0, 1),), (("Ann", "Ben"),))
+    assert shown.apart == (), "two teams can't be kept apart"
+
+
 def test_a_first_stage_can_wait_too(tmp_path: Path) -> None:
     """Closing entries does not draw a first stage that waits for the organiser."""
     room = Room(tmp_path, "")

@@ -69,6 +69,7 @@ def test_an_event_from_its_file_to_its_first_game(
     keep_strangers_out(office, event)
     rows = office.locator(".entries li")
     expect(rows).to_have_count(len(TEAMS))
+    a_card_opens_its_team(office)
     assert violations(office) == []
     approve_and_draw(office)
     expect(first.locator(".state")).to_contain_text("You are in")
@@ -77,6 +78,25 @@ def test_an_event_from_its_file_to_its_first_game(
     late_files(office, first, event)
     papers(office)
     on_a_phone(open_page, event)
+
+
+def a_card_opens_its_team(office: Page) -> None:
+    """The whole card of a team opens it, by mouse and by keyboard, and looks so."""
+    card = office.locator(".entries li", has_text=TEAMS[1])
+    box = card.bounding_box()
+    assert box is not None
+    card.click(position={"x": box["width"] / 2, "y": box["height"] - 8})
+    title = office.get_by_role("heading", name=TEAMS[1], exact=True)
+    expect(title).to_be_visible()
+    office.keyboard.press("Escape")
+    expect(title).to_be_hidden()
+    team = card.get_by_role("button", name=TEAMS[1], exact=True)
+    assert team.evaluate("it => getComputedStyle(it, '::before').cursor") == "pointer"
+    team.focus()
+    office.keyboard.press("Enter")
+    expect(title).to_be_visible()
+    office.keyboard.press("Escape")
+    expect(title).to_be_hidden()
 
 
 def before_the_event(open_page: OpenPage, event: Event) -> None:

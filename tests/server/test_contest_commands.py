@@ -134,6 +134,27 @@ def test_check_warns_if_entries_are_over(tmp_path: Path, year: int, told: bool) 
     assert (f"entries_close, {close}, is over" in result.stderr) == told
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("", "", ""),
+        ("apart = true", "apart = false", "may meet again in the first round"),
+        ("groups = 2", "groups = 1", "repeat one of it"),
+    ],
+)
+def test_check_warns_if_teams_of_a_group_meet_again(
+    tmp_path: Path, old: str, new: str, told: str
+) -> None:
+    """`check` says before the draw that a knockout may repeat matches of the groups, and the way out."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    file.write_text(file.read_text().replace(old, new) if old else file.read_text())
+    result = CliRunner().invoke(app, ["check", str(file)])
+    assert result.exit_code == 0
+    assert told in " ".join(result.stderr.split())
+    assert bool(told) == ("finals" in result.stderr)
+
+
 def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
     """A court's name that can't be part of a key expression is refused, and no file is written."""
     with pytest.raises(UserError, match="Main Hall"):

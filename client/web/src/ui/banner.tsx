@@ -7,6 +7,7 @@ import type { Court } from "../core/court";
 import { type Notice, Phase } from "../core/wire";
 import { said, t } from "../i18n";
 import { timeOf } from "../i18n/words";
+import { useIsBefore } from "./moment";
 
 /** A sentence that says why the gateway is not there for this page; "" if it is. */
 export function waitsForGateway({ open, attempt, refused }: SocketState): string {
@@ -93,6 +94,7 @@ export function noticeText(notice: Notice, nowMs: number): string {
 
 /** The notice across the top; whoever has read it can put it away. */
 export function NoticeBanner({ notice }: { notice: Notice | null }) {
+  useIsBefore(notice?.until_ms ?? 0);
   const parts = notice ? noticeParts(notice, Date.now()) : [];
   const news = parts.filter((part) => !seen.value.includes(part));
   if (!news.length) return null;

@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 5;
+export const VERSION = 6;
 
 export interface Team {
   name: string;
@@ -157,6 +157,7 @@ export interface Decided {
   at_ms: number;
   what: Phrase;
   pairing: string;
+  stage: string;
   reason: string;
   by: string;
 }
@@ -191,6 +192,12 @@ export interface Day {
   reason: string;
 }
 
+export interface Break {
+  until_ms: number;
+  fixture: Phrase | null;
+  who: [Phrase, Phrase] | null;
+}
+
 export interface Announced {
   fact: "announced";
   id: string;
@@ -211,7 +218,9 @@ export interface ContestSheet {
   running: Called[];
   coming: Coming[];
   later: Later[];
+  reasons: Record<string, Phrase[]>;
   day: Day;
+  pause: Break | null;
   announced: Announced | null;
   decided: Decided[];
   ratings: Rating[];

@@ -9,6 +9,7 @@ import { momentOf } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { noticeText } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
+import { PauseLine } from "../contest/pause";
 import { CopyButton, Effects, Reason } from "./dialogs";
 import type { Organiser } from "./organiser";
 
@@ -75,7 +76,8 @@ export function DayBar({ organiser, view }: Props) {
         </button>
         {view.published && <a href={view.published}>{t("office.day.published")}</a>}
       </div>
-      {held && (
+      {sheet && <PauseLine sheet={sheet} />}
+      {held && !sheet && (
         <p class="warning" role="status">
           {held}
         </p>
