@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from contestant import Contestant, Sit
 from lacoc_process import contest_run, run_lacoc
-from playwright.sync_api import Error, expect
+from playwright.sync_api import Error, Route, expect
 from ports import free_port
 from show import violations
 from waiting import LIMIT_S
@@ -75,16 +75,24 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         link = there["link"]
         player = sit(there["url"])
         type_wrong_token(player, link)
+        moves: list[Route] = []
+        player.page.route("**/play?court=south*", moves.append)
         player.page.goto(link)
+        player.sees(".entrance h1", "Going to court south")
+        player.page.unroute("**/play?court=south*")
+        moves[0].continue_()
         # The token is kept for the tab, also over a reload; it does not stay in the address.
         expect(player.page).to_have_url(re.compile("^[^#]*$"))
         # It goes to the court of its first match. Only then, or its move would cut the reload off.
         expect(player.page).to_have_url(re.compile("court=south"))
+        player.sees(".fixture", "Swiss, round 1")
         player.page.reload()
         asks_before_it_takes_over(player, sit(there["url"]), link)
         opponents = [play_a_match(player) for _ in range(2)]
         assert len({*opponents}) == len(opponents)
         player.sees(".entrance[data-state=over]", "The contest is over: place")
+        player.sees(f".entrance a[href='contest#team={PERSON}']", "Your matches and their replays")
+        player.sees(".entrance a[href='rules/en']", "All rules")
         assert violations(player.page) == []
 
 

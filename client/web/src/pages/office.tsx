@@ -14,7 +14,6 @@ import {
   LaterDialog,
   LineDialog,
   PauseDialog,
-  StaffDialog,
   SubstituteDialog,
   UndrawDialog,
 } from "./office/day";
@@ -31,6 +30,7 @@ import { MoveDialog } from "./office/moving";
 import { Organiser } from "./office/organiser";
 import { OfficePapers } from "./office/papers";
 import { RuleDialog, Rulings } from "./office/ruling";
+import { StaffDialog } from "./office/staff";
 import { Timetable } from "./office/timetable";
 import "./contest/contest.css";
 import "./office/office.css";

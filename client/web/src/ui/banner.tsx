@@ -8,6 +8,7 @@ import { type Notice, Phase } from "../core/wire";
 import { said, t } from "../i18n";
 import { timeOf } from "../i18n/words";
 import { useIsBefore } from "./moment";
+import { tellHeight } from "./screen";
 
 /** A sentence that says why the gateway is not there for this page; "" if it is. */
 export function waitsForGateway({ open, attempt, refused }: SocketState): string {
@@ -48,14 +49,7 @@ export function isOver(court: Court): boolean {
 }
 
 /** Let the page know how high the banner is: on a phone its text takes several lines. */
-function makeRoom(banner: HTMLElement | null): void {
-  if (!banner) return;
-  new ResizeObserver(([seen], observer) => {
-    if (!banner.isConnected) observer.disconnect();
-    const height = seen?.borderBoxSize[0]?.blockSize ?? banner.offsetHeight;
-    document.documentElement.style.setProperty("--banner", `${Math.ceil(height)}px`);
-  }).observe(banner);
-}
+const makeRoom = (banner: HTMLElement | null) => tellHeight("--banner", banner);
 
 interface Props {
   role?: "status" | "alert";
