@@ -189,6 +189,7 @@ DESK_STRUCTS = (
     desk.Overviewed,
     desk.Effect,
     desk.CourtPlan,
+    desk.TeamPicture,
     desk.Said,
     links.TeamLink,
     links.RefereeLink,

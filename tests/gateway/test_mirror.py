@@ -58,17 +58,29 @@ def test_a_line_reaches_all_pages_and_the_published_contest_is_served(venue: Ven
 
     def status(path: str) -> int:
         try:
-            with urllib.request.urlopen(f"{url}/published/{path}", timeout=LIMIT_S) as answer:
+            with urllib.request.urlopen(f"{url}/{path}", timeout=LIMIT_S) as answer:
                 return int(answer.status)
         except urllib.error.HTTPError as error:
             return error.code
 
-    assert status("") == 404
+    assert status("published/") == 404
     folder = sheet.with_name(f"{sheet.stem}-published")
     (folder / "records").mkdir(parents=True)
     (folder / "index.html").write_text("<title>Cup</title>")
     (folder / "records" / "a.mcap").write_bytes(b"x" * 9)
     (folder / "out").symlink_to(venue.contest)
-    assert [status(one) for one in ("", "records/a.mcap")] == [200, 200]
+    assert [status(f"published/{one}") for one in ("", "records/a.mcap")] == [200, 200]
     hidden = ("out", "../contest.toml", "%2e%2e/contest.toml", "records", "x", "%00")
-    assert [status(one) for one in hidden] == [404] * len(hidden)
+    assert [status(f"published/{one}") for one in hidden] == [404] * len(hidden)
+
+    entry = sheet.parent / "entries" / ("0a" * 16)
+    entry.mkdir(parents=True)
+    (entry / "picture.webp").write_bytes(b"RIFF")
+    (entry / "robot.toml").write_text("secret until entries are closed")
+    assert status(f"pictures/{entry.name}.webp") == 200
+    none = (
+        f"pictures/{'0b' * 16}.webp",
+        "pictures/..%2f.webp",
+        f"pictures/{entry.name}/robot.toml",
+    )
+    assert [status(one) for one in none] == [404] * len(none)

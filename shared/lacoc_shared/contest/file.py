@@ -32,6 +32,10 @@ from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import Phrase, say
 
 _NO_NAME = "Contest"
+ENTRIES, PICTURE = "entries", "picture.webp"
+"""Name of the folder with the files of all teams, and of a team's picture among them."""
+ENTRY_HASH = re.compile("[0-9a-f]{32}")
+"""Matches the hash of a team's files, by which they are kept."""
 MAIN = "main"
 """Name of the court if none is given."""
 
@@ -125,6 +129,18 @@ def published_path(file: Path) -> Path:
         file: the contest file, or its sheet.
     """
     return file.with_name(f"{file.stem}-published")
+
+
+def picture_path(sheet: Path, files: str) -> Path | None:
+    """Return where a team's picture is, if it has one; None: no team can have such files.
+
+    Args:
+        sheet: the contest's sheet.
+        files: hash of the team's files.
+    """
+    if not ENTRY_HASH.fullmatch(files):
+        return None
+    return sheet.parent / ENTRIES / files / PICTURE
 
 
 def facts_path(path: Path) -> Path:

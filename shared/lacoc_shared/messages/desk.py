@@ -40,6 +40,8 @@ class TeamFiles(
     """Robot file; None: the contest's robot."""
     postures: SentFile | None = None
     locomotion: SentFile | None = None
+    picture: SentFile | None = None
+    """A picture of the team; None: the one that it has handed in before, if any."""
 
 
 class DeskRequest(
@@ -214,6 +216,13 @@ class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
     """False: only say what would change."""
 
 
+class Picture(DeskRequest, frozen=True, kw_only=True, tag="picture"):
+    """Ask for the newest picture of a team, or take it away."""
+
+    team: _Name
+    remove: bool = False
+
+
 class Rule(DeskRequest, frozen=True, kw_only=True, tag="rule"):
     """Decide about a match."""
 
@@ -256,6 +265,7 @@ OfStaff = (
     | Undraw
     | Substitute
     | TakeOut
+    | Picture
     | Rule
     | Move
     | PauseContest
@@ -314,6 +324,8 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
     files: str = ""
     bot: str = ""
     """The bot that plays for it; "": people play."""
+    picture: bool = False
+    """Whether its newest files have a picture of the team."""
     at_ms: int = 0
     mistakes: tuple[Mistake, ...] = ()
     """What is wrong with the files that it handed in last."""
@@ -460,6 +472,13 @@ class Said(msgspec.Struct, frozen=True, kw_only=True):
     said: tuple[Phrase, ...]
 
 
+class TeamPicture(msgspec.Struct, frozen=True, kw_only=True):
+    """The newest picture of a team."""
+
+    webp: bytes
+    """A WebP file; empty: the team has none."""
+
+
 class OpenSeat(msgspec.Struct, frozen=True, kw_only=True):
     """A seat of a court in open matches: whoever has its token may sit there."""
 
@@ -484,5 +503,5 @@ class TokenList(msgspec.Struct, frozen=True, kw_only=True):
     """How to reach the teams, by their names."""
 
 
-Answer = EventInfo | OwnEntry | CourtPlan | Overviewed | Effect | Said | TokenList
+Answer = EventInfo | OwnEntry | CourtPlan | Overviewed | Effect | Said | TeamPicture | TokenList
 """Every answer of the desk; which one it is follows from the request."""

@@ -405,7 +405,7 @@ def _late_entry(copy: _Copy) -> None:
 def _bot(copy: _Copy) -> None:
     if copy.chance.random() < 0.5:
         at = copy.index(Entered)
-        copy.change(at, bot="planner2")
+        copy.change(at, **copy.chance.choice([{"bot": "planner2"}, {"picture": True}]))
         copy.name = "in a fact"
         copy.write(whole=True, again=True)
         return

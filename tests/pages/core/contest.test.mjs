@@ -73,6 +73,15 @@ test("a final that waits for another match is among the next games once its team
   assert.deepEqual(g.nextGames({ ...sheet, later: [unknown] }, 4), []);
 });
 
+test("the table ahead is the one that the next game may change; a bracket has none", () => {
+  const [next] = g.nextGames(groups, 1);
+  const { view, table } = g.tableAhead(groups);
+  assert.equal(view.stage.name, "groups");
+  for (const team of next.teams) assert.ok(table.rows.some((row) => row.team === team));
+  assert.equal(g.tableAhead(finals), null, "over");
+  assert.equal(g.tableAhead(single), null);
+});
+
 test("rounds have the matches of all groups, and no byes in a bracket", () => {
   const view = groups.stages[0];
   const rounds = c.rounds(view);

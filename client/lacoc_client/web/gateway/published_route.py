@@ -1,4 +1,4 @@
-"""Serves the folder in which the office has published its contest, as any web server would."""
+"""Serves what the office has written for everybody: the published contest, pictures of teams."""
 
 import asyncio
 import mimetypes
@@ -8,14 +8,14 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 
-from lacoc_client.web.gateway.cached import ASK_AGAIN, large_response
+from lacoc_client.web.gateway.cached import ASK_AGAIN, FOR_EVER, large_response
 from lacoc_client.web.gateway.guard import answer_browser
-from lacoc_shared.contest.file import published_path
+from lacoc_shared.contest.file import picture_path, published_path
 from lacoc_shared.words import say
 
 
 def published_routes(sheet: Path | None) -> list[BaseRoute]:
-    """Return the route of a published contest.
+    """Return two routes: of a published contest, and of the pictures of teams.
 
     Args:
         sheet: the contest's newest sheet, beside which the folder is; None: there is no contest.
@@ -35,7 +35,19 @@ def published_routes(sheet: Path | None) -> list[BaseRoute]:
             pass
         return answer_browser(request.scope, say("gateway.no-page"), 404)
 
-    return [Route("/published/{name:path}", published)]
+    async def picture(request: Request) -> Response:
+        path = picture_path(sheet, request.path_params["files"])
+        try:
+            if path is not None:
+                return large_response(request, path, "image/webp", FOR_EVER)
+        except OSError:  # the team has none
+            pass
+        return answer_browser(request.scope, say("gateway.no-page"), 404)
+
+    return [
+        Route("/published/{name:path}", published),
+        Route("/pictures/{files}.webp", picture),
+    ]
 
 
 def _find(folder: Path, name: str) -> Path | None:

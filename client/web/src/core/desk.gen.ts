@@ -10,6 +10,7 @@ export interface TeamFiles {
   robot?: SentFile | null;
   postures?: SentFile | null;
   locomotion?: SentFile | null;
+  picture?: SentFile | null;
 }
 
 export interface LookAtEvent {
@@ -115,6 +116,13 @@ export interface TakeOut {
   really?: boolean;
 }
 
+export interface Picture {
+  do: "picture";
+  secret?: string;
+  team: string;
+  remove?: boolean;
+}
+
 export interface Rule {
   do: "rule";
   secret?: string;
@@ -195,6 +203,7 @@ export interface TeamRow {
   state: "refused" | "waits" | "late" | "in" | "withdrawn" | "disqualified";
   files: string;
   bot: string;
+  picture: boolean;
   at_ms: number;
   mistakes: Mistake[];
   contact: string;
@@ -280,6 +289,10 @@ export interface CourtPlan {
   changes: Phrase[];
 }
 
+export interface TeamPicture {
+  webp: Uint8Array;
+}
+
 export interface Said {
   said: Phrase[];
 }
@@ -327,4 +340,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | Rule | Move | PauseContest | ResumeContest | Shift | Announce | Staff | Tokens;
+export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | Picture | Rule | Move | PauseContest | ResumeContest | Shift | Announce | Staff | Tokens;

@@ -1,4 +1,4 @@
-/** The odds of a match over its course (`lacoc replay odds`): a curve, and where it moved most. */
+/** The odds of a match over its course: a curve, and where it moved most. */
 
 /** A moment of a match, as far as pages need it. */
 export interface Moment {
@@ -9,7 +9,8 @@ export interface Moment {
 }
 
 export interface Odds {
-  match_id: string;
+  /** From forks that bots played (`lacoc replay odds`), or from score and clock alone. */
+  by: "forks" | "score";
   /** In the order of their beats. */
   moments: readonly Moment[];
 }
@@ -31,7 +32,7 @@ export function readOdds(data: unknown, matchId: string): Odds | null {
   if (!isObject(data) || data.format !== FORMAT || data.match_id !== matchId) return null;
   if (!Array.isArray(data.moments) || data.moments.length < 2) return null;
   const moments = data.moments.filter(isMoment).sort((a, b) => a.beat - b.beat);
-  return moments.length === data.moments.length ? { match_id: matchId, moments } : null;
+  return moments.length === data.moments.length ? { by: "forks", moments } : null;
 }
 
 /** The chance of the first seat at a beat; between two moments it is on the line between them. */

@@ -14,6 +14,7 @@ import { isOver, waitsFor } from "../ui/banner";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Aside } from "./watch/aside";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
+import { EventCard, useBetween, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 
 const court = new Court(
@@ -46,6 +47,8 @@ document.documentElement.classList.toggle("transparent", style.transparent);
 
 export default function Overlay() {
   const over = useComputed(() => isOver(court)).value;
+  useEvent(court);
+  const between = useBetween(court) && court.begun.value;
   const stale = court.begun.value && !court.live.value && !over;
   useEffect(() => {
     document.title = "LACOC";
@@ -56,6 +59,7 @@ export default function Overlay() {
         match={court}
         style={style}
         scale={scale}
+        before={between && <EventCard court={court} />}
         belowScore={<OnAir court={court} />}
         inCentre={<LatestResults court={court} />}
         replays={replays}

@@ -105,7 +105,7 @@ async function show(
     if (server !== null) {
       const odds = await oddsOf(server, recording.record.header.match_id).catch(() => null);
       if (!fresh()) return;
-      player.odds.value = odds;
+      if (odds) player.odds.value = odds;
     }
     if (beside) await showBeside(player);
     if (beat === null || beside) player.play();

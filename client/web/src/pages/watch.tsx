@@ -15,6 +15,7 @@ import { played, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
+import { ChanceBar } from "../ui/chance";
 import { Introductions } from "../ui/introductions";
 import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
@@ -31,7 +32,7 @@ import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
 import { Cheers, CheersSetting, Watching } from "./watch/cheers";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
-import { EventCard, useBetween } from "./watch/event";
+import { EventCard, useBetween, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import { NextOfTeams } from "./watch/next";
 import "./watch/frame.css";
@@ -79,6 +80,7 @@ const SHORTCUTS = {
 
 export default function Watch() {
   useShortcuts(SHORTCUTS);
+  useEvent(court);
   const hud = flag("hud", true);
   const beside = !isNarrow.value && panel.value && hud;
   const opening = useOpening(shown);
@@ -116,13 +118,14 @@ export default function Watch() {
 
 function Hud() {
   const match = shownMatch.value;
-  const between = useBetween(court) && court.directed;
+  const between = useBetween(court);
   return (
     <>
       <div class="top">
         <Brand />
         <header class="head">
           <ScoreBug match={shown} />
+          <ChanceBar match={shown} />
           <Hint match={shown} />
           <OnAir court={court} />
         </header>

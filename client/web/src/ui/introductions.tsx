@@ -2,11 +2,13 @@
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
+import { eventFeed } from "../core/contest/feed";
 import type { Match } from "../core/match";
 import { BEATS_PER_S, Phase } from "../core/wire";
 import { t } from "../i18n";
 import { team } from "../i18n/words";
 import { SeatMark } from "./score";
+import { TeamPicture } from "./team_picture";
 import "./thirds.css";
 
 /** After "Go", and until the first points are likely. */
@@ -15,6 +17,7 @@ const UNTIL_TICKS = 6 * BEATS_PER_S;
 
 /** Each team with its robot; by the match's own time, so that it is right in a replay too. */
 export function Introductions({ match }: { match: Match }) {
+  const contest = eventFeed.sheet.value;
   const shown = useMemo(
     () =>
       computed(() => {
@@ -31,6 +34,7 @@ export function Introductions({ match }: { match: Match }) {
       {sheet.seats.map(({ id, robot, legs, keys }, index) => (
         <li key={id} class="third" data-seat={index}>
           <SeatMark sheet={sheet} index={index} />
+          <TeamPicture sheet={contest} team={team(sheet, index)} />
           <span class="what">
             {team(sheet, index)}
             <small>{t("intro.robot", { robot, legs: legs.length, keys: keys[1].length })}</small>

@@ -43,8 +43,8 @@ def enter(
         Path | None,
         typer.Argument(
             metavar="FOLDER",
-            help="Folder with the team's gait files, and robot.toml if the robot is its own; by "
-            "default the contest's robot with its sample gait.",
+            help="Folder with the team's gait files, robot.toml if the robot is its own, and "
+            "picture.png if it has a picture; by default the contest's robot with its sample gait.",
         ),
     ] = None,
     bot: Annotated[

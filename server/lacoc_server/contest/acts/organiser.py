@@ -129,15 +129,16 @@ def enter_weighed(
         if not may_come:
             raise UserError(say("contest.late-reason", team=team))
         files = where.entries.save(entry)
+        used = {"team": team, "files": files, "bot": entry.bot, "picture": bool(entry.picture)}
         if there is not None and there.gone:
             said = say("contest.entered-back", team=team, hash=files)
-            yield new(Entered, team=team, files=files, bot=entry.bot, club=club, reason=late)
+            yield new(Entered, **used, club=club, reason=late)
         elif there is not None:
             said = say("contest.entered-again", team=team, hash=files)
-            yield new(FilesChanged, team=team, files=files, bot=entry.bot, reason=reason)
+            yield new(FilesChanged, **used, reason=reason)
         else:
             said = say("contest.entered", team=team, hash=files)
-            yield new(Entered, team=team, files=files, bot=entry.bot, club=club, reason=late)
+            yield new(Entered, **used, club=club, reason=late)
 
     store.decide(decision)
     return said

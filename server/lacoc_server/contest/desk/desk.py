@@ -34,6 +34,7 @@ from lacoc_shared.messages.desk import (
     Overviewed,
     Own,
     PauseContest,
+    Picture,
     Publish,
     ResumeContest,
     Rule,
@@ -43,6 +44,7 @@ from lacoc_shared.messages.desk import (
     Substitute,
     TakeOut,
     TeamFiles,
+    TeamPicture,
     Tokens,
     Undraw,
 )
@@ -147,6 +149,10 @@ class Desk:
                 return organising.substitute(book, asked)
             case TakeOut():
                 return organising.take_out(book, asked)
+            case Picture(remove=False):
+                return TeamPicture(webp=entering.picture(book, asked.team) or b"")
+            case Picture():
+                return organising.remove_picture(book, asked.team)
             case Rule():
                 return organising.rule(book, asked)
             case Move() | PauseContest() | ResumeContest() | Shift() | Announce():

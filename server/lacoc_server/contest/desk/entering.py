@@ -1,12 +1,16 @@
 """What a team asks the desk: to take part, to use other files, how its entry stands."""
 
+from dataclasses import replace
 from typing import Literal
+
+from msgspec import structs
 
 from lacoc_robots.seat_files import SeatFiles
 from lacoc_server.contest.acts.organiser import close_in_time, enter_weighed, team_name
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.kept.contacts import Contact
 from lacoc_server.contest.kept.entries import ContestEntry, HandedIn, hand_in
+from lacoc_server.contest.kept.team_picture import small_picture
 from lacoc_shared.messages.desk import OwnEntry, TeamFiles
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -23,11 +27,14 @@ def handed_in(files: TeamFiles, robot: str) -> HandedIn:
         robot: the contest's robot, for a team that brings none.
 
     Raises:
-        UserError: if there is no gait file, or the contest's robot can't be read.
+        UserError: if there is no gait file, the picture is none, or the contest's robot can't be
+            read.
     """
     if files.postures is None and files.locomotion is None:
         raise UserError(say("desk.no-files"))
-    return hand_in(SeatFiles(files.robot, files.postures, files.locomotion), robot)
+    picture = None if files.picture is None else small_picture(files.picture)
+    handed = hand_in(SeatFiles(files.robot, files.postures, files.locomotion), robot)
+    return replace(handed, picture=picture)
 
 
 def newcomer(book: Book, text: str) -> str:
@@ -65,13 +72,16 @@ def change(book: Book, team: str, entry: ContestEntry) -> OwnEntry:
     """Take new files of a team; they have been weighed in.
 
     While entries are open, a team that is in uses its new files at once. When entries are closed,
-    or if the team itself still waits, its files wait for the organiser.
+    or if the team itself still waits, its files wait for the organiser. Without a new picture it
+    keeps the one that it has.
 
     Raises:
         UserError: if the team has left the contest, or the files can't be written.
     """
     close_in_time(book.where, book.store)
     there = book.team(team)
+    if entry.picture is None:
+        entry = structs.replace(entry, picture=picture(book, team))
     if there is not None and there.gone:
         raise UserError(say("desk.left", team=team))
     if there is not None and not book.contest.closed:
@@ -82,6 +92,20 @@ def change(book: Book, team: str, entry: ContestEntry) -> OwnEntry:
     else:
         book.applications.put(team, entry)
     return own(book, team)
+
+
+def picture(book: Book, team: str) -> bytes | None:
+    """Return the newest picture of a team; None: it has none.
+
+    Raises:
+        UserError: if its entry can't be read.
+    """
+    waiting, there = book.applications.waiting.get(team), book.team(team)
+    if waiting is not None:
+        return waiting.entry.picture
+    if there is None or not there.picture:
+        return None
+    return book.where.entries.load(there.files).picture
 
 
 def own(book: Book, team: str) -> OwnEntry:

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Iterable, Sequence
 
+import msgspec
+
 from lacoc_server.contest.acts import deciding, organiser, steering
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league.contest import Contest
@@ -25,7 +27,7 @@ from lacoc_shared.messages.desk import (
     Undraw,
 )
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import Phrase, say
+from lacoc_shared.words import Phrase, render, say
 
 
 def approve(book: Book, asked: Approve) -> Said:
@@ -115,6 +117,23 @@ def take_out(book: Book, asked: TakeOut) -> Effect:
         lambda contest: organiser.leaving(contest, team, reason, disqualified=expels),
         asked.really,
     )
+
+
+def remove_picture(book: Book, team: str) -> Said:
+    """Take the picture of a team away, from files that wait and from those it plays with.
+
+    Raises:
+        UserError: if the files can't be read or written.
+    """
+    waiting, there = book.applications.waiting.get(team), book.team(team)
+    said = say("desk.picture-removed", team=team)
+    if waiting is not None:
+        entry = msgspec.structs.replace(waiting.entry, picture=None)
+        book.applications.put(team, entry, waiting.at_ms)
+    if there is not None and there.picture and not there.gone:
+        entry = msgspec.structs.replace(book.where.entries.load(there.files), picture=None)
+        organiser.enter_weighed(book.where, book.store, team, entry, render(said))
+    return Said(said=(said,))
 
 
 def rule(book: Book, asked: Rule) -> Effect:

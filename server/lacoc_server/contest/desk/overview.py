@@ -136,6 +136,7 @@ def _rows(book: Book) -> Iterator[TeamRow]:
             team=team,
             state="late" if team in known else "waits",
             files=there.entry.hash,
+            picture=there.entry.picture is not None,
             at_ms=there.at_ms,
             mistakes=mistakes,
         )
@@ -143,7 +144,14 @@ def _rows(book: Book) -> Iterator[TeamRow]:
         if name in waiting:
             continue
         mistakes = book.refused.get(name, ())
-        yield TeamRow(team=name, state=_state(one), files=one.files, bot=one.bot, mistakes=mistakes)
+        yield TeamRow(
+            team=name,
+            state=_state(one),
+            files=one.files,
+            bot=one.bot,
+            picture=one.picture,
+            mistakes=mistakes,
+        )
 
 
 def _state(team: Team) -> Literal["in", "withdrawn", "disqualified"]:

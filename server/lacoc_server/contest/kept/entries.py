@@ -2,7 +2,6 @@
 
 import ast
 import hashlib
-import re
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -20,8 +19,10 @@ from lacoc_robots.library import GAIT_NAMES, find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.seat_files import SeatFiles, files_in, gaits_in, remarks, to_send
 from lacoc_robots.stand_test import try_standing
+from lacoc_server.contest.kept.team_picture import small_picture
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_shared.command import regular
+from lacoc_shared.contest.file import ENTRY_HASH, PICTURE
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
@@ -30,7 +31,6 @@ from lacoc_shared.words import Phrase, say
 
 _ROBOT, _PROGRAM, _BOT = "robot.toml", "bot.py", "entry.json"
 """Names of the files of an entry besides the gait files."""
-_HASH = re.compile("[0-9a-f]{32}")
 _MOST_BYTES = 1 << 22
 """Largest file of an entry that is read."""
 
@@ -45,11 +45,16 @@ class ContestEntry(msgspec.Struct, frozen=True, kw_only=True):
     """Name of the bot that plays; "": people play."""
     program: bytes | None = None
     """Python source of the bot; None: the bot is installed."""
+    picture: bytes | None = None
+    """The team's picture, as `team_picture` makes it; None: it has none."""
 
     @property
     def hash(self) -> str:
         """Hash of the entry, hexadecimal; another file or bot gives another hash."""
-        return hashlib.blake2b(msgspec.msgpack.encode(self), digest_size=16).hexdigest()
+        parts = msgspec.structs.asdict(self)
+        if self.picture is None:
+            del parts["picture"]  # entries were kept before there were pictures
+        return hashlib.blake2b(msgspec.msgpack.encode(parts), digest_size=16).hexdigest()
 
     def join(self, seat: int, team: str) -> JoinSeat:
         """Return the join with which the team takes a seat."""
@@ -71,6 +76,7 @@ class HandedIn:
     bot: str = ""
     program: bytes | None = None
     """As in `ContestEntry`."""
+    picture: bytes | None = None
     wrong: FileRefused | None = None
     """The mistakes of workbooks; None: there are none."""
     taken: tuple[str, ...] = ()
@@ -89,6 +95,7 @@ class HandedIn:
             locomotion=self.gaits.locomotion.data if self.gaits.locomotion else None,
             bot=self.bot,
             program=self.program,
+            picture=self.picture,
         )
 
 
@@ -119,9 +126,9 @@ def gather_entry(folder: Path | None, bot: str, robot: str) -> HandedIn:
     """Read the files that a team hands in.
 
     Args:
-        folder: folder with gait files, and a robot.toml if the robot is the team's own; None: the
-            contest's robot with its sample gait. Of several gait files for a level the newest one
-            is taken, as `lacoc play` does.
+        folder: folder with gait files, a robot.toml if the robot is the team's own, and a picture
+            if the team has one; None: the contest's robot with its sample gait. Of several gait
+            files for a level the newest one is taken, as `lacoc play` does.
         bot: an installed bot's name, or a Python file; "": people play.
         robot: the contest's robot: an installed one or a file.
 
@@ -148,7 +155,11 @@ def _of_folder(folder: Path, robot: str) -> HandedIn:
     handed = hand_in(files, robot)
     taken = tuple(file.name for file in files if file is not None)
     notes = (*remarks(folder, gaits_in(folder)), *handed.notes)
-    return replace(handed, taken=taken, notes=notes)
+    picture = next((path for path in sorted(folder.glob("picture.*")) if path.is_file()), None)
+    if picture is None:
+        return replace(handed, taken=taken, notes=notes)
+    small = small_picture(SentFile(picture.name, _read(picture)))
+    return replace(handed, taken=(*taken, picture.name), notes=notes, picture=small)
 
 
 def weigh(handed: HandedIn, games: Iterable[Arena], limits: Mapping[str, Any]) -> ContestEntry:
@@ -286,19 +297,27 @@ class EntryFolder:
             UserError: if it is not there, or if its files are not those that were frozen.
         """
         place = self.path / entry_hash
-        if not _HASH.fullmatch(entry_hash):  # it may come from facts that a stranger wrote
+        if not ENTRY_HASH.fullmatch(entry_hash):  # it may come from facts that a stranger wrote
             why = say("contest.no-hash")
             raise UserError(say("contest.no-entry", folder=str(place), why=why)) from None
         try:
             bot_file = self._read(entry_hash, _BOT)
             bot = msgspec.json.decode(bot_file, type=dict[str, str])["bot"]
             robot = self._read(entry_hash, _ROBOT)
-            rest = [self._read_if_there(entry_hash, name) for name in (*GAIT_NAMES, _PROGRAM)]
+            rest = [
+                self._read_if_there(entry_hash, name) for name in (*GAIT_NAMES, _PROGRAM, PICTURE)
+            ]
         except (UserError, KeyError, msgspec.MsgspecError, UnicodeDecodeError) as error:
             told = error.phrase if isinstance(error, UserError) else str(error)
             raise UserError(say("contest.no-entry", folder=str(place), why=told)) from None
+        postures, locomotion, program, picture = rest
         entry = ContestEntry(
-            robot=robot, postures=rest[0], locomotion=rest[1], bot=bot, program=rest[2]
+            robot=robot,
+            postures=postures,
+            locomotion=locomotion,
+            bot=bot,
+            program=program,
+            picture=picture,
         )
         if entry.hash != entry_hash or bot_file != _files(entry)[_BOT]:
             raise UserError(say("contest.entry-changed", folder=str(place)))
@@ -332,6 +351,7 @@ def _files(entry: ContestEntry) -> dict[str, bytes]:
         GAIT_NAMES[0]: entry.postures,
         GAIT_NAMES[1]: entry.locomotion,
         _PROGRAM: entry.program,
+        PICTURE: entry.picture,
     }
     return {name: data for name, data in files.items() if data is not None}
 

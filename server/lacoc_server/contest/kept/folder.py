@@ -54,7 +54,7 @@ class ContestFolder:
         """What this machine is to the contest, if it is not simply its office."""
         self._lock = folder / f"{file.stem}.lock"
         self.entries = EntryFolder(
-            (folder / "entries").resolve()
+            (folder / contests.ENTRIES).resolve()
         )  # the organiser may have linked it
         self.records = self.contest.recordings
 

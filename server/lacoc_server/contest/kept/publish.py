@@ -15,13 +15,14 @@ from lacoc_server.contest.league.sheet import ContestSheet
 from lacoc_shared.command import plugins, regular
 from lacoc_shared.command.csv_text import csv_text
 from lacoc_shared.command.replacing import replace, write
+from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.files import segment_paths
 from lacoc_shared.words import say
 
 FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", "games.csv"
-ENTRIES, RECORDS = "entries", "records"
+ENTRIES, RECORDS = contests.ENTRIES, "records"
 """Names of what a published folder has."""
 _SITES = "lacoc.site"
 """Entry points that add the pages: functions that are given the folder."""

@@ -37,6 +37,8 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     """Name of the bot that plays for it; "": people play."""
     club: str = ""
     """Its school or club; "": none."""
+    picture: bool = False
+    """Whether a picture of the team is among its files."""
     withdrawn: bool = False
     disqualified: bool = False
 
@@ -70,7 +72,11 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
                 unused[fact.id] = say("league.entered-twice", team=fact.team)
             else:
                 teams[fact.team] = Team(
-                    name=fact.team, files=fact.files, bot=fact.bot, club=fact.club
+                    name=fact.team,
+                    files=fact.files,
+                    bot=fact.bot,
+                    club=fact.club,
+                    picture=fact.picture,
                 )
         elif isinstance(fact, Withdrawn | Disqualified | Substituted | FilesChanged):
             if fact.team not in teams:
@@ -83,7 +89,8 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
                     continue
             team = teams[fact.team]
             if isinstance(fact, FilesChanged):
-                team = msgspec.structs.replace(team, files=fact.files, bot=fact.bot)
+                used = {"files": fact.files, "bot": fact.bot, "picture": fact.picture}
+                team = msgspec.structs.replace(team, **used)
             elif isinstance(fact, Withdrawn | Substituted):
                 team = msgspec.structs.replace(team, withdrawn=True)
             else:

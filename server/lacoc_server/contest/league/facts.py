@@ -45,6 +45,8 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
     """Hash of the robot file, the gait files and the bot."""
     bot: str = ""
     """Name of the bot that plays for the team; "": people play."""
+    picture: bool = False
+    """Whether a picture of the team is among the files."""
     club: Annotated[str, msgspec.Meta(max_length=64)] = ""
     """The school or club of the team; a stage may draw teams of one club apart. "": none."""
     reason: str = ""
@@ -84,6 +86,7 @@ class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
     team: Name
     files: str
     bot: str = ""
+    picture: bool = False
     reason: str = ""
     """May be "" only while entries are open."""
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 from msgspec.structs import replace
 
-from lacoc_server.contest.kept.entries import EntryFolder
+from lacoc_server.contest.kept.entries import ContestEntry, EntryFolder
 from lacoc_server.contest.kept.publish import (
     ENTRIES,
     FACTS,
@@ -154,18 +154,21 @@ def _records_used_twice(facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
 
 def _check_entries(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
     entries = EntryFolder(folder / ENTRIES)
-    bots: dict[str, str | None] = {}
+    known: dict[str, ContestEntry | None] = {}
     for fact in facts:
         if not isinstance(fact, OfFiles):
             continue
-        if fact.files not in bots:
+        if fact.files not in known:
             try:
-                bots[fact.files] = entries.load(fact.files).bot
+                known[fact.files] = entries.load(fact.files)
             except UserError as error:
-                bots[fact.files] = None
+                known[fact.files] = None
                 yield error.phrase
-        if bots[fact.files] not in (None, fact.bot):
+        entry = known[fact.files]
+        if entry is not None and entry.bot != fact.bot:
             yield say("verify.other-bot", team=fact.team)
+        if entry is not None and bool(entry.picture) != fact.picture:
+            yield say("verify.other-picture", team=fact.team)
 
 
 def _check_names(folder: Path, facts: tuple[AnyFact, ...], contest: Contest) -> Iterator[Phrase]:

@@ -16,21 +16,30 @@ export class Feed {
   readonly sheet = signal<ContestSheet | null>(null);
   readonly trouble = signal<Trouble | null>(null);
   #text = "";
-  #timer = 0;
+  #timer = -1;
+  #users = 0;
 
-  /** Begin; the function that is returned ends it. */
+  /** Begin; the function that is returned ends it. Several parts of a page may use one feed. */
   start(): () => void {
-    void this.#look();
-    const back = () => {
-      if (!document.hidden) void this.#look();
-    };
-    document.addEventListener("visibilitychange", back);
+    if (this.#users++ === 0) {
+      this.#timer = 0;
+      document.addEventListener("visibilitychange", this.#back);
+      void this.#look();
+    }
+    let isUsed = true;
     return () => {
-      document.removeEventListener("visibilitychange", back);
-      clearTimeout(this.#timer);
-      this.#timer = -1;
+      if (isUsed && --this.#users === 0) {
+        document.removeEventListener("visibilitychange", this.#back);
+        clearTimeout(this.#timer);
+        this.#timer = -1;
+      }
+      isUsed = false;
     };
   }
+
+  #back = () => {
+    if (!document.hidden) void this.#look();
+  };
 
   async #look(): Promise<void> {
     clearTimeout(this.#timer);
@@ -60,3 +69,6 @@ export class Feed {
     }
   }
 }
+
+/** The sheet of the contest for pages that show a match of it. */
+export const eventFeed = new Feed();

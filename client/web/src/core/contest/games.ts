@@ -1,6 +1,14 @@
 /** The games that come next, and those of a match: their points by team, whoever sits left. Pure. */
 
-import { type ContestMatch, type ContestSheet, type Later, running } from "./sheet";
+import {
+  type ContestMatch,
+  type ContestSheet,
+  isKnockout,
+  type Later,
+  running,
+  type StageView,
+  type Table,
+} from "./sheet";
 
 /** A game that is on a court, or one of the next whose teams are known. */
 export interface NextGame {
@@ -46,6 +54,19 @@ export function teamsOfLater({ who }: Later): [string, string] | null {
 export function nextGameOf(sheet: ContestSheet, team: string, call: string): NextGame | null {
   const games = nextGames(sheet, Number.POSITIVE_INFINITY);
   return games.find((one) => one.teams.includes(team) && (!one.call || one.call !== call)) ?? null;
+}
+
+/** The table that the next game may change; null: there is none, or it is of a bracket. */
+export function tableAhead(sheet: ContestSheet): { view: StageView; table: Table } | null {
+  const next = nextGames(sheet, 1)[0];
+  for (const view of sheet.stages) {
+    const match = view.matches.find(({ pairing }) => pairing.id === next?.pairing);
+    if (!match) continue;
+    const { tables } = view;
+    const table = tables.find(({ section }) => section === match.pairing.section) ?? tables[0];
+    return table && !isKnockout(view) ? { view, table } : null;
+  }
+  return null;
 }
 
 /** The numbers of the games that have been played, and of the next one. */

@@ -9,6 +9,7 @@ export interface Team {
   files: string;
   bot: string;
   club: string;
+  picture: boolean;
   withdrawn: boolean;
   disqualified: boolean;
 }

@@ -9,7 +9,7 @@ import {
 } from "../../core/contest/sheet";
 import { isMessage, t } from "../../i18n";
 import { chosenTeam, TeamLink } from "./parts";
-import { groupTitle } from "./words";
+import { groupTitle, signed } from "./words";
 
 const COUNTS = ["played", "won", "drawn", "lost"] as const;
 const BRACKET_COUNTS = ["played", "won", "lost"] as const;
@@ -150,8 +150,4 @@ export function Ties({ view }: { view: StageView }) {
 function tieText(code: string): string {
   const name = `contest.tie.${code}`;
   return isMessage(name) ? t(name) : t("contest.tie.other", { code });
-}
-
-export function signed(value: number): string {
-  return value > 0 ? `+${value}` : `${value}`.replace("-", "−");
 }

@@ -11,10 +11,18 @@ import {
 } from "../../core/contest/sheet";
 import { t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
+import { TeamPicture } from "../../ui/team_picture";
 import { chooseNoTeam, chosenTeam, TeamLink } from "./parts";
 import { MatchRow } from "./schedule";
-import { signed } from "./standings";
-import { expected, gameTitle, groupTitle, matchTitle, placeTitle, stageTitle } from "./words";
+import {
+  expected,
+  gameTitle,
+  groupTitle,
+  matchTitle,
+  placeTitle,
+  signed,
+  stageTitle,
+} from "./words";
 
 export function Teams({ sheet }: { sheet: ContestSheet }) {
   const wanted = useSignal("");
@@ -128,6 +136,7 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
   return (
     <Dialog key={team.name} title={team.name} onClose={chooseNoTeam}>
       <div class="one-team">
+        <TeamPicture sheet={sheet} team={team.name} />
         <Marks team={team} />
         <dl class="figures">
           {ranks.map(({ view, table, row }) => (

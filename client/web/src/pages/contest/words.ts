@@ -157,3 +157,8 @@ export function numberTitle(view: StageView, match: ContestMatch): string {
 export function courtOf(running: readonly Called[], match: ContestMatch): string {
   return running.find(({ pairing }) => pairing === match.pairing.id)?.court ?? "";
 }
+
+/** A number with its sign: "+3", "−2", "0". */
+export function signed(value: number): string {
+  return value > 0 ? `+${value}` : `${value}`.replace("-", "−");
+}

@@ -8,12 +8,14 @@ import {
   Desk,
   type EventInfo,
   type OwnEntry,
+  type TeamFiles,
   type TeamLink,
 } from "../../core/desk";
 import { checkSizes, chosenFiles, forgetAll, keepGiven } from "../../core/files";
 import { filesOf } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
 import type { Mistake, Notice } from "../../core/wire";
+import { chosenPicture, forgetPicture } from "./own_picture";
 
 const LOOK_MS = 3000;
 
@@ -63,6 +65,7 @@ export class Entrant {
   /** Make room for another team at this computer: it has files of its own. */
   makeRoom(): void {
     forgetAll();
+    forgetPicture();
     this.forget();
   }
 
@@ -74,9 +77,7 @@ export class Entrant {
     this.mistakes.value = [];
   }
 
-  private async send(
-    request: (files: ReturnType<typeof chosenFiles>) => AnyRequest,
-  ): Promise<boolean> {
+  private async send(request: (files: TeamFiles) => AnyRequest): Promise<boolean> {
     if (this.isWeighing.peek()) return false;
     this.isWeighing.value = true;
     this.why.value = null;
@@ -84,7 +85,8 @@ export class Entrant {
     try {
       const files = chosenFiles();
       checkSizes(Object.values(files));
-      await this.take(await this.desk.ask<OwnEntry>(request(files)));
+      const all = { ...files, picture: chosenPicture() };
+      await this.take(await this.desk.ask<OwnEntry>(request(all)));
       this.answered.value = "taken";
       return true;
     } catch (error) {

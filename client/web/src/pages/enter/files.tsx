@@ -5,15 +5,18 @@ import { choose, chosenNames, forget, MOST_BYTES, SLOTS, type Slot } from "../..
 import { t } from "../../i18n";
 import { PickFiles } from "../../ui/pick";
 import { toast } from "../../ui/toasts";
+import { choosePicture, chosenPictureUrl, forgetPicture, isPicture } from "./own_picture";
 
 /** Stands beside the pages. */
 const SAMPLE = "Loco-data.txt";
 
-/** Keep files, each in its slot. */
+/** Keep files, each in its slot; a picture becomes the team's. */
 export async function take(files: Iterable<File>): Promise<void> {
   for (const file of files) {
     const { name } = file;
-    if (file.size > MOST_BYTES) toast(t("files.tooLarge", { name }), "no");
+    if (isPicture(file)) {
+      await choosePicture(file).catch(() => toast(t("enter.noPicture", { name }), "no"));
+    } else if (file.size > MOST_BYTES) toast(t("files.tooLarge", { name }), "no");
     // A folder seems to be a file until it is read.
     else await choose(file).catch(() => toast(t("files.unreadable", { name }), "no"));
   }
@@ -37,6 +40,7 @@ function unnamed(slot: Slot, postures: string): string {
 export function Files() {
   const input = useId();
   const names = chosenNames.value;
+  const picture = chosenPictureUrl();
   return (
     <fieldset class="files">
       <legend>{t("enter.files")}</legend>
@@ -44,7 +48,7 @@ export function Files() {
       <label class="button" for={input}>
         {t("enter.pick")}
       </label>
-      <PickFiles id={input} take={take} />
+      <PickFiles id={input} take={take} more=",image/*" />
       {!names.postures && !names.locomotion && (
         <button class="button" type="button" onClick={() => void takeSample()}>
           {t("enter.sample")}
@@ -67,6 +71,20 @@ export function Files() {
             )}
           </li>
         ))}
+        <li>
+          <span class="muted">{t("enter.picture")}</span>
+          {picture ? <img src={picture} alt={t("enter.picture")} /> : <b>{t("enter.none")}</b>}
+          {picture && (
+            <button
+              class="button quiet small"
+              type="button"
+              aria-label={t("enter.remove", { name: t("enter.picture") })}
+              onClick={forgetPicture}
+            >
+              ×
+            </button>
+          )}
+        </li>
       </ul>
     </fieldset>
   );

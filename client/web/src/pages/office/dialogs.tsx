@@ -2,7 +2,8 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import type { Effect } from "../../core/desk";
+import type { Effect, TeamPicture } from "../../core/desk";
+import { toBase64 } from "../../core/files";
 import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
@@ -56,6 +57,7 @@ export function TeamDialog({ organiser, team }: Props) {
             </div>
           </div>
         )}
+        {row.picture && <PictureOf organiser={organiser} team={team} />}
         {row.contact && <p>{t("office.contact", { contact: row.contact })}</p>}
         {row.club && <p>{t("office.club", { club: row.club })}</p>}
         {row.substitute && (
@@ -82,6 +84,28 @@ export function TeamDialog({ organiser, team }: Props) {
         )}
       </div>
     </Dialog>
+  );
+}
+
+/** The picture that a team gave of itself; the organiser can take it away. */
+function PictureOf({ organiser, team }: Props) {
+  const picture = useSignal("");
+  useEffect(() => {
+    void organiser.act<TeamPicture>({ do: "picture", team }).then((found) => {
+      if (found?.webp.length) picture.value = `data:image/webp;base64,${toBase64(found.webp)}`;
+    });
+  }, [organiser, team, picture]);
+  return (
+    <div class="picture-of">
+      {picture.value && <img src={picture.value} alt={t("office.picture", { team })} />}
+      <button
+        class="button"
+        type="button"
+        onClick={() => void organiser.do({ do: "picture", team, remove: true })}
+      >
+        {t("office.removePicture")}
+      </button>
+    </div>
   );
 }
 

@@ -13,7 +13,7 @@ import type { Player } from "./player";
 export function ChancesNow({ player, odds }: { player: Player; odds: Odds }) {
   const shown = useComputed(() => chancesAt(odds, player.recording.beat.value)).value;
   return (
-    <span class="chances" title={t("odds.about")}>
+    <span class="chances" title={t(odds.by === "forks" ? "odds.about" : "odds.byScore")}>
       <small class="muted">{t("odds.title")}</small> <b>{shown}</b>
     </span>
   );

@@ -1,6 +1,7 @@
 /** Plays a recording, with the ways to another moment of the match. */
 
-import { signal } from "@preact/signals";
+import { type Signal, signal } from "@preact/signals";
+import { chancesOf } from "../../core/chance";
 import type { Odds } from "../../core/odds";
 import { Playback } from "../../core/playback";
 import type { Recording } from "../../core/recording";
@@ -19,13 +20,15 @@ export class Player extends Playback {
   /** The events that one jumps to, and that have a mark. */
   readonly marks: readonly Event[];
 
-  /** The odds, once they are here; null: there are none. */
-  readonly odds = signal<Odds | null>(null);
+  /** By score and clock, until those that bots have played are here; null: there are none. */
+  readonly odds: Signal<Odds | null>;
   /** What is shown beside the recording, at the same beat: the match that it is a fork of. */
   readonly beside = signal<Recording | null>(null);
 
   constructor(readonly recording: Recording) {
     super(recording);
+    const moments = chancesOf(recording.record);
+    this.odds = signal(moments.length > 1 ? { by: "score", moments } : null);
     const { firstBeat, lastBeat } = recording;
     this.marks = recording.record.events.filter(
       (event) => event.beat >= firstBeat && event.beat <= lastBeat && isMarked(event),

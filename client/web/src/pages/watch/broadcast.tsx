@@ -10,6 +10,7 @@ import { t } from "../../i18n";
 import { team } from "../../i18n/words";
 import { type CameraName, type Shutter, View } from "../../scene/View";
 import { Board } from "../../ui/board";
+import { ChanceBar } from "../../ui/chance";
 import { Introductions } from "../../ui/introductions";
 import { Countdown, OpeningCard, useOpening } from "../../ui/opening";
 import { ResultCard, useResult } from "../../ui/result";
@@ -55,6 +56,8 @@ interface Props {
 /** What else a page shows over the picture. */
 interface More {
   belowScore?: ComponentChildren;
+  /** Stands for the card of the opening: between the matches of an event. */
+  before?: ComponentChildren;
   inCentre?: ComponentChildren;
   beside?: ComponentChildren;
   /** Whether no other match follows. */
@@ -151,12 +154,13 @@ function Windows({ match, style, scale }: Props) {
 type Told = { match: Match } & More;
 
 /** Score and clock are those of now, also while the picture shows a moment again. */
-function Hud({ match, belowScore, inCentre, beside, isLast = false, replays }: Told) {
+function Hud({ match, belowScore, before, inCentre, beside, isLast = false, replays }: Told) {
   const isReplay = !!replays?.shown.value;
   return (
     <div class="hud">
       <header class="head">
         <ScoreBug match={match} />
+        <ChanceBar match={match} />
         <Hint match={match} />
         {isReplay ? (
           <p class="on-air" data-why="replay" role="status">
@@ -172,9 +176,7 @@ function Hud({ match, belowScore, inCentre, beside, isLast = false, replays }: T
         {!isReplay && <ResultCard match={match} isLast={isLast} />}
         {!isReplay && inCentre}
       </div>
-      <div class="before">
-        <OpeningCard match={match} />
-      </div>
+      <div class="before">{before || <OpeningCard match={match} />}</div>
       <div class="lower">
         <Introductions match={match} />
         <Thirds match={match} />

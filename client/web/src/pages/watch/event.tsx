@@ -2,21 +2,21 @@
 
 import { useComputed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { Feed } from "../../core/contest/feed";
-import { nextGames } from "../../core/contest/games";
+import { eventFeed } from "../../core/contest/feed";
+import { nextGames, tableAhead } from "../../core/contest/games";
 import { type ContestSheet, stateOf, teamsOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { hint } from "../../i18n/words";
 import { directorBegins } from "../../ui/banner";
-import { expected, gameTitle } from "../contest/words";
+import { expected, gameTitle, groupTitle, signed, stageTitle } from "../contest/words";
 import "../../ui/opening.css";
 
 const GAMES_MOST = 3;
-const feed = new Feed();
+const ROWS_MOST = 8;
 
-/** Whether a court waits for a match of the event; it changes only when the answer does. */
+/** Whether a court of an event waits for its next match; it changes only when the answer does. */
 export function useBetween(court: Court): boolean {
   return useComputed(() => {
     const sheet = court.sheet.value;
@@ -25,11 +25,16 @@ export function useBetween(court: Court): boolean {
   }).value;
 }
 
+/** Keep the sheet of the event new, for all that shows teams, tables and games. */
+export function useEvent(court: Court): void {
+  const desk = court.welcome.value?.desk;
+  useEffect(() => (desk ? eventFeed.start() : undefined), [desk]);
+}
+
 /** The event, how it stands, and its next games. */
 export function EventCard({ court }: { court: Court }) {
   const { contest = "", desk = false } = court.welcome.value ?? {};
-  useEffect(() => (desk ? feed.start() : undefined), [desk]);
-  const sheet = desk ? feed.sheet.value : null;
+  const sheet = desk ? eventFeed.sheet.value : null;
   const next = useComputed(() => (court.begun.value ? hint(court) : t("event.waits"))).value;
   const waits = directorBegins(court) || next;
   return (
@@ -66,6 +71,44 @@ function Coming({ sheet }: { sheet: ContestSheet }) {
           </li>
         ))}
       </ul>
+      <TableAhead sheet={sheet} />
     </>
+  );
+}
+
+/** How the teams of the next game stand, where they stand in a table. */
+function TableAhead({ sheet }: { sheet: ContestSheet }) {
+  const ahead = tableAhead(sheet);
+  if (!ahead?.table.rows.length) return null;
+  const { view, table } = ahead;
+  const title = [stageTitle(sheet, view.stage.name), groupTitle(view, table.section)];
+  return (
+    <table class="ahead">
+      <caption class="kicker">{title.filter(Boolean).join(" · ")}</caption>
+      <thead>
+        <tr>
+          <th scope="col">
+            <span class="hidden-text">{t("contest.rank")}</span>
+          </th>
+          <th scope="col">{t("contest.team")}</th>
+          <th scope="col">{t("contest.points")}</th>
+          <th scope="col">{t("contest.played")}</th>
+          <th scope="col">{t("contest.difference")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {table.rows.slice(0, ROWS_MOST).map((row) => (
+          <tr key={row.team}>
+            <td>{row.rank}</td>
+            <th scope="row">{row.team}</th>
+            <td>
+              <b>{row.points}</b>
+            </td>
+            <td>{row.won + row.drawn + row.lost}</td>
+            <td>{signed(row.scored - row.conceded)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
   );
 }

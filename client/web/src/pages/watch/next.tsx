@@ -1,18 +1,16 @@
 /** After a match of an event: when and where its teams play again, as far as the office knows. */
 
 import { useEffect } from "preact/hooks";
-import { Feed } from "../../core/contest/feed";
+import { eventFeed } from "../../core/contest/feed";
 import { nextGameOf } from "../../core/contest/games";
 import { type ContestSheet, stateOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
 import { t } from "../../i18n";
 import { expected } from "../contest/words";
 
-const feed = new Feed();
-
 export function NextOfTeams({ court }: { court: Court }) {
-  useEffect(() => feed.start(), []);
-  const sheet = feed.sheet.value;
+  useEffect(() => eventFeed.start(), []);
+  const sheet = eventFeed.sheet.value;
   const played = court.sheet.value;
   if (!sheet || !played) return null;
   if (stateOf(sheet) === "over") return <p>{t("event.over")}</p>;

@@ -1,0 +1,46 @@
+"""The picture of a team: whatever its members send becomes a small square WebP."""
+
+import io
+import warnings
+
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+SIDE_PX = 192
+"""Width and height of a team's picture."""
+_FORMATS = ("PNG", "JPEG", "WEBP", "GIF")
+_MOST_PX = 4096
+"""Most pixels of either side of a picture that is read: a small file can unpack to gigabytes."""
+
+
+def small_picture(file: SentFile) -> bytes:
+    """Read a picture, and make the team's picture of its middle; nothing else of it is kept.
+
+    So a picture brings along no place where it was taken, and no other file behind its end.
+
+    Args:
+        file: a PNG, JPEG, WebP or GIF file; of a moving picture the first one is taken.
+
+    Returns:
+        A WebP file, `SIDE_PX` wide and high.
+
+    Raises:
+        UserError: if it is no such picture, is damaged or too large.
+    """
+    try:
+        with warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning):
+            found = Image.open(io.BytesIO(file.data), formats=_FORMATS)
+        if max(found.size) > _MOST_PX:
+            raise UserError(say("desk.large-picture", name=file.name, most=_MOST_PX))
+        upright = ImageOps.exif_transpose(found).convert("RGBA")
+        square = ImageOps.fit(upright, (SIDE_PX, SIDE_PX))
+        out = io.BytesIO()
+        square.save(out, "WEBP", quality=80, method=4)
+    except UnidentifiedImageError:
+        raise UserError(say("desk.no-picture", name=file.name)) from None
+    except (OSError, ValueError, SyntaxError, EOFError, Warning) as error:
+        raise UserError(say("desk.damaged-picture", name=file.name, why=str(error))) from None
+    return out.getvalue()
