@@ -9,10 +9,14 @@ Highlights (`--highlights`): in the first matches, every second of play has a mo
 forks. The highlights come from the first forks of each moment, the five largest swings between two
 moments from all the others. The highlights must contain at least 80 % of these.
 
+By score (`--by-score`): plays whole matches, and asks each second for the chance by score and clock
+alone (client/web/src/core/chance.ts).
+
 Rows are appended to a file, so a benchmark that was stopped goes on where it was.
 """
 
 import json
+import math
 import random
 import sys
 import tempfile
@@ -20,12 +24,14 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from functools import partial
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 from arguments import arguments
 from bot_matches import BOTS, bot_match
 from msgspec.structs import replace
 
+from lacoc_arenas.arena import load as load_arena
 from lacoc_server.simulate.forks import odds
 from lacoc_server.simulate.forks.chances import (
     ChanceJob,
@@ -38,6 +44,8 @@ from lacoc_server.simulate.forks.chances import (
 from lacoc_server.simulate.forks.odds import MomentOdds, Swing
 from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.simulate.workers import Workers
+from lacoc_shared.messages import Frame
+from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase
 
 _WEIGHTS = (1, 3, 3)
@@ -53,6 +61,8 @@ _BIN = 0.05
 _LARGEST = 5
 _OTHERS = 5
 """Forks of each moment that give the largest swings."""
+_FIRST_S = 10
+"""From when pages tell a chance by score and clock."""
 _LEAST = 0.05
 """Smaller changes of a chance are no swing, as in `lacoc replay highlights`."""
 
@@ -66,16 +76,20 @@ def main() -> int:
         forks=(5, "at each moment"),
         seconds=(15.0, "of play, each match"),
         highlights=(0, "matches whose swings are sought"),
+        by_score=(0, "whole matches in which score and clock are asked"),
         jobs=int,
         rows=(Path("odds.jsonl"), "file of results"),
     )
     one: Callable[..., dict[str, Any]]
-    if options.highlights:
+    if options.by_score:
+        numbers, one = range(options.by_score), _by_score
+    elif options.highlights:
         numbers, one = range(options.highlights), partial(_swings, options.forks, options.seconds)
     else:
         numbers = range(options.matches)
         one = partial(_odds, options.moments, options.forks, options.seconds)
-    own = "largest" if options.highlights else "asked"  # one file may have rows of both kinds
+    # One file may have rows of all kinds.
+    own = "leads" if options.by_score else "largest" if options.highlights else "asked"
     rows = {row["number"]: row for row in _read(options.rows) if own in row}
     with Workers(options.jobs, background=True, limit_s=3600.0) as workers:
         futures = [workers.submit(one, number) for number in numbers if number not in rows]
@@ -85,6 +99,8 @@ def main() -> int:
             with options.rows.open("a", encoding="utf-8") as file:
                 file.write(f"{json.dumps(row)}\n")
     chosen = [rows[number] for number in numbers]
+    if options.by_score:
+        return _tell(chosen, [said for row in chosen for said in _said_by_score(row)])
     return _tell_swings(chosen) if options.highlights else _tell_odds(chosen)
 
 
@@ -126,6 +142,34 @@ def _swings(forks: int, seconds: float, number: int) -> dict[str, Any]:
             "moments": len(curve.moments),
             "playing": len(MatchCourse(source).playing),
         }
+
+
+def _by_score(number: int) -> dict[str, Any]:
+    """Play a whole match; return its lead at each second of play, and who won."""
+    chance = random.Random(number)
+    name = chance.choice(("othello", "flag-strike"))
+    bots, late = chance.choices(BOTS, _WEIGHTS, k=2), [chance.randrange(25), chance.randrange(25)]
+    leads: dict[int, int] = {}
+
+    def watch(frame: Frame) -> None:
+        if frame.phase == Phase.PLAYING and not frame.clock_ticks % BEATS_PER_S:
+            leads[frame.clock_ticks // BEATS_PER_S] = frame.seats[0].score - frame.seats[1].score
+
+    with tempfile.TemporaryDirectory() as folder:
+        source = read_source(bot_match(Path(folder), name, bots, late_ticks=late, watch=watch))
+        course = MatchCourse(source)
+    assert course.end is not None
+    return {"number": number, "arena": name, "won": course.end.chance, "leads": [*leads.items()]}
+
+
+def _said_by_score(row: dict[str, Any]) -> Iterator[tuple[float, float]]:
+    """Yield chances by score and clock, as pages compute them, and who won."""
+    rules = load_arena(row["arena"]).match
+    for second, lead in row["leads"]:
+        if _FIRST_S <= second < rules.duration_s:
+            spread = rules.lead_volatility * math.sqrt(rules.duration_s - second)
+            chance = NormalDist().cdf(lead / spread)
+            yield from ((chance, row["won"]), (1 - chance, 1 - row["won"]))
 
 
 def _from_forks(curve: Odds, which: slice) -> tuple[MomentOdds, ...]:
@@ -176,6 +220,10 @@ def _tell_odds(rows: list[dict[str, Any]]) -> int:
         for one in row["asked"]:
             chance = odds.chance(one["margins"])
             said += [(chance, row["won"]), (1 - chance, 1 - row["won"])]
+    return _tell(rows, said)
+
+
+def _tell(rows: list[dict[str, Any]], said: list[tuple[float, float]]) -> int:
     print(f"{len(rows)} matches, {len(said) // 2} moments")
     for middle in (0.5, 0.6, 0.7, 0.8, 0.9, 0.975):
         chosen = [won for chance, won in said if abs(chance - middle) <= _BIN]

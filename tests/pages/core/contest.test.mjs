@@ -78,7 +78,10 @@ test("the table ahead is the one that the next game may change; a bracket has no
   const { view, table } = g.tableAhead(groups);
   assert.equal(view.stage.name, "groups");
   for (const team of next.teams) assert.ok(table.rows.some((row) => row.team === team));
-  assert.equal(g.tableAhead(finals), null, "over");
+  assert.equal(g.tableAhead(finals), null, "over, and its last stage is a bracket");
+  const [only] = finals.stages;
+  const ended = g.tableAhead({ ...finals, running: [], coming: [], later: [], stages: [only] });
+  assert.equal(ended.view, only, "after the last game");
   assert.equal(g.tableAhead(single), null);
 });
 

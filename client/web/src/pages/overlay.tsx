@@ -14,7 +14,7 @@ import { isOver, waitsFor } from "../ui/banner";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Aside } from "./watch/aside";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
-import { EventCard, useBetween, useEvent } from "./watch/event";
+import { EventCard, useBetween, useEvent, useResultIsRead } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 
 const court = new Court(
@@ -48,7 +48,8 @@ document.documentElement.classList.toggle("transparent", style.transparent);
 export default function Overlay() {
   const over = useComputed(() => isOver(court)).value;
   useEvent(court);
-  const between = useBetween(court) && court.begun.value;
+  const isRead = useResultIsRead(court);
+  const between = (useBetween(court) && court.begun.value) || isRead;
   const stale = court.begun.value && !court.live.value && !over;
   useEffect(() => {
     document.title = "LACOC";

@@ -21,7 +21,7 @@ import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
-import { ResultCard } from "../ui/result";
+import { ResultCard, useResult } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow, tellHeight } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
@@ -118,7 +118,9 @@ export default function Watch() {
 
 function Hud() {
   const match = shownMatch.value;
-  const between = useBetween(court);
+  const isOver = useResult(shown);
+  const between =
+    useBetween(court) || (isOver && putAway.value === match && !!court.welcome.value?.desk);
   return (
     <>
       <div class="top">

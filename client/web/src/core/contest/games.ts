@@ -56,11 +56,15 @@ export function nextGameOf(sheet: ContestSheet, team: string, call: string): Nex
   return games.find((one) => one.teams.includes(team) && (!one.call || one.call !== call)) ?? null;
 }
 
-/** The table that the next game may change; null: there is none, or it is of a bracket. */
+/**
+ * The table that the next game may change, after the last one that of the last stage; null: there
+ * is none, or it is of a bracket.
+ */
 export function tableAhead(sheet: ContestSheet): { view: StageView; table: Table } | null {
-  const next = nextGames(sheet, 1)[0];
+  const [next] = nextGames(sheet, 1);
+  const pairing_id = next?.pairing ?? sheet.stages.at(-1)?.matches.at(-1)?.pairing.id;
   for (const view of sheet.stages) {
-    const match = view.matches.find(({ pairing }) => pairing.id === next?.pairing);
+    const match = view.matches.find(({ pairing }) => pairing.id === pairing_id);
     if (!match) continue;
     const { tables } = view;
     const table = tables.find(({ section }) => section === match.pairing.section) ?? tables[0];

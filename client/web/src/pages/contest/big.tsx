@@ -14,13 +14,13 @@ import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
 import { TeamPicture } from "../../ui/team_picture";
 import { BracketView } from "./bracket";
-import { Standing, winnersTitle } from "./head";
+import { Standing } from "./head";
 import { LiveScore, live } from "./now";
 import { big } from "./parts";
 import { PauseLine } from "./pause";
 import { Standings } from "./standings";
 import { Ratings, ranked } from "./teams";
-import { expected, gameTitle, stageHeading, stageTitle } from "./words";
+import { expected, gameTitle, stageHeading, stageTitle, winnersTitle } from "./words";
 
 const SLIDE_MS = 12_000;
 const RATINGS_MOST = 9;

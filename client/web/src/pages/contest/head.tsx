@@ -13,7 +13,7 @@ import { t } from "../../i18n";
 import { IconButton } from "../../ui/icons";
 import { Settings } from "../../ui/settings";
 import { TeamLink } from "./parts";
-import { listed, stageTitle } from "./words";
+import { listed, stageTitle, winnersTitle } from "./words";
 
 export function Head({ sheet }: { sheet: ContestSheet }) {
   const settings = useSignal(false);
@@ -86,12 +86,6 @@ export function Winners({ sheet }: { sheet: ContestSheet }) {
       ))}
     </p>
   );
-}
-
-/** What the winners are: teams that are equal in all are first together. */
-export function winnersTitle({ length }: readonly string[]): string {
-  if (length === 1) return t("contest.winner");
-  return t(length === 2 ? "contest.bothFirst" : "contest.allFirst");
 }
 
 /** The ways to the parts of the page. */

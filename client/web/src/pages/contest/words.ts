@@ -162,3 +162,9 @@ export function courtOf(running: readonly Called[], match: ContestMatch): string
 export function signed(value: number): string {
   return value > 0 ? `+${value}` : `${value}`.replace("-", "−");
 }
+
+/** What the winners are: teams that are equal in all are first together. */
+export function winnersTitle({ length }: readonly string[]): string {
+  if (length === 1) return t("contest.winner");
+  return t(length === 2 ? "contest.bothFirst" : "contest.allFirst");
+}

@@ -80,7 +80,8 @@ export function Broadcast({ match, style, scale, ...more }: Props & More) {
   const seats = useMemo(() => computed(() => match.sheet.value?.seats.length ?? 0), [match]).value;
   const isSplit = style.split && seats > 1;
   const shown = more.replays?.rewind ?? match;
-  const hasCard = useResult(match) && style.hud && innerWidth > BESIDE * innerHeight;
+  const hasCard =
+    useResult(match) && style.hud && !more.before && innerWidth > BESIDE * innerHeight;
   return (
     <>
       {isSplit ? (
@@ -173,7 +174,7 @@ function Hud({ match, belowScore, before, inCentre, beside, isLast = false, repl
       <div class="centre">
         <Countdown match={match} />
         <Sound match={match} isQuiet />
-        {!isReplay && <ResultCard match={match} isLast={isLast} />}
+        {!isReplay && !before && <ResultCard match={match} isLast={isLast} />}
         {!isReplay && inCentre}
       </div>
       <div class="before">{before || <OpeningCard match={match} />}</div>

@@ -1,18 +1,29 @@
 /** Between the matches of an event: which event this is, and what comes next. */
 
-import { useComputed } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useComputed, useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
 import { eventFeed } from "../../core/contest/feed";
 import { nextGames, tableAhead } from "../../core/contest/games";
-import { type ContestSheet, stateOf, teamsOf } from "../../core/contest/sheet";
+import { type ContestSheet, champions, stateOf, teamsOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
+import { phaseOf } from "../../core/match";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { hint } from "../../i18n/words";
 import { directorBegins } from "../../ui/banner";
-import { expected, gameTitle, groupTitle, signed, stageTitle } from "../contest/words";
+import {
+  expected,
+  gameTitle,
+  groupTitle,
+  listed,
+  signed,
+  stageTitle,
+  winnersTitle,
+} from "../contest/words";
 import "../../ui/opening.css";
 
+/** For so long a stream shows the result; then what comes next. */
+const READ_MS = 15_000;
 const GAMES_MOST = 3;
 const ROWS_MOST = 8;
 
@@ -25,6 +36,22 @@ export function useBetween(court: Court): boolean {
   }).value;
 }
 
+/** Whether the result of the newest match of an event has been read, and the next has not come. */
+export function useResultIsRead(court: Court): boolean {
+  const phase = useMemo(() => phaseOf(court), [court]).value;
+  const isOver = phase === Phase.OFFICIAL || phase === Phase.VOID;
+  const isRead = useSignal(false);
+  useEffect(() => {
+    isRead.value = false;
+    if (!isOver) return;
+    const timer = setTimeout(() => {
+      isRead.value = true;
+    }, READ_MS);
+    return () => clearTimeout(timer);
+  }, [isOver, isRead]);
+  return isRead.value && !!court.welcome.value?.desk;
+}
+
 /** Keep the sheet of the event new, for all that shows teams, tables and games. */
 export function useEvent(court: Court): void {
   const desk = court.welcome.value?.desk;
@@ -35,25 +62,33 @@ export function useEvent(court: Court): void {
 export function EventCard({ court }: { court: Court }) {
   const { contest = "", desk = false } = court.welcome.value ?? {};
   const sheet = desk ? eventFeed.sheet.value : null;
-  const next = useComputed(() => (court.begun.value ? hint(court) : t("event.waits"))).value;
+  const next = useComputed(() => {
+    if (!court.begun.value) return t("event.waits");
+    return court.frame.value?.phase === Phase.LOBBY ? hint(court) : "";
+  }).value;
   const waits = directorBegins(court) || next;
   return (
     <section class="opening event" aria-label={t("event.title")}>
       <h1>{contest || "LACOC"}</h1>
       {sheet && <Coming sheet={sheet} />}
-      <p class="rules">{waits}</p>
+      {waits && <p class="rules">{waits}</p>}
     </section>
   );
 }
 
 function Coming({ sheet }: { sheet: ContestSheet }) {
   const games = nextGames(sheet, GAMES_MOST);
+  const winners = champions(sheet);
   if (!games.length) {
     return (
-      <p class="next">
-        {t(`contest.state.${stateOf(sheet)}`)} ·{" "}
-        {t("contest.teamCount", { count: teamsOf(sheet).here })}
-      </p>
+      <>
+        <p class="next">
+          {winners.length > 0
+            ? `${winnersTitle(winners)}: ${listed(winners)}`
+            : `${t(`contest.state.${stateOf(sheet)}`)} · ${t("contest.teamCount", { count: teamsOf(sheet).here })}`}
+        </p>
+        <TableAhead sheet={sheet} />
+      </>
     );
   }
   return (
