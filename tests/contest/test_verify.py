@@ -816,7 +816,7 @@ def test_a_check_says_what_it_does(
     """Before the long part `verify` says how many games it plays again, and how many at a time."""
     told: list[tuple[int, int]] = []
     check(
-        played.parent / "published",
+        played / "published",
         lambda done, there: told.append((done, there)),
         sampled=1,
         jobs=1,

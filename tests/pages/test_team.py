@@ -76,7 +76,7 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         player = sit(there["url"])
         type_wrong_token(player, link)
         moves: list[Route] = []
-        player.page.route("**/play?court=south*", moves.append)
+        player.page.route("**/play?court=south*", lambda route: moves.append(route))
         player.page.goto(link)
         player.sees(".entrance h1", "Going to court south")
         player.page.unroute("**/play?court=south*")
