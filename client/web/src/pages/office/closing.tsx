@@ -112,7 +112,7 @@ export function DrawDialog({ organiser, view }: Props) {
           <ol class="seeds">
             {teams.map((team, at) => (
               <li key={team}>
-                {team} <small class="muted">{whyOf(team)}</small>
+                <b>{team}</b> <small class="muted">{whyOf(team)}</small>
                 {byHand && at > 0 && (
                   <button
                     class="button quiet small"
