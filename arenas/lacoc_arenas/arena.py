@@ -52,8 +52,8 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     """A match that starts by "ready" ends when no seat has been heard for this long; 0: never."""
 
     lead_volatility: Annotated[float, msgspec.Meta(ge=0.0)] = 0.0
-    """Standard deviation of the change of a lead in a second of play [points]. Pages tell the
-    chance to win from it, and the match does not use it; 0: they tell none."""
+    """Standard deviation of the change of a lead in a second of play [points]. Pages tell chances
+    to win from it, and the match does not use it; 0: they tell none."""
 
     @property
     def open_levels(self) -> tuple[Level, ...]:

@@ -28,7 +28,7 @@ from lacoc_shared.messages.desk import (
     ChangeFiles,
     CloseEntries,
     OwnEntry,
-    Picture,
+    SeePicture,
     TeamFiles,
     TeamPicture,
 )
@@ -125,9 +125,9 @@ def test_a_picture_comes_with_the_files_and_stays(tmp_path: Path) -> None:
     applied = room.ask(Apply(secret=CODE, team="Bees", files=with_picture()))
     assert isinstance(applied, OwnEntry)
     assert [row.picture for row in room.view.teams if row.team == "Bees"] == [True]
-    seen = room.ask(Picture(secret=KEY, team="Bees"))
+    seen = room.ask(SeePicture(secret=KEY, team="Bees"))
     assert seen == TeamPicture(webp=small_picture(SentFile("we.png", PNG)))
-    assert room.ask(Picture(secret=KEY, team="Ants")) == TeamPicture(webp=b"")
+    assert room.ask(SeePicture(secret=KEY, team="Ants")) == TeamPicture(webp=b"")
 
     room.ask(Approve(secret=KEY, teams=("Bees",)))
     changed = room.ask(ChangeFiles(secret=applied.token, files=sample(b"\n")))
@@ -161,18 +161,18 @@ def test_the_organiser_takes_a_picture_away(tmp_path: Path) -> None:
     room = Room(tmp_path)
     applied = room.ask(Apply(secret=CODE, team="Bees", files=with_picture()))
     assert isinstance(applied, OwnEntry)
-    room.ask(Picture(secret=KEY, team="Bees", remove=True))
-    assert room.ask(Picture(secret=KEY, team="Bees")) == TeamPicture(webp=b"")
+    room.ask(SeePicture(secret=KEY, team="Bees", remove=True))
+    assert room.ask(SeePicture(secret=KEY, team="Bees")) == TeamPicture(webp=b"")
     assert room.states() == {"Bees": "waits"}
 
     room.ask(Approve(secret=KEY, teams=("Bees",)))
     room.ask(ChangeFiles(secret=applied.token, files=with_picture()))
     assert compute(room.facts, FORMATS).teams[0].picture
-    room.ask(Picture(secret=KEY, team="Bees", remove=True))
+    room.ask(SeePicture(secret=KEY, team="Bees", remove=True))
     team = compute(room.facts, FORMATS).teams[0]
     assert not team.picture
     assert room.where.entries.load(team.files).picture is None
-    assert said(room.ask(Picture(secret=applied.token, team="Bees"))) == "desk.not-organiser"
+    assert said(room.ask(SeePicture(secret=applied.token, team="Bees"))) == "desk.not-organiser"
 
 
 def test_a_folder_with_a_picture_enters_with_it(tmp_path: Path) -> None:

@@ -216,7 +216,7 @@ class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
     """False: only say what would change."""
 
 
-class Picture(DeskRequest, frozen=True, kw_only=True, tag="picture"):
+class SeePicture(DeskRequest, frozen=True, kw_only=True, tag="picture"):
     """Ask for the newest picture of a team, or take it away."""
 
     team: _Name
@@ -265,7 +265,7 @@ OfStaff = (
     | Undraw
     | Substitute
     | TakeOut
-    | Picture
+    | SeePicture
     | Rule
     | Move
     | PauseContest

@@ -116,7 +116,7 @@ export interface TakeOut {
   really?: boolean;
 }
 
-export interface Picture {
+export interface SeePicture {
   do: "picture";
   secret?: string;
   team: string;
@@ -340,4 +340,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | Picture | Rule | Move | PauseContest | ResumeContest | Shift | Announce | Staff | Tokens;
+export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | SeePicture | Rule | Move | PauseContest | ResumeContest | Shift | Announce | Staff | Tokens;

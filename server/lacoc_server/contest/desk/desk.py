@@ -34,11 +34,11 @@ from lacoc_shared.messages.desk import (
     Overviewed,
     Own,
     PauseContest,
-    Picture,
     Publish,
     ResumeContest,
     Rule,
     Said,
+    SeePicture,
     Shift,
     Staff,
     Substitute,
@@ -149,9 +149,9 @@ class Desk:
                 return organising.substitute(book, asked)
             case TakeOut():
                 return organising.take_out(book, asked)
-            case Picture(remove=False):
+            case SeePicture(remove=False):
                 return TeamPicture(webp=entering.picture(book, asked.team) or b"")
-            case Picture():
+            case SeePicture():
                 return organising.remove_picture(book, asked.team)
             case Rule():
                 return organising.rule(book, asked)
