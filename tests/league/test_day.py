@@ -332,7 +332,7 @@ def test_the_first_two_of_a_group_meet_again_only_late(groups: int, seed: int) -
         pass
     ranking = event.contest.stages[0].ranking[: 2 * groups]
     settings = {"format": "single-knockout", "after": "groups", "teams": 2 * groups}
-    event.add(Planned, stage="cup", apart=True, **settings)
+    event.add(Planned, stage="cup", met_apart=True, **settings)
     event.add(Closed)
     plan = event.contest.planned[0]
     how = FORMATS["single-knockout"]
@@ -350,7 +350,7 @@ def test_in_one_group_all_have_met_so_the_order_stays() -> None:
     cup = Cup(teams=4)
     for _ in cup.play("cup"):
         pass
-    cup.add(Planned, stage="final", format="single-knockout", after="cup", apart=True)
+    cup.add(Planned, stage="final", format="single-knockout", after="cup", met_apart=True)
     cup.add(Closed)
     draw = due(cup.contest, FORMATS)
     assert isinstance(draw, Drawn)

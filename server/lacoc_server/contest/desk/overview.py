@@ -89,7 +89,8 @@ def _to_draw(contest: Contest) -> ToDraw | None:
         return None
     plan, order = contest.planned[0], draw.entries
     how = FORMATS[plan.format]
-    apart = kept_apart(contest, plan, how, order)
+    all_apart = msgspec.structs.replace(plan, apart=True, met_apart=True)
+    apart = kept_apart(contest, all_apart, how, order)
     again = [len(meets_again(contest, plan, how, one)) for one in (order, apart)]
     met = [sorted(pair) for pair in met_before(contest, plan) if pair <= {*order}]
     meetings = first_meetings(plan, how, order) if met else ()

@@ -225,6 +225,7 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         after=stage.after,
         draw=stage.draw,
         apart=stage.apart,
+        met_apart=stage.apart and bool(stage.after),
         break_s=stage.break_s,
         final_court=stage.final_court,
         final_break_s=stage.final_break_s,

@@ -194,7 +194,7 @@ def _next_stage(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None
     teams = _teams(contest, plan)
     if teams is None:
         return None
-    if plan.apart and plan.format in formats:
+    if (plan.apart or plan.met_apart) and plan.format in formats:
         teams = kept_apart(contest, plan, formats[plan.format], teams)
     return new(Drawn, stage=plan.stage, entries=teams)
 

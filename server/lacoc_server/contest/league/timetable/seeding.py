@@ -48,12 +48,13 @@ def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, 
 def kept_apart(
     contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return an order in which fewer of one club, and fewer that have met before, meet first.
+    """Return an order in which fewer of those meet first that the plan keeps apart.
 
-    The order changes as little as possible: after groups the crossing A1-B2, B1-A2.
+    These are teams of one club (`apart`), and teams that have met before (`met_apart`). The order
+    changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
     """
-    club_of = {team.name: team.club for team in contest.teams if team.club}
-    met = met_before(contest, plan)
+    club_of = {team.name: team.club for team in contest.teams if team.club and plan.apart}
+    met = met_before(contest, plan) if plan.met_apart else frozenset()
 
     def clash(order: tuple[str, ...]) -> Pairs:
         return tuple(_clashing(first_meetings(plan, how, order), club_of, met))
