@@ -1,13 +1,16 @@
 """Tests of /office and /enter: an event from its file until its first games are called."""
 
+import io
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 from chromium import OpenPage
 from office_event import Event, running
-from playwright.sync_api import Page, expect
+from PIL import Image
+from playwright.sync_api import FilePayload, Page, expect
 from show import violations
 
 from lacoc_robots.library import robot_folder
@@ -72,6 +75,7 @@ def test_an_event_from_its_file_to_its_first_game(
     a_card_opens_its_team(office)
     assert violations(office) == []
     approve_and_draw(office)
+    see_the_picture(office, FIRST)
     expect(first.locator(".state")).to_contain_text("You are in")
     move(office)
     decide(office)
@@ -130,6 +134,7 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     )
     expect(page.locator(".mistakes li")).to_have_count(1)
     expect(page.locator(".mistakes")).to_contain_text("Loco-data.xlsx")
+    give_a_picture(page)
     page.locator("input[type=file]").set_input_files(list(event.right))
     expect(page.locator(".files li b").nth(2)).to_have_text("LocoTra-data.txt")
     page.locator("button[type=submit]").click()
@@ -140,6 +145,38 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     expect(page.get_by_role("link", name="To your matches")).to_be_visible()
     assert violations(page) == []
     return page
+
+
+def give_a_picture(page: Page) -> None:
+    """Give a picture of the team; what is none is told, and changes nothing."""
+    picture = io.BytesIO()
+    Image.new("RGB", (640, 480), "green").save(picture, "PNG")
+    files = page.locator("input[type=file]")
+    shown = page.get_by_role("img", name="Picture of the team")
+    files.set_input_files(FilePayload(name="x.png", mimeType="image/png", buffer=b"no"))
+    expect(page.locator(".toast")).to_contain_text("x.png is no picture")
+    expect(shown).to_have_count(0)
+    files.set_input_files(
+        FilePayload(name="we.png", mimeType="image/png", buffer=picture.getvalue())
+    )
+    expect(shown).to_be_visible()
+
+
+def see_the_picture(office: Page, team: str) -> None:
+    """Everybody sees the picture of a team that is in, until the organiser takes it away."""
+    contest = office.context.new_page()
+    contest.goto(office.url.partition("/office")[0] + f"/contest#team={quote(team)}")
+    picture = contest.locator(".one-team .team-picture")
+    expect(picture).to_be_visible()
+    assert picture.evaluate("it => it.naturalWidth") > 0
+    office.locator(".entries li", has_text=team).get_by_role("button", name=team).click()
+    expect(office.get_by_role("img", name=f"Picture of {team}")).to_be_visible()
+    assert violations(office) == []
+    office.get_by_role("button", name="Take the picture away").click()
+    expect(office.get_by_role("button", name="Take the picture away")).to_have_count(0)
+    office.keyboard.press("Escape")
+    expect(picture).to_have_count(0)
+    contest.close()
 
 
 def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
