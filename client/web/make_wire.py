@@ -50,6 +50,7 @@ from lacoc_server.contest.league import (
 )
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.formats import format as formats
+from lacoc_server.contest.league.timetable import breaks
 from lacoc_server.doors.inbox import NAME_MAX
 from lacoc_server.match.referee import MAX_CLOCK_S, MAX_FREEZE_S, MAX_POINTS
 from lacoc_server.trial.reasons import legs
@@ -167,6 +168,7 @@ CONTEST_STRUCTS = (
     sheet.Coming,
     sheet.Later,
     contest.Day,
+    breaks.Break,
     league_facts.Announced,
     sheet.ContestSheet,
 )

@@ -6,13 +6,21 @@ import pytest
 from office_room import CODE, KEY, NOW_MS, Room, said, sample
 
 from lacoc_robots.library import robot_folder
-from lacoc_server.contest.acts import organiser
+from lacoc_server.contest.acts import deciding, organiser
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import Called, Closed, Drawn, Played, Withdrawn, new
+from lacoc_server.contest.league.facts import (
+    Called,
+    Closed,
+    Drawn,
+    Played,
+    Replaced,
+    Withdrawn,
+    new,
+)
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.live.office import Office
@@ -46,7 +54,7 @@ from lacoc_shared.messages.desk import (
     TokenList,
     Tokens,
 )
-from lacoc_shared.words import say
+from lacoc_shared.words import render, say
 
 
 @pytest.fixture
@@ -261,7 +269,11 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
     seen = room.ask(Rule(secret=KEY, **rule))
     assert isinstance(seen, Effect)
     assert not seen.done
-    assert {line.code for line in seen.lines} == {"decide.match", "decide.rank"}
+    assert {line.code for line in seen.lines} == {
+        "decide.match",
+        "decide.plays-no-more",
+        "decide.rank",
+    }
     assert room.facts == before
     done = room.ask(Rule(secret=KEY, really=True, **rule))
     assert isinstance(done, Effect)
@@ -322,6 +334,14 @@ def test_a_stage_waits_for_the_organiser_s_draw(over: Room) -> None:
     assert over.view.to_draw is None
     assert said(over.ask(draw)) == "contest.nothing-to-draw"
     assert [*check_history(over.facts, over.book.contest)] == []
+
+
+def test_the_draw_says_first_who_would_meet_again(over: Room) -> None:
+    """The organiser sees before the draw who has met already, and who meets at once."""
+    shown = over.view.to_draw
+    assert shown is not None
+    assert (shown.meet, shown.met) == (((0, 1),), (("Ann", "Ben"),))
+    assert shown.apart == (), "two teams can't be kept apart"
 
 
 def test_a_first_stage_can_wait_too(tmp_path: Path) -> None:
@@ -406,10 +426,48 @@ def test_a_referee_sees_what_comes_and_what_a_result_changes(room: Room) -> None
     assert isinstance(plan, CourtPlan)
     assert plan.changes[0].code == "decide.match"
     assert dict(plan.changes[0].values)["winner"] == right
-    ranks = {one.values["team"]: one.values["after"] for one in plan.changes[1:]}
+    ranks = {
+        one.values["team"]: one.values["after"] for one in plan.changes if one.code == "decide.rank"
+    }
     assert ranks.get(right, 1) == 1  # it may have been first before
     assert left in ranks
+    drawn = room.ask(CourtDay(secret=token, court="north", scores=(5, 5), outcome="draw"))
+    assert isinstance(drawn, CourtPlan)
+    told = [render(line) for line in drawn.changes]
+    about = "Round robin, round 1"
+    assert f"{about} is a draw: {left} and {right} get 1 point each." in told
+    assert [line.split(" then plays: ")[0] for line in told if "then plays" in line] == [
+        left,
+        right,
+    ]
     assert room.facts == facts
+
+
+def test_a_drawn_game_of_a_match_of_several_says_how_it_goes_on(room: Room) -> None:
+    """Before a drawn game counts, both teams read the score of the match and which game follows."""
+    room.file.write_text(room.file.read_text().replace("[stage.cup]", "[stage.cup]\ngames = 3"))
+    room.where = ContestFolder(room.file)
+    note_plans(room.store, room.where.plans)
+    room.enter("Ann", "Ben")
+    room.draw()
+    room.draw()
+    (match,) = playable(compute(room.facts, FORMATS))
+    assert match.next_seats is not None
+    left, right = match.next_seats
+    result = new(
+        Replaced,
+        pairing=match.pairing.id,
+        game=1,
+        teams=(left, right),
+        scores=(5, 5),
+        outcome="draw",
+        reason="?",
+    )
+    (told,) = deciding.effect(room.facts, [result])
+    assert render(told) == (
+        f"Round robin, round 1 goes on at {match.teams[0]} ½ : ½ {match.teams[1]}: "
+        "both teams play game 2."
+    )
 
 
 def test_a_match_is_moved(room: Room) -> None:

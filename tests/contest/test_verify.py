@@ -698,7 +698,9 @@ def test_any_name_of_a_record_can_be_checked(tmp_path: Path, name: str) -> None:
     )
     (game,) = games_of(facts)
     assert game.plan is not None
-    assert check_game(tmp_path, game, proven=True).wrong
+    (wrong, *_) = check_game(tmp_path, game, proven=True).wrong
+    assert render(wrong).startswith("Round robin, round 1 (A – B): ")
+    assert render(wrong, "ja").startswith("総当たり戦")
 
 
 def test_earlier_facts_must_still_be_there() -> None:
@@ -806,6 +808,30 @@ def test_a_sample_takes_each_pair_equally_often() -> None:
     assert sorted(sample(range(5), 9, 1)) == [*range(5)]
     assert least_forged(0, 0) == 1
     assert least_forged(7, 0) == 8
+
+
+def test_a_check_says_what_it_does(
+    played: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Before the long part `verify` says how many games it plays again, and how many at a time."""
+    told: list[tuple[int, int]] = []
+    check(
+        played / "published",
+        lambda done, there: told.append((done, there)),
+        sampled=1,
+        jobs=1,
+    )
+    there = told[0][1]
+    assert told == [(done, there) for done in range(there + 1)]
+    monkeypatch.setattr(
+        "lacoc_server.contest.verify.check.check",
+        lambda folder, changed, **_: (
+            changed(0, 16),
+            ContestCheck((), (), (), (), 9, 20, 20, 0, 0, 0),
+        )[1],
+    )
+    checking.verify(played / "published", jobs=2)
+    assert "16 games are played again from their records, 2 at a time" in capsys.readouterr().err
 
 
 def test_what_is_like_the_rest_is_listed_in_part(capsys: pytest.CaptureFixture[str]) -> None:

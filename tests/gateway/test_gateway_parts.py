@@ -10,6 +10,7 @@ import threading
 import time
 from pathlib import Path
 from typing import Any, cast, get_args
+from urllib.request import urlopen
 
 import msgpack
 import msgspec
@@ -17,6 +18,7 @@ import pytest
 from aside import run_async
 from hypothesis import given
 from hypothesis import strategies as st
+from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
@@ -34,6 +36,7 @@ from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.guard import Guard
 from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.recordings import Recordings
+from lacoc_client.web.gateway.rules_route import rules_route
 from lacoc_client.web.gateway.site import PATHS, sheet_route
 from lacoc_client.web.gateway.viewer import Frames, Viewer
 from lacoc_shared.contest.access import Access
@@ -473,3 +476,24 @@ def test_a_file_is_kept_once_however_it_is_asked_for(tmp_path: Path) -> None:
     found = {id(files.find(name)) for name in spellings}
     assert len(found) == 1
     assert len(files._files) == 1
+
+
+@pytest.mark.parametrize(
+    ("language", "begins"),
+    [("en", b"# The rules"), ("ja", "# 競技ルール".encode()), ("xx", b"# The rules")],
+)
+def test_all_rules_can_be_read_without_the_internet(language: str, begins: bytes) -> None:
+    """A gateway gives the rules as a text, in the reader's language if they are translated."""
+    opened, ended = server.listen(server.LOOPBACK), threading.Event()
+    serving = threading.Thread(
+        target=server.serve, args=(Starlette(routes=[rules_route()]), opened, ended.is_set)
+    )
+    serving.start()
+    try:
+        with urlopen(f"{opened.url}/rules/{language}", timeout=LIMIT_S) as answer:
+            text = answer.read()
+    finally:
+        ended.set()
+        serving.join(LIMIT_S)
+    assert answer.headers.get_content_type() == "text/plain"
+    assert text.startswith(begins)

@@ -9,7 +9,7 @@ from cup import Cup
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.contest.league.draws import by_lot, clubs_apart
+from lacoc_server.contest.league.draws import by_lot, set_apart
 from lacoc_server.contest.league.facts import (
     Announced,
     Closed,
@@ -29,6 +29,7 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import assign, due
+from lacoc_server.contest.league.timetable.seeding import meets_again
 from lacoc_server.contest.league.timetable.whereabouts import ContestPace, starts
 from lacoc_shared.words import render
 
@@ -294,12 +295,12 @@ def test_teams_of_one_club_are_kept_apart(clubs: list[str], groups: int) -> None
         dealt = [order[at::groups] for at in range(groups)]
         return [(one, two) for group in dealt for one in group for two in group if one < two]
 
-    def clash(order: tuple[str, ...]) -> int:
-        return sum(club_of[one] == club_of[two] != "" for one, two in met(order))
+    def clash(order: tuple[str, ...]) -> list[tuple[str, str]]:
+        return [(one, two) for one, two in met(order) if club_of[one] == club_of[two] != ""]
 
-    found = clubs_apart(names, club_of, met)
+    found = set_apart(names, clash)
     assert sorted(found) == sorted(names)
-    assert clash(found) <= clash(names)
+    assert len(clash(found)) <= len(clash(names))
     if not clash(names):
         assert found == names
 
@@ -316,3 +317,45 @@ def test_the_best_of_two_schools_meet_late() -> None:
     event.append(draw)
     pairs = [match.teams for match in event.contest.stages[0].matches[:2]]
     assert {tuple(sorted(team[0] for team in pair if team)) for pair in pairs} == {("a", "b")}
+
+
+@pytest.mark.parametrize("groups", [2, 4])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_first_two_of_a_group_meet_again_only_late(groups: int, seed: int) -> None:
+    """With `apart`, the first two of each group cross over: winners stay the best seeds.
+
+    Without it the ranking alone makes the order, so teams of a group may meet again.
+    """
+    event = Event(3 * groups, 2, Random(seed))
+    event.begin("groups", "round-robin", event.names, groups=groups)
+    for _ in event.play("groups"):
+        pass
+    ranking = event.contest.stages[0].ranking[: 2 * groups]
+    settings = {"format": "single-knockout", "after": "groups", "teams": 2 * groups}
+    event.add(Planned, stage="cup", met_apart=True, **settings)
+    event.add(Closed)
+    plan = event.contest.planned[0]
+    how = FORMATS["single-knockout"]
+    draw = due(event.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    assert draw.entries[:groups] == ranking[:groups]
+    assert sorted(draw.entries) == sorted(ranking)
+    assert meets_again(event.contest, plan, how, draw.entries) == ()
+    if meets_again(event.contest, plan, how, ranking) == ():
+        assert draw.entries == ranking
+
+
+def test_in_one_group_all_have_met_so_the_order_stays() -> None:
+    """Where nothing avoids that teams meet again, `apart` changes no seeding."""
+    cup = Cup(teams=4)
+    for _ in cup.play("cup"):
+        pass
+    cup.add(Planned, stage="final", format="single-knockout", after="cup", met_apart=True)
+    cup.add(Closed)
+    draw = due(cup.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    assert draw.entries == cup.contest.stages[0].ranking
+    again = meets_again(
+        cup.contest, cup.contest.planned[0], FORMATS["single-knockout"], draw.entries
+    )
+    assert len(again) == 2

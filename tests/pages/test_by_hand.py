@@ -115,6 +115,8 @@ def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
         shown.press("?")
         shown.sees("dialog dl")
         assert violations(shown.page) == []
+    page.sees("dialog", "More discs win.")
+    page.sees("dialog a[href='rules/en']", "All rules")
 
 
 def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
@@ -124,8 +126,13 @@ def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
     page.page.keyboard.type("Ants")  # the keyboard that a phone shows
     page.find("button[type=submit]").tap()
     page.stands("seated")
-    page.find("button.ready").tap()
+    # What one has to know stands below the field: nothing hides one's own robot.
+    page.sees(".rail .brief", "Your robot stands on the left")
+    page.misses(".stage .brief")
     venue.contestant("right", "Bees")
+    page.is_told("Bees is ready. Press Ready when you are, too")
+    page.sees(".events", "Bees is ready")
+    page.find("button.ready").tap()
     page.phase(Phase.READY)
 
     judge = sit(venue.url, viewport=PHONE, has_touch=True, is_mobile=True)

@@ -38,6 +38,37 @@ def say(page: Page, label: str, text: str) -> None:
     page.locator("dialog").get_by_label(label).fill(text)
 
 
+def nothing_is_covered(watch: Page, event: Event, open_page: OpenPage) -> None:
+    """A line to all covers no head of /referee, and the bar of /watch covers no rule."""
+    for size in (PHONE, {"width": 1280, "height": 800}):
+        referee = open_page(viewport=size)
+        referee.goto(f"{event.url}/referee")
+        expect(referee.locator(".banner")).to_contain_text("Lunch until one")
+        expect(referee.locator(".top h1")).to_be_visible()
+        assert bottom(referee, ".banner") <= top(referee, ".top h1")
+        referee.close()
+    watch.set_viewport_size({"width": 1280, "height": 800})
+    expect(watch.locator(".opening .rules")).to_be_visible()
+    expect(watch.locator(".foot .cheers")).to_be_visible()
+    watch.wait_for_function(
+        "document.querySelector('.opening').getBoundingClientRect().bottom"
+        " <= document.querySelector('.foot').getBoundingClientRect().top"
+    )
+    watch.set_viewport_size(LAPTOP)
+
+
+def top(page: Page, selector: str) -> float:
+    box = page.locator(selector).bounding_box()
+    assert box is not None
+    return box["y"]
+
+
+def bottom(page: Page, selector: str) -> float:
+    box = page.locator(selector).bounding_box()
+    assert box is not None
+    return box["y"] + box["height"]
+
+
 def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None:
     """The organiser steers the day; everybody reads it, and the staff decide under their names."""
     office = open_page(viewport=LAPTOP)
@@ -58,11 +89,16 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
     confirm(office, "Show it")
     for page in (contest, watch):
         expect(page.locator(".banner")).to_contain_text("Lunch until one")
+    nothing_is_covered(watch, event, open_page)
 
     press(office, "Pause")
     say(office, "Reason, if you like (everybody can read it)", "a cable")
     confirm(office, "Pause now")
-    expect(office.locator(".day [role=status]")).to_contain_text("no game is called now (a cable)")
+    for page in (office, contest):
+        pause = page.locator(".pause")
+        expect(pause).to_contain_text("A pause, until the organiser goes on. (a cable)")
+        expect(pause).to_contain_text(re.compile("Then: Group stage|Then: Round robin"))
+    expect(office.locator(".slot .time", has_text="or later").first).to_be_visible()
     expect(watch.locator(".banner")).to_contain_text("a cable")
     watch.locator(".banner button").click()
     expect(watch.locator(".banner")).to_have_count(0)
@@ -73,7 +109,8 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
 
     press(office, "All later")
     confirm(office, "15 minutes later")
-    expect(office.locator(".day [role=status]")).to_contain_text("No game is called before")
+    expect(office.locator(".day [role=status]")).to_contain_text("A pause until")
+    expect(contest.locator(".coming .expected").first).to_contain_text("not before")
     assert violations(office) == []
     press(office, "Go on")
     expect(office.locator(".day [role=status]")).to_have_count(0)  # the buttons move then
@@ -84,6 +121,7 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
     link = office.locator("dialog .staff a")
     expect(link).to_have_text(re.compile(r"/office#token="))
     expect(office.locator("dialog .staff").get_by_role("button", name="Copy")).to_be_visible()
+    expect(office.locator("dialog .referees a").first).to_have_text(re.compile("/referee.court="))
     helper = open_page(viewport=PHONE)
     helper.goto(link.inner_text())
     expect(helper.locator(".day")).to_contain_text("You decide as Aiko.")

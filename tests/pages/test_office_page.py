@@ -1,13 +1,16 @@
 """Tests of /office and /enter: an event from its file until its first games are called."""
 
+import io
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 from chromium import OpenPage
 from office_event import Event, running
-from playwright.sync_api import Page, expect
+from PIL import Image
+from playwright.sync_api import FilePayload, Page, expect
 from show import violations
 
 from lacoc_robots.library import robot_folder
@@ -33,7 +36,7 @@ def fill(page: Page, event: Event, team: str, code: str = "") -> None:
     page.locator("input.code").fill(code or event.code.lower())
     page.locator(".field input").nth(1).fill(team)
     page.locator("input[type=file]").set_input_files(list(event.right))
-    expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
+    expect(page.locator(".files li b").nth(2)).to_have_text("LocoTra-data.txt")
 
 
 def enter(open_page: OpenPage, event: Event, team: str) -> Page:
@@ -69,14 +72,35 @@ def test_an_event_from_its_file_to_its_first_game(
     keep_strangers_out(office, event)
     rows = office.locator(".entries li")
     expect(rows).to_have_count(len(TEAMS))
+    a_card_opens_its_team(office)
     assert violations(office) == []
     approve_and_draw(office)
+    see_the_picture(office, FIRST)
     expect(first.locator(".state")).to_contain_text("You are in")
     move(office)
     decide(office)
     late_files(office, first, event)
     papers(office)
     on_a_phone(open_page, event)
+
+
+def a_card_opens_its_team(office: Page) -> None:
+    """The whole card of a team opens it, by mouse and by keyboard, and looks so."""
+    card = office.locator(".entries li", has_text=TEAMS[1])
+    box = card.bounding_box()
+    assert box is not None
+    card.click(position={"x": box["width"] / 2, "y": box["height"] - 8})
+    title = office.get_by_role("heading", name=TEAMS[1], exact=True)
+    expect(title).to_be_visible()
+    office.keyboard.press("Escape")
+    expect(title).to_be_hidden()
+    team = card.get_by_role("button", name=TEAMS[1], exact=True)
+    assert team.evaluate("it => getComputedStyle(it, '::before').cursor") == "pointer"
+    team.focus()
+    office.keyboard.press("Enter")
+    expect(title).to_be_visible()
+    office.keyboard.press("Escape")
+    expect(title).to_be_hidden()
 
 
 def before_the_event(open_page: OpenPage, event: Event) -> None:
@@ -110,8 +134,9 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     )
     expect(page.locator(".mistakes li")).to_have_count(1)
     expect(page.locator(".mistakes")).to_contain_text("Loco-data.xlsx")
+    give_a_picture(page)
     page.locator("input[type=file]").set_input_files(list(event.right))
-    expect(page.locator(".files li b").last).to_have_text("LocoTra-data.txt")
+    expect(page.locator(".files li b").nth(2)).to_have_text("LocoTra-data.txt")
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible()
     expect(page.get_by_role("status").first).to_contain_text("waits for the organiser")
@@ -122,17 +147,49 @@ def first_team(open_page: OpenPage, event: Event) -> Page:
     return page
 
 
+def give_a_picture(page: Page) -> None:
+    """Give a picture of the team; what is none is told, and changes nothing."""
+    picture = io.BytesIO()
+    Image.new("RGB", (640, 480), "green").save(picture, "PNG")
+    files = page.locator("input[type=file]")
+    shown = page.get_by_role("img", name="Picture of the team")
+    files.set_input_files(FilePayload(name="x.png", mimeType="image/png", buffer=b"no"))
+    expect(page.locator(".toast")).to_contain_text("x.png is no picture")
+    expect(shown).to_have_count(0)
+    files.set_input_files(
+        FilePayload(name="we.png", mimeType="image/png", buffer=picture.getvalue())
+    )
+    expect(shown).to_be_visible()
+
+
+def see_the_picture(office: Page, team: str) -> None:
+    """Everybody sees the picture of a team that is in, until the organiser takes it away."""
+    contest = office.context.new_page()
+    contest.goto(office.url.partition("/office")[0] + f"/contest#team={quote(team)}")
+    picture = contest.locator(".one-team .team-picture")
+    expect(picture).to_be_visible()
+    assert picture.evaluate("it => it.naturalWidth") > 0
+    office.locator(".entries li", has_text=team).get_by_role("button", name=team).click()
+    expect(office.get_by_role("img", name=f"Picture of {team}")).to_be_visible()
+    assert violations(office) == []
+    office.get_by_role("button", name="Take the picture away").click()
+    expect(office.get_by_role("button", name="Take the picture away")).to_have_count(0)
+    office.keyboard.press("Escape")
+    expect(picture).to_have_count(0)
+    contest.close()
+
+
 def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
     """Enter with a workbook alone, after a look at the sample; level B is made of either."""
     page = open_page(viewport=PHONE)
     page.goto(f"{event.url}/enter")
     page.get_by_role("button", name="Take the sample gait").click()
-    expect(page.locator(".files li b").last).to_have_text("made from Loco-data.txt")
+    expect(page.locator(".files li b").nth(2)).to_have_text("made from Loco-data.txt")
     fill(page, event, team)
     page.get_by_role("button", name="Remove LocoTra-data.txt").click()
     book = robot_folder("hexapod") / "Loco-data.xlsx"
     page.locator("input[type=file]").set_input_files(book)
-    expect(page.locator(".files li b").last).to_have_text("made from Loco-data.xlsx")
+    expect(page.locator(".files li b").nth(2)).to_have_text("made from Loco-data.xlsx")
     page.locator("button[type=submit]").click()
     expect(page.locator(".qr img")).to_be_visible()
 
@@ -299,7 +356,7 @@ def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> N
     draw.click()
     dialog = office.get_by_role("dialog", name="Draw Knockout")
     expect(dialog.locator(".seeds li")).to_have_count(2)
-    winner = dialog.locator(".seeds li").first.inner_text()
+    winner = dialog.locator(".seeds li b").first.inner_text()
     assert winner in first
     assert violations(office) == []
     phone = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")

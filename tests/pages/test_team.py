@@ -62,6 +62,13 @@ settings.match.start = "ready"
 
 
 PLAYING = int(Phase.PLAYING)
+TITLES = """
+new MutationObserver(() => {
+  const title = document.querySelector(".entrance h1")?.textContent ?? "";
+  sessionStorage.titles = `${sessionStorage.titles ?? ""}|${title}`;
+}).observe(document, { childList: true, subtree: true, characterData: true });
+"""
+"""Notes what the page says while it is on its way."""
 
 
 @pytest.mark.long
@@ -75,16 +82,25 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         link = there["link"]
         player = sit(there["url"])
         type_wrong_token(player, link)
+        player.page.add_init_script(TITLES)
         player.page.goto(link)
         # The token is kept for the tab, also over a reload; it does not stay in the address.
         expect(player.page).to_have_url(re.compile("^[^#]*$"))
         # It goes to the court of its first match. Only then, or its move would cut the reload off.
         expect(player.page).to_have_url(re.compile("court=south"))
+        assert "Opening court south" in player.page.evaluate("sessionStorage.titles")
+        size = player.page.viewport_size
+        assert size is not None
+        player.page.set_viewport_size({"width": 390, "height": 844})
+        player.sees(".fixture", "Swiss")
+        player.page.set_viewport_size(size)
         player.page.reload()
         asks_before_it_takes_over(player, sit(there["url"]), link)
         opponents = [play_a_match(player) for _ in range(2)]
         assert len({*opponents}) == len(opponents)
         player.sees(".entrance[data-state=over]", "The contest is over: place")
+        player.sees(f".entrance a[href='contest#team={PERSON}']", "Your matches and their replays")
+        player.sees(".entrance a[href='rules/en']", "All rules")
         assert violations(player.page) == []
 
 

@@ -14,6 +14,7 @@ from lacoc_server.commands import serve
 from lacoc_server.commands.contest.app import app
 from lacoc_server.contest.kept.plans import game, open_stage, plans
 from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.link import Link
 from lacoc_shared.mistakes import UserError
 
 
@@ -132,6 +133,51 @@ def test_check_warns_if_entries_are_over(tmp_path: Path, year: int, told: bool) 
     result = CliRunner().invoke(app, ["check", str(file)])
     assert (result.exit_code, "has no mistakes" in result.stdout) == (0, True)
     assert (f"entries_close, {close}, is over" in result.stderr) == told
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("", "", ""),
+        ("apart = true", "apart = false", "may meet again in the first round"),
+        ("groups = 2", "groups = 1", "repeat one of it"),
+    ],
+)
+def test_check_warns_if_teams_of_a_group_meet_again(
+    tmp_path: Path, old: str, new: str, told: str
+) -> None:
+    """`check` says that a knockout may repeat matches of the groups, and names the way out."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    file.write_text(file.read_text().replace(old, new) if old else file.read_text())
+    result = CliRunner().invoke(app, ["check", str(file)])
+    assert result.exit_code == 0
+    assert told in " ".join(result.stderr.split())
+    assert bool(told) == ("finals" in result.stderr)
+
+
+def test_referees_and_staff_are_invited_too(tmp_path: Path) -> None:
+    """`invite --staff` has the links of all referees and all of the staff, also as a table."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file), "--courts", "2")
+    secrets = contests.load(file).secrets
+    aiko = secrets.staff("Aiko")
+    given = CliRunner().invoke(app, ["invite", "--contest", str(file), "--staff", "--json"])
+    links = {kind: dict(found) for kind, found in json.loads(given.stdout).items()}
+    assert [*links["referee"]] == ["main-1", "main-2"]
+    assert Link.read(links["staff"]["Aiko"]).token == aiko
+    read = Link.read(links["referee"]["main-2"])
+    assert (read.page, read.court) == ("referee", "main-2")
+    assert read.token == secrets.referee("main-2")
+    table = CliRunner().invoke(app, ["invite", "--contest", str(file), "--staff", "--csv"])
+    rows = [line.split(",") for line in table.stdout.splitlines()]
+    assert [row[:2] for row in rows] == [
+        ["kind", "name"],
+        ["referee", "main-1"],
+        ["referee", "main-2"],
+        ["staff", "Aiko"],
+    ]
+    assert "referee of court main-1" in run("invite", "--contest", str(file), "--staff")
 
 
 def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:

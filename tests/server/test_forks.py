@@ -210,7 +210,8 @@ def test_a_contest_with_a_fork_is_found_out(source: ForkSource, tmp_path: Path) 
         record="f.mcap",
     )  # fmt: skip
     plan = new(Planned, stage="s", format="round-robin", arena="othello", arena_settings=QUICK)
-    game = GameToCheck(played=played, plan=plan, files=((), ()))
+    about = say("fixture.named", name="x")
+    game = GameToCheck(played=played, about=about, plan=plan, files=((), ()))
     found = [render(one) for one in check_game(tmp_path, game, proven=False).wrong]
     assert any(f"it is a fork of match {MATCH}" in one for one in found), found
 

@@ -7,9 +7,9 @@ from typing import Annotated
 import typer
 from rich.markdown import Markdown
 
-import lacoc_shared
 from lacoc_shared import words
 from lacoc_shared.command import screen
+from lacoc_shared.command.documents import folder, translated
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -30,34 +30,21 @@ def docs_command(
     # Not the index of the checkout, README, and not translations, such as rules.ja.
     pages = {
         file.stem: file
-        for file in sorted(_folder().glob("*.md"))
+        for file in sorted(folder().glob("*.md"))
         if file.stem.islower() and "." not in file.stem
     }
     if page is None:
         listed = screen.table(say("fact.page"), say("fact.what"))
-        for name, file in pages.items():
-            listed.add_row(name, _title(_translated(file)))
+        for name in pages:
+            listed.add_row(name, _title(translated(name, words.current())))
         screen.show(listed)
         return
     name = page.removesuffix(".md")
     if name not in pages:
         near = get_close_matches(name, pages) or [*pages]
         raise UserError(say("command.no-page", page=page[:40], pages=near))
-    text = _translated(pages[name]).read_text("utf-8")
+    text = translated(name, words.current()).read_text("utf-8")
     screen.show(Markdown(text) if screen.stdout.is_terminal else text)
-
-
-def _folder() -> Path:
-    """Return the folder of the pages: in the installed package, else in the checkout."""
-    package = Path(lacoc_shared.__file__).parent
-    installed = package / "docs"
-    return installed if installed.is_dir() else package.parents[1] / "docs"
-
-
-def _translated(file: Path) -> Path:
-    """Return the page in the language of this process, if there is such a page."""
-    other = file.with_suffix(f".{words.current()}.md")
-    return other if other.exists() else file
 
 
 def _title(file: Path) -> str:

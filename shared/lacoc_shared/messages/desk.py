@@ -386,6 +386,14 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
     """What people call it."""
     entries: tuple[str, ...]
     """Its teams by their seeding, the best first."""
+    why: tuple[Phrase, ...] = ()
+    """Why each of them is in it; (): the stage follows none."""
+    meet: tuple[tuple[int, int], ...] = ()
+    """Places in the seeding, from 0, whose teams surely meet: in the first round, or in a group."""
+    met: tuple[tuple[str, str], ...] = ()
+    """Teams of this stage that have met in the stage before."""
+    apart: tuple[str, ...] = ()
+    """An order in which fewer of those meet again; (): there is none."""
 
 
 class Undrawable(msgspec.Struct, frozen=True, kw_only=True):

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bySeat, gamesOf, pointsOf } from "../../../client/web/src/core/contest/games.ts";
 import { places } from "../../../client/web/src/core/contest/places.ts";
+import { meetAgain } from "../../../client/web/src/core/draw.ts";
 import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
 import { clockOf, columns, dropped, momentOf } from "../../../client/web/src/core/timetable.ts";
 
@@ -154,4 +155,23 @@ test("points of each game are in the order of the match's teams, whoever sat lef
   );
   assert.deepEqual(gamesOf({ teams: ["Eels", "Wasps"] }), [1]);
   assert.deepEqual(bySeat({ teams: ["Eels", "Wasps"] }, 1, [4, 5]), [4, 5]);
+});
+
+test("who has met before and meets at once follows from the order of the draw", () => {
+  const draw = {
+    meet: [
+      [0, 3],
+      [1, 2],
+    ],
+    met: [
+      ["A1", "A2"],
+      ["B1", "B2"],
+    ],
+  };
+  assert.deepEqual(meetAgain(draw, ["A1", "B1", "B2", "A2"]), [
+    ["A1", "A2"],
+    ["B1", "B2"],
+  ]);
+  assert.deepEqual(meetAgain(draw, ["A1", "B1", "A2", "B2"]), []);
+  assert.deepEqual(meetAgain({ meet: [], met: [] }, ["A1", "B1"]), []);
 });

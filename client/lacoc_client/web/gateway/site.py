@@ -38,6 +38,7 @@ from lacoc_client.web.gateway.pieces.pictures import Pictures
 from lacoc_client.web.gateway.pieces.route import piece_routes
 from lacoc_client.web.gateway.published_route import published_routes
 from lacoc_client.web.gateway.recordings import Recordings
+from lacoc_client.web.gateway.rules_route import rules_route
 from lacoc_client.web.gateway.scores import scores_route
 from lacoc_client.web.gateway.shown import ShownRecords
 from lacoc_client.web.gateway.wire import REQUEST_BYTES
@@ -115,6 +116,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
         sheet_route(home.sheet),
         *published_routes(home.sheet),
         scores_route(courts),
+        rules_route(),
         *piece_routes(courts, pictures, crowd),
         WebSocketRoute("/ws", page),
     ]

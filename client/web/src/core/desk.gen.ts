@@ -241,6 +241,10 @@ export interface ToDraw {
   stage: string;
   title: Phrase;
   entries: string[];
+  why: Phrase[];
+  meet: ([number, number])[];
+  met: ([string, string])[];
+  apart: string[];
 }
 
 export interface Undrawable {

@@ -28,6 +28,8 @@ export class Team {
   readonly refusal = signal<Refused | null>(null);
   /** Whether somebody else drives the team's seat now, and this page must not take it unasked. */
   readonly driven = signal(false);
+  /** The court to which the page goes now; "": it stays. */
+  readonly going = signal("");
   private mine = "";
   /** The call whose seat a person takes from whoever drives it. */
   private taken = "";
@@ -147,7 +149,10 @@ export class Team {
       case "go": {
         const { courts, home } = this.court.welcome.peek()!;
         // The gateway of one court leads to no other; that of one person learns where they are.
-        if (home !== "venue" || courts.includes(there.court)) goToCourt(there.court);
+        if (home !== "venue" || courts.includes(there.court)) {
+          this.going.value = there.court;
+          goToCourt(there.court);
+        }
         break;
       }
       case "join":

@@ -18,10 +18,11 @@ import { Decisions } from "./contest/decisions";
 import { Head, Parts } from "./contest/head";
 import { Now } from "./contest/now";
 import { addressed, big } from "./contest/parts";
+import { Reasons } from "./contest/reasons";
 import { Schedule } from "./contest/schedule";
 import { Tables, Ties } from "./contest/standings";
 import { TeamDialog, Teams } from "./contest/teams";
-import { expected, roundsLeft, stageHeading, stageTitle } from "./contest/words";
+import { expected, roundsLeft, stageHeading, stageTitle, whoTitle } from "./contest/words";
 import "./contest/contest.css";
 
 const feed = new Feed();
@@ -94,6 +95,7 @@ function Stage({ sheet, view }: { sheet: ContestSheet; view: StageView }) {
           <BracketView sheet={sheet} view={view} />
         </div>
       )}
+      <Reasons sheet={sheet} view={view} />
       <Tables view={view} />
       <Ties view={view} />
       {view.rounds_to_draw > 0 && <p class="muted">{roundsLeft(view)}</p>}
@@ -129,8 +131,8 @@ function Later({ sheet, stage }: { sheet: ContestSheet; stage: string }) {
       {matches.map(({ pairing, fixture, who, court, at_ms }) => (
         <li key={pairing}>
           <b>{said(fixture)}</b>
-          <p class="muted">{who.map(said).join(" – ")}</p>
-          <p class="expected">{expected({ court, at_ms })}</p>
+          <p class="muted">{whoTitle(who)}</p>
+          <p class="expected">{expected(sheet, { court, at_ms })}</p>
         </li>
       ))}
     </ol>

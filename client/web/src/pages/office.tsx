@@ -6,13 +6,14 @@ import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
+import { Reasons } from "./contest/reasons";
+import { stageTitle } from "./contest/words";
 import { CloseDialog, DrawDialog } from "./office/closing";
 import {
   DayBar,
   LaterDialog,
   LineDialog,
   PauseDialog,
-  StaffDialog,
   SubstituteDialog,
   UndrawDialog,
 } from "./office/day";
@@ -29,9 +30,22 @@ import { MoveDialog } from "./office/moving";
 import { Organiser } from "./office/organiser";
 import { OfficePapers } from "./office/papers";
 import { RuleDialog, Rulings } from "./office/ruling";
+import { StaffDialog } from "./office/staff";
 import { Timetable } from "./office/timetable";
 import "./contest/contest.css";
 import "./office/office.css";
+
+/** Who has gone on into the newest stage that follows another one, and why. */
+function GoesOn({ organiser }: { organiser: Organiser }) {
+  const sheet = organiser.feed.sheet.value;
+  const view = sheet?.stages.findLast(({ stage }) => sheet.reasons[stage.name]);
+  return sheet && view ? (
+    <section aria-label={t("contest.reasons")}>
+      <h2>{stageTitle(sheet, view.stage.name)}</h2>
+      <Reasons sheet={sheet} view={view} />
+    </section>
+  ) : null;
+}
 
 export default function Office() {
   const organiser = useMemo(() => new Organiser(), []);
@@ -67,6 +81,7 @@ export default function Office() {
             {(view.drawn || view.slots.length > 0) && (
               <Timetable organiser={organiser} view={view} />
             )}
+            {view.drawn && <GoesOn organiser={organiser} />}
             {view.drawn && <Rulings organiser={organiser} />}
             {view.drawn && <Entries organiser={organiser} view={view} />}
           </>

@@ -23,7 +23,7 @@ import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard, useResult } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
-import { isNarrow } from "../ui/screen";
+import { isNarrow, tellHeight } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
@@ -157,7 +157,7 @@ function Hud() {
         <Thirds match={shown} />
       </div>
       {aside && <Aside court={aside} />}
-      <div class="foot">
+      <div class="foot" ref={tellFoot}>
         {(court.begun.value || !court.directed) && (
           <Cameras camera={camera} sheet={court.sheet.value} />
         )}
@@ -168,6 +168,9 @@ function Hud() {
     </>
   );
 }
+
+/** What stands above the foot needs to know how high it is: cheers make it two rows. */
+const tellFoot = (foot: HTMLElement | null) => tellHeight("--foot", foot);
 
 /** Which court and match this is; with several courts, the way to another one. */
 function Brand() {

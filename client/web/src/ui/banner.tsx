@@ -7,6 +7,8 @@ import type { Court } from "../core/court";
 import { type Notice, Phase } from "../core/wire";
 import { said, t } from "../i18n";
 import { timeOf } from "../i18n/words";
+import { useIsBefore } from "./moment";
+import { tellHeight } from "./screen";
 
 /** A sentence that says why the gateway is not there for this page; "" if it is. */
 export function waitsForGateway({ open, attempt, refused }: SocketState): string {
@@ -47,14 +49,7 @@ export function isOver(court: Court): boolean {
 }
 
 /** Let the page know how high the banner is: on a phone its text takes several lines. */
-function makeRoom(banner: HTMLElement | null): void {
-  if (!banner) return;
-  new ResizeObserver(([seen], observer) => {
-    if (!banner.isConnected) observer.disconnect();
-    const height = seen?.borderBoxSize[0]?.blockSize ?? banner.offsetHeight;
-    document.documentElement.style.setProperty("--banner", `${Math.ceil(height)}px`);
-  }).observe(banner);
-}
+const makeRoom = (banner: HTMLElement | null) => tellHeight("--banner", banner);
 
 interface Props {
   role?: "status" | "alert";
@@ -93,6 +88,7 @@ export function noticeText(notice: Notice, nowMs: number): string {
 
 /** The notice across the top; whoever has read it can put it away. */
 export function NoticeBanner({ notice }: { notice: Notice | null }) {
+  useIsBefore(notice?.until_ms ?? 0);
   const parts = notice ? noticeParts(notice, Date.now()) : [];
   const news = parts.filter((part) => !seen.value.includes(part));
   if (!news.length) return null;

@@ -1,6 +1,7 @@
 /** All keys of a page in a dialog, which `?` opens on every page that has keys. */
 
 import { signal } from "@preact/signals";
+import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
 import { t } from "../i18n";
 import { Dialog } from "./dialog";
@@ -26,10 +27,12 @@ interface Props {
   also?: string;
   /** What holds for all of them. */
   text?: string;
+  /** What is shown above the keys. */
+  children?: ComponentChildren;
   onClose?: () => void;
 }
 
-export function KeyHelp({ rows, also, text, onClose }: Props) {
+export function KeyHelp({ rows, also, text, children, onClose }: Props) {
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
       // An input method hands the character on as "Process".
@@ -50,6 +53,7 @@ export function KeyHelp({ rows, also, text, onClose }: Props) {
   const own: KeyRow = [also ? ["?", also] : ["?"], t("keys.help")];
   return (
     <Dialog title={t("keys.title")} onClose={close}>
+      {children}
       {text && <p class="muted">{text}</p>}
       <dl class="key-help">
         {[...rows(), own].map(([keys, does]) => (

@@ -1,6 +1,7 @@
 /** Facts about the screen that a page is on. */
 
-import { signal } from "@preact/signals";
+import { signal, useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 
 const upright = matchMedia("(max-width: 760px)");
 
@@ -9,6 +10,29 @@ export const isNarrow = signal(upright.matches);
 upright.addEventListener("change", () => {
   isNarrow.value = upright.matches;
 });
+
+/** Keep a CSS property of the page as high as an element: others make room for it. */
+export function tellHeight(property: `--${string}`, element: HTMLElement | null): void {
+  if (!element) return;
+  new ResizeObserver(([seen], observer) => {
+    if (!element.isConnected) observer.disconnect();
+    const height = seen?.borderBoxSize[0]?.blockSize ?? element.offsetHeight;
+    document.documentElement.style.setProperty(property, `${Math.ceil(height)}px`);
+  }).observe(element);
+}
+
+/** Whether a media query holds; the component is drawn again when that changes. */
+export function useMedia(query: MediaQueryList): boolean {
+  const holds = useSignal(query.matches);
+  useEffect(() => {
+    const look = () => {
+      holds.value = query.matches;
+    };
+    query.addEventListener("change", look);
+    return () => query.removeEventListener("change", look);
+  }, [query, holds]);
+  return holds.value;
+}
 
 /** Fill the screen, or come back from it; a browser may refuse. */
 export function toggleFullscreen(): void {

@@ -1,5 +1,6 @@
 """Publish a contest, and check a published one."""
 
+import os
 from pathlib import Path
 from secrets import randbits
 from typing import TYPE_CHECKING, Annotated, Any
@@ -80,10 +81,14 @@ def verify(
 
     seed = randbits(32) if seed is None else seed
     with screen.progress() as progress:
-        task = progress.add_task(render(say("simulate.matches")), total=None)
+        task = progress.add_task(render(say("verify.computes")), total=None)
 
         def changed(done: int, there: int) -> None:
-            progress.update(task, completed=done, total=there)
+            if not done and there:
+                count = min(there, jobs or os.cpu_count() or 1)
+                screen.note(say("verify.takes", games=there, jobs=count))
+            proves = render(say("verify.proves"))
+            progress.update(task, completed=done, total=there, description=proves)
 
         found = check(
             folder,

@@ -125,6 +125,7 @@ def draw(
     from lacoc_server.contest.league.contest import compute
     from lacoc_server.contest.league.draws import by_lot
     from lacoc_server.contest.league.formats.installed import FORMATS
+    from lacoc_server.contest.league.timetable.seeding import meets_again
     from lacoc_server.contest.league.titles import title
 
     if lot and order:
@@ -140,7 +141,11 @@ def draw(
                 raise UserError(say("contest.other-teams", teams=shown.entries))
             shown = replace(shown, how="hand", reason=reason, entries=teams)
         stage = title(now, shown.stage)
-        if wanted_so([say("contest.to-draw", stage=stage, teams=shown.entries)], yes):
+        effect = [say("contest.to-draw", stage=stage, teams=shown.entries)]
+        plan = now.planned[0]
+        if again := meets_again(now, plan, FORMATS[plan.format], shown.entries):
+            effect.append(say("contest.meet-again", pairs=[" – ".join(pair) for pair in again]))
+        if wanted_so(effect, yes):
             screen.show(organiser.draw(store, shown))
 
 

@@ -31,6 +31,7 @@ format = "single-knockout"
 after = "groups"
 teams = 4
 third_place = true
+apart = true
 arena = "{arena}"
 settings = {{ match = {{ duration_s = {seconds}, countdown_s = 1.0, start = "ready" }} }}
 """

@@ -1,6 +1,10 @@
-"""Invite the teams: one line for each, to hand out."""
+"""Invite teams, referees and staff: a link for each, to hand out."""
 
-from typing import Annotated
+import csv
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
 
 import typer
 from rich.text import Text
@@ -11,7 +15,8 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.contest.link import Link
-from lacoc_shared.words import render, say
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, render, say
 
 _PAGES_PORT = 8080
 
@@ -22,31 +27,87 @@ def invite(
         typer.Argument(metavar="TEAM", help="Name of the team; by default all teams of people."),
     ] = None,
     contest: ContestArgument = FILE,
+    staff: Annotated[
+        bool,
+        typer.Option(
+            "--staff", help="Print the links of the courts' referees and of the staff instead."
+        ),
+    ] = False,
+    as_csv: Annotated[
+        bool,
+        typer.Option("--csv", help="Print a table with who, name and link, for letters and mails."),
+    ] = False,
     host: options.CourtHost = None,
     json: options.Json = False,
 ) -> None:
-    """Print the link of each team.
+    """Print the link of each team, or with --staff of each referee and each of the staff.
 
     A team has one link for the whole contest. It opens the page that says when and where the team
     plays next, and goes from court to court by itself; commands take it too ('lacoc play LINK').
-    Whoever has the link plays for the team.
+    Whoever has the link plays for the team. A referee's link opens the desk of one court; that of
+    one of the staff opens /office, and decisions name who made them ('lacoc contest staff').
     """
-    from lacoc_server.contest.acts import organiser
-
-    tokens = organiser.tokens(contest, team)
+    if staff and team is not None:
+        raise UserError(say("contest.invite-either"))
     plan = contests.load(contest)
-    links = {name: link(plan, "play", token, host) for name, token in tokens.items()}
+    people = [*_staff(plan, host)] if staff else [*_teams(plan, contest, team, host)]
     if json:
-        screen.print_json(links)
+        links = {one.name: one.link for one in people}
+        of_kind = {
+            kind: {one.name: one.link for one in people if one.kind == kind}
+            for kind in ("referee", "staff")
+        }
+        screen.print_json(of_kind if staff else links)
         return
-    for name, text in links.items():
-        screen.show(Text(render(say("contest.for-team", team=name)), style="dim"))
-        screen.stdout.print(text, markup=False, soft_wrap=True)  # to be copied whole
+    if as_csv:
+        table = csv.writer(sys.stdout, lineterminator="\n")
+        table.writerow(Invited._fields)
+        table.writerows(people)
+        return
+    for one in people:
+        screen.show(Text(render(_title(one)), style="dim"))
+        screen.stdout.print(one.link, markup=False, soft_wrap=True)  # to be copied whole
+    if not staff and team is None:
+        screen.note(say("contest.invite-staff"))
     if not plan.public.pages:
         screen.note(say("contest.invite-pages", pages=_pages(plan, host)))
 
 
-def link(plan: ContestFile, page: str, token: str, host: str | None = None) -> str:
+class Invited(NamedTuple):
+    """Whom a link is for."""
+
+    kind: Literal["team", "referee", "staff"]
+    name: str
+    """Of the team, of the referee's court, or of one of the staff."""
+    link: str
+
+
+def _teams(plan: ContestFile, file: Path, team: str | None, host: str | None) -> Iterator[Invited]:
+    """Yield the teams of people, or one team."""
+    from lacoc_server.contest.acts import organiser
+
+    for name, token in organiser.tokens(file, team).items():
+        yield Invited("team", name, link(plan, "play", token, host))
+
+
+def _staff(plan: ContestFile, host: str | None) -> Iterator[Invited]:
+    """Yield the referee of each court, then the staff."""
+    for court in plan.courts:
+        token = plan.secrets.referee(court)
+        yield Invited("referee", court, link(plan, "referee", token, host, court))
+    for name in plan.secrets.staff_names:
+        yield Invited("staff", name, link(plan, "office", plan.secrets.staff(name), host))
+
+
+def _title(one: Invited) -> Phrase:
+    if one.kind == "referee":
+        return say("contest.for-referee", court=one.name)
+    if one.kind == "staff":
+        return say("contest.for-staff", name=one.name)
+    return say("contest.for-team", team=one.name)
+
+
+def link(plan: ContestFile, page: str, token: str, host: str | None = None, court: str = "") -> str:
     """Return a link to a page of a contest.
 
     Args:
@@ -55,9 +116,11 @@ def link(plan: ContestFile, page: str, token: str, host: str | None = None) -> s
         token: token of whom the link is for.
         host: host in the link, if the contest file does not say where the pages are; None: this
             machine's.
+        court: the court that the link names; "": none.
     """
     authority = plan.public.fingerprint
-    return Link(pages=_pages(plan, host), page=page, token=token, authority=authority).text
+    pages = _pages(plan, host)
+    return Link(pages=pages, page=page, court=court, token=token, authority=authority).text
 
 
 def _pages(plan: ContestFile, host: str | None) -> str:

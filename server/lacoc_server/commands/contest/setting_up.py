@@ -8,7 +8,8 @@ import typer
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.limits import Limits
-from lacoc_server.contest.kept.plans import open_stage, plans
+from lacoc_server.contest.kept.plans import doubts, open_stage, plans
+from lacoc_server.contest.league.facts import Planned
 from lacoc_shared.command import screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
@@ -77,6 +78,7 @@ format = "single-knockout"
 after = "groups"
 # draw = "organiser"       # wait until you draw it on /office; else it is drawn at once
 teams = 4                  # the best four of the groups
+apart = true               # teams of one group or club do not meet in the first round
 games = 3                  # best of three, sides swapped after each game
 third_place = true
 arena = "{arena}"
@@ -203,20 +205,24 @@ def check(file: FileToRead = FILE) -> None:
     for name, court in contest.courts.items():
         with found:
             _check_court(name, court)
+    stages: list[Planned] = []
     with found:
-        plans(contest, file)
+        stages = plans(contest, file)
     with found:
         open_stage(contest, file)
     found.check()
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
+    for doubt in doubts(stages):
+        screen.warn(doubt)
     close = contest.entries_close
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):
         screen.warn(say("contest.close-is-over", time=close.isoformat()))
     if contest.public.certificate is not None:
-        from lacoc_server.contest.acts.certificate import doubts  # needs packages, as `organiser`
+        # It needs packages, as `organiser` does.
+        from lacoc_server.contest.acts.certificate import doubts as certificate_doubts
 
-        for doubt in doubts(contest.public, close, datetime.now(UTC)):
+        for doubt in certificate_doubts(contest.public, close, datetime.now(UTC)):
             screen.warn(doubt)
     if contests.facts_path(file).exists():  # else no team has entered, and reading makes no file
         from lacoc_server.contest.acts import (

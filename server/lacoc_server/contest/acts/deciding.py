@@ -1,6 +1,6 @@
 """Decisions about a match: the fact of each one, and what it would change."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
 import msgspec
@@ -15,9 +15,12 @@ from lacoc_server.contest.league.facts import (
     Voided,
     new,
 )
-from lacoc_server.contest.league.fixture import named
+from lacoc_server.contest.league.fixture import named, standing
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import ContestMatch
+from lacoc_server.contest.league.standings import DRAW
+from lacoc_server.contest.league.timetable.foreseen import foreseen
+from lacoc_server.contest.league.timetable.whereabouts import may_come
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
@@ -70,12 +73,46 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
                 winner=match.winner or None,
             )
         )
+    for fact in placed:
+        if isinstance(fact, Replaced):
+            lines += _meaning(then, fact)
     for stage, team, old, now in found.ranks:
         lines.append(say("decide.rank", stage=title(then, stage), team=team, before=old, after=now))
     changed = {stage for stage, *_ in found.ranks}
     drawn = (view.name for view in then.stages if view.plan.after in changed)
     lines += (say("decide.drawn", stage=title(then, stage)) for stage in drawn)
     return (*lines,) or (say("decide.nothing"),)
+
+
+def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
+    """Say what a result means: how its match stands then, and what both teams play next."""
+    match = next(
+        (
+            match
+            for view in then.stages
+            for match in view.matches
+            if match.pairing.id == result.pairing
+        ),
+        None,
+    )
+    if match is None or {*match.teams} != {*result.teams}:
+        return
+    about = named(then, result.pairing)
+    stands = standing(match)
+    if not match.decided:
+        yield say("decide.goes-on", match=about, standing=stands, game=match.next_game)
+        return
+    if not match.winner:
+        yield say("decide.level", match=about, teams=result.teams, points=DRAW)
+    coming = foreseen(then, FORMATS)
+    for team in result.teams:
+        one = next((one for one in coming if team in one.match.teams), None)
+        if one is not None:
+            yield say("decide.then", team=team, match=one.fixture)
+        elif may_come(then, team):
+            yield say("decide.awaits-draw", team=team)
+        else:
+            yield say("decide.plays-no-more", team=team)
 
 
 def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:

@@ -8,6 +8,7 @@ import msgspec
 from lacoc_server.contest.acts.steering import places, undrawable
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league import facts
+from lacoc_server.contest.league.advance import reasons
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.fixture import fixture
@@ -15,6 +16,12 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import LOST_MS, SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
+from lacoc_server.contest.league.timetable.seeding import (
+    first_meetings,
+    kept_apart,
+    meets_again,
+    met_before,
+)
 from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge, full_minute, starts
 from lacoc_server.contest.league.titles import title
 from lacoc_shared import codec
@@ -80,7 +87,22 @@ def _to_draw(contest: Contest) -> ToDraw | None:
     draw = waits_for_organiser(contest, FORMATS)
     if draw is None:
         return None
-    return ToDraw(stage=draw.stage, title=title(contest, draw.stage), entries=draw.entries)
+    plan, order = contest.planned[0], draw.entries
+    how = FORMATS[plan.format]
+    all_apart = msgspec.structs.replace(plan, apart=True, met_apart=True)
+    apart = kept_apart(contest, all_apart, how, order)
+    again = [len(meets_again(contest, plan, how, one)) for one in (order, apart)]
+    met = [sorted(pair) for pair in met_before(contest, plan) if pair <= {*order}]
+    meetings = first_meetings(plan, how, order) if met else ()
+    return ToDraw(
+        stage=draw.stage,
+        title=title(contest, draw.stage),
+        entries=order,
+        why=reasons(contest, plan, order),
+        meet=tuple((order.index(one), order.index(other)) for one, other in meetings),
+        met=tuple((one, other) for one, other in sorted(met)),
+        apart=apart if again[1] < again[0] else (),
+    )
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:

@@ -19,7 +19,7 @@ from lacoc_shared.contest.courts import wrong_in
 from lacoc_shared.contest.file import ContestFile, wrong_entries
 from lacoc_shared.contest.wrong_value import convert, place_and_words
 from lacoc_shared.mistakes import Gathered, UserError, text_of
-from lacoc_shared.words import LANGUAGES, say
+from lacoc_shared.words import LANGUAGES, Phrase, say
 
 _USUAL_ARENA = "othello"
 _SETTINGS = StageSettings.__struct_fields__
@@ -150,6 +150,19 @@ def _read(
     return plan
 
 
+def doubts(stages: Sequence[Planned]) -> Iterator[Phrase]:
+    """Yield what will surprise people: a knockout in which teams of a group meet again."""
+    known = {plan.stage: plan for plan in stages}
+    for plan in stages:
+        before = known.get(plan.after)
+        if before is None or before.format != "round-robin" or not FORMATS[plan.format].decisive:
+            continue
+        if before.settings.groups == 1:
+            yield say("contest.all-meet-again", stage=plan.stage, after=plan.after)
+        elif not plan.apart:
+            yield say("contest.may-meet-again", stage=plan.stage, after=plan.after)
+
+
 def game(plan: Planned) -> Arena:
     """Load the arena of a stage.
 
@@ -212,6 +225,7 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         after=stage.after,
         draw=stage.draw,
         apart=stage.apart,
+        met_apart=stage.apart and bool(stage.after),
         break_s=stage.break_s,
         final_court=stage.final_court,
         final_break_s=stage.final_break_s,

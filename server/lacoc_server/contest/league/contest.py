@@ -224,6 +224,19 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         UserError: if two facts have the same id, or a stage has an unknown format or tie-break.
     """
     known = ordered(facts)
+    contest = _computed(known, formats)
+    if not contest.over:
+        return contest
+    # What steers the day ends with the contest; a line that was said after the end stays.
+    line = contest.announced
+    if line is not None and not _computed(known[: known.index(line)], formats).over:
+        line = None
+    day = Day(paused=False, until_ms=0, reason="")
+    return msgspec.structs.replace(contest, day=day, announced=line)
+
+
+def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contest:
+    """Compute a contest from facts in their order; errors as with `compute`."""
     unused: dict[str, Phrase] = {}
     teams = entered_teams(known, unused)
     by_pairing: dict[str, list[OfMatch]] = {}

@@ -30,7 +30,9 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     """When it was made, in milliseconds since 1970, UTC."""
     what: Phrase
     pairing: str = ""
-    """The match; "": it is about a team."""
+    """The match; "": it is about a team or a stage."""
+    stage: str = ""
+    """The stage whose draw it is; "": it is none."""
     reason: str
     by: str = ""
     """Who of the staff made it; "": the organiser."""
@@ -44,6 +46,7 @@ def decided(contest: Contest) -> tuple[Decided, ...]:
             at_ms=fact.at_ms,
             what=_what(contest, fact),
             pairing=getattr(fact, "pairing", ""),
+            stage=fact.stage if isinstance(fact, Drawn) else "",
             reason=fact.reason,
             by=fact.by,
         )

@@ -189,29 +189,19 @@ def by_lot(teams: Iterable[str], lot: str) -> tuple[str, ...]:
     return tuple(sorted(teams, key=ticket))
 
 
-def clubs_apart(
+def set_apart(
     entries: tuple[str, ...],
-    club_of: Mapping[str, str],
-    met: Callable[[tuple[str, ...]], Iterable[tuple[str, str]]],
+    clash: Callable[[tuple[str, ...]], Sequence[tuple[str, str]]],
 ) -> tuple[str, ...]:
-    """Change the order of teams as little as possible, so that teams of one club do not meet.
+    """Change the order of teams as little as possible, so that fewer pairs clash.
 
-    Teams change places one pair after the other, near ones and low ones first, as long as fewer of
-    one club meet.
+    Teams change places one pair after the other, near ones and low ones first, as long as that
+    leaves fewer clashes. So after two groups the seconds change places, and the winners stay.
 
     Args:
         entries: the teams by their seeding.
-        club_of: the club of each team that has one.
-        met: returns which teams surely meet, for an order of teams.
+        clash: returns the pairs of an order that should not meet, and do.
     """
-
-    def clash(order: tuple[str, ...]) -> list[tuple[str, str]]:
-        return [
-            (one, other)
-            for one, other in met(order)
-            if club_of.get(one) and club_of.get(one) == club_of.get(other)
-        ]
-
     while clashing := clash(entries):
         places = sorted({entries.index(team) for pair in clashing for team in pair}, reverse=True)
         swaps = sorted(

@@ -130,6 +130,8 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     apart: bool = False
     """True: teams of one club do not meet in the first round, or in a group, if it can be avoided.
     """
+    met_apart: bool = False
+    """True: nor do teams that met in the stage before."""
     break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
     """Time between the end of the stages before it and its first game [s]."""
     final_court: str = ""

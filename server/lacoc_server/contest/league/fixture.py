@@ -23,7 +23,9 @@ def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
     return say("fixture.named", name=pairing)
 
 
-def fixture(contest: Contest, view: StageView, match: ContestMatch, game: int) -> Phrase:
+def fixture(
+    contest: Contest, view: StageView, match: ContestMatch, game: int, *, stands: bool = False
+) -> Phrase:
     """Say what a game is in its contest: "Semi-final 1, game 2 of 3".
 
     Args:
@@ -31,10 +33,29 @@ def fixture(contest: Contest, view: StageView, match: ContestMatch, game: int) -
         view: the stage of the match.
         match: the match.
         game: number of the game in its match, from 1.
+        stands: whether to say how the match stands before this game.
     """
     said = match_fixture(contest, view, match)
     games = max(game, view.stage.settings.games)  # the last ones may be extra games
-    return said if games == 1 else say("fixture.game", match=said, game=game, games=games)
+    if games == 1:
+        return said
+    now = standing(match) if stands and match.games else None
+    return say("fixture.game", match=said, game=game, games=games, standing=now)
+
+
+def standing(match: ContestMatch) -> Phrase:
+    """Say how a match stands in games won, a drawn one half: "Ants 1½ : ½ Bees"."""
+    first, second = match.teams
+    drawn = sum(not game.winner for game in match.games)
+    halves = [2 * sum(game.winner == team for game in match.games) + drawn for team in match.teams]
+    one, other = map(_halves, halves)
+    return say("fixture.standing", left=first or "?", right=second or "?", won=one, lost=other)
+
+
+def _halves(count: int) -> str:
+    """Write a number of halves: 1½."""
+    whole, half = divmod(count, 2)
+    return f"{whole or '' if half else whole}{'½' if half else ''}"
 
 
 def match_fixture(contest: Contest, view: StageView, match: ContestMatch) -> Phrase:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from lacoc_server.contest.league.advance import reasons
 from lacoc_server.contest.league.contest import Contest, Day, StageView, Unused, compute
 from lacoc_server.contest.league.decided import Decided, decided
 from lacoc_server.contest.league.draws import Team
@@ -15,12 +16,13 @@ from lacoc_server.contest.league.fixture import match_fixture
 from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.rating import Rated, Rating, ratings
+from lacoc_server.contest.league.timetable.breaks import Break, newest_break
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.league.titles import titles
 from lacoc_shared.words import Phrase
 
-VERSION = 5
+VERSION = 6
 """Version of the layout of a sheet."""
 EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
 _UNKNOWN = ("", 0)
@@ -74,8 +76,13 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """The games that can be played next, in their order."""
     later: tuple[Later, ...]
     """All other matches that are still to come, in their order."""
+    reasons: dict[str, tuple[Phrase, ...]]
+    """Why each team of a stage is in it, by stage and in the order of its seeding; stages that
+    follow none are left out."""
     day: Day
     """Whether games are called now."""
+    pause: Break | None
+    """The newest time in which no game is called: a pause or a break; None: there is none."""
     announced: Announced | None
     """The organiser's line to all; None: there is none."""
     decided: tuple[Decided, ...]
@@ -116,6 +123,7 @@ def sheet(
     games = [game for view in contest.stages for match in view.matches for game in match.games]
     rated = ratings(Rated(*game.teams, game.winner) for game in games)
     ready = playable(contest)
+    coming = foreseen(contest, FORMATS)
     at_once = {match.pairing.id for match in ready}
     return ContestSheet(
         name=name,
@@ -149,10 +157,16 @@ def sheet(
                 court=expected.get(one.pairing.id, _UNKNOWN)[0],
                 at_ms=expected.get(one.pairing.id, _UNKNOWN)[1],
             )
-            for one in foreseen(contest, FORMATS)
+            for one in coming
             if one.pairing.id not in at_once
         ),
+        reasons={
+            view.name: told
+            for view in contest.stages
+            if (told := reasons(contest, view.plan, view.stage.entries))
+        },
         day=contest.day,
+        pause=newest_break(contest, coming),
         announced=contest.announced,
         decided=decided(contest)[::-1],
         ratings=rated.teams,

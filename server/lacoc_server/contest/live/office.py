@@ -226,7 +226,7 @@ class Office:
             )
         return link.assign(
             call.id,
-            fixture(self.contest, view, match, call.game),
+            fixture(self.contest, view, match, call.game, stands=True),
             seats,
             arena=view.plan.arena,
             arena_settings=view.plan.arena_settings,

@@ -54,7 +54,8 @@ def check(
 
     Args:
         folder: the published folder.
-        progress: told how many games are checked, and how many there are.
+        progress: told how many games are checked, and how many there are; first when facts and
+            tables are computed, and the games begin.
         earlier: folder of an earlier publication of the contest, or a file with its facts. These
             facts must still be there, unchanged. None: nothing is compared.
         sampled: number of games whose records are proven, chosen by chance; None: all. The results
@@ -70,6 +71,7 @@ def check(
     findings = [*check_earlier(read(earlier), facts)] if earlier is not None else []
     findings += check_published(folder, facts)
     games = games_of(facts)
+    progress(0, len(games))
     proven = games if sampled is None else sample(games, sampled, seed)
     ids = {game.played.id for game in proven}
     found = [*_check_games(folder, games, ids, jobs, progress, programs)]
@@ -117,13 +119,8 @@ def _check_games(
                 yield future.result()
             except (WorkerDied, WorkerFailed) as error:  # no record may end the check of the others
                 why = str(error).strip().splitlines()[-1]
-                played = game.played
                 failed = say(
-                    "verify.not-checked",
-                    record=played.record,
-                    why=why,
-                    pairing=played.pairing,
-                    game=played.game,
+                    "verify.not-checked", record=game.played.record, why=why, about=game.about
                 )
                 yield GameCheck(wrong=(failed,))
             progress(number, len(games))

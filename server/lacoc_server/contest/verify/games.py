@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
@@ -15,6 +16,7 @@ from lacoc_server.contest.kept.folder import hash_of
 from lacoc_server.contest.kept.publish import ENTRIES, RECORDS
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played
+from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.verify.alone import InputCheck, Side, check_inputs, ends_alike
@@ -42,6 +44,8 @@ class GameToCheck(msgspec.Struct, frozen=True, kw_only=True):
     """A game to check: what the facts say about it. A process can take it."""
 
     played: Played
+    about: Phrase
+    """Which game it is, and who played: "Semi-final 1, game 2 of 3 (Ants – Bees)"."""
     plan: Planned | None
     """The plan of its stage; None: it was not the turn of this game."""
     why_not: Phrase | None = None
@@ -76,19 +80,27 @@ def _game(facts: Sequence[AnyFact], played: Played) -> GameToCheck:
     call = call_of(facts, played)
     before = facts[: facts.index(call or played)]
     contest = compute(before, FORMATS)
-    files = tuple(files_of(facts, call, played, team) for team in played.teams)
+    unplanned = GameToCheck(
+        played=played,
+        about=say(
+            "verify.game",
+            game=named(contest, played.pairing, played.game),
+            left=played.teams[0],
+            right=played.teams[1],
+        ),
+        plan=None,
+        call=call,
+        files=tuple(files_of(facts, call, played, team) for team in played.teams),
+    )
     for view in contest.stages:
         for match in view.matches:
             if match.pairing.id != played.pairing:
                 continue
             if (why := _why_not(match, call, played)) is not None:
-                return GameToCheck(played=played, plan=None, why_not=why, call=call, files=files)
+                return replace(unplanned, why_not=why)
             late = late_ticks(contest, before, match)
-            return GameToCheck(
-                played=played, plan=view.plan, call=call, late_ticks=late, files=files
-            )
-    why = say("due.no-pairing")
-    return GameToCheck(played=played, plan=None, why_not=why, call=call, files=files)
+            return replace(unplanned, plan=view.plan, late_ticks=late)
+    return replace(unplanned, why_not=say("due.no-pairing"))
 
 
 def _why_not(match: ContestMatch, call: Called | None, played: Played) -> Phrase | None:
@@ -115,23 +127,23 @@ def check_game(folder: Path, game: GameToCheck, proven: bool, programs: bool = F
         programs: whether to run the bots' programs that came with entries.
     """
     played = game.played
-    file, pairing, number = played.record, played.pairing, played.game
+    file, about = played.record, game.about
     if not file:
-        return GameCheck(wrong=(say("verify.no-record", pairing=pairing, game=number),))
+        return GameCheck(wrong=(say("verify.no-record", about=about),))
     if game.why_not is not None:
         why = game.why_not
-        return GameCheck(wrong=(say("verify.not-due", pairing=pairing, game=number, why=why),))
+        return GameCheck(wrong=(say("verify.not-due", about=about, why=why),))
     try:
         data = regular.read(folder, RECORDS, file, most_bytes=RECORD_BYTES)
         if played.record_hash and hash_of(data) != played.record_hash:
-            changed = say("verify.record-changed", record=file, pairing=pairing, game=number)
+            changed = say("verify.record-changed", record=file, about=about)
             return GameCheck(wrong=(changed,))
         record = Record.read([folder / RECORDS / file])
         found = _compared(folder, game, record, programs)
         if not found.wrong and proven:
             return _proven(folder, game, record, found, programs)
     except UserError as error:
-        bad = say("verify.bad-record", record=file, pairing=pairing, game=number, why=error.phrase)
+        bad = say("verify.bad-record", record=file, about=about, why=error.phrase)
         return GameCheck(wrong=(bad,))
     return found
 
@@ -162,7 +174,7 @@ def _compared(folder: Path, game: GameToCheck, record: Record, programs: bool) -
     return GameCheck(
         wrong=tuple(_other_game(game, what) for what in (*wrong, *checked.wrong)),
         unchecked=tuple(_unchecked(game, why) for why in checked.unchecked),
-        decided=() if wrong or game.call is None else tuple(_decisions(record, game.played)),
+        decided=() if wrong or game.call is None else tuple(_decisions(record, game)),
         has_bots=game.call is None or any(one.entry.bot for one in sides),
     )
 
@@ -184,24 +196,23 @@ def _proven(
         if error.phrase.code not in _OTHER_PHYSICS:
             raise
         why = _unchecked(game, error.phrase)
-        return msgspec.structs.replace(found, unchecked=(*found.unchecked, why))
+        return replace(found, unchecked=(*found.unchecked, why))
     played = game.played
     if not verdict.same:
         said = say(
             "verify.not-proven",
             record=played.record,
             why=verdict.said,
-            pairing=played.pairing,
-            game=played.game,
+            about=game.about,
         )
-        return msgspec.structs.replace(found, wrong=(said,))
+        return replace(found, wrong=(said,))
     if verdict.kind is VerdictKind.SAME or game.call is not None or found.unchecked:
         return found
     sides = _sides(folder, game, record)
     if ends_alike(record, _arena(game), sides, game.late_ticks, programs=programs):
         return found
     why = _unchecked(game, say("unchecked.arithmetic"))
-    return msgspec.structs.replace(found, unchecked=(why,))
+    return replace(found, unchecked=(why,))
 
 
 def _arena(game: GameToCheck) -> Arena:
@@ -233,18 +244,16 @@ def _teams(sides: Sequence[Side]) -> set[str]:
 
 
 def _other_game(game: GameToCheck, what: Phrase) -> Phrase:
-    played = game.played
     return say(
         "verify.other-game",
-        record=played.record,
+        record=game.played.record,
         what=what,
-        pairing=played.pairing,
-        game=played.game,
+        about=game.about,
     )
 
 
 def _unchecked(game: GameToCheck, why: Phrase) -> Phrase:
-    return say("verify.unchecked", pairing=game.played.pairing, game=game.played.game, why=why)
+    return say("verify.unchecked", about=game.about, why=why)
 
 
 def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Phrase]:
@@ -284,18 +293,17 @@ def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) 
     if game.call is not None:
         return setup.court == game.call.court
     wanted = setup_of(setup.match_id, arena, setup.limits)
-    same = msgspec.structs.replace(setup, settings=wanted.settings, arena=wanted.arena) == wanted
+    same = replace(setup, settings=wanted.settings, arena=wanted.arena) == wanted
     return same and len(record.headers) == 1 and record.health is None
 
 
-def _decisions(record: Record, played: Played) -> Iterator[Phrase]:
+def _decisions(record: Record, game: GameToCheck) -> Iterator[Phrase]:
     """Yield what referees decided in a game, besides what each match has."""
     for event in record.events:
         if event.kind == "decision" and event.data.get("decision") not in _ROUTINE:
             yield say(
                 "verify.in-play",
-                pairing=played.pairing,
-                game=played.game,
+                about=game.about,
                 at_s=event.clock_ticks * BEAT_S,
                 said=event.said,
             )

@@ -62,7 +62,6 @@ def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
             "verify.decision",
             fact=one.fact,
             what=one.what,
-            pairing=one.pairing or None,
             reason=one.reason or None,
         )
 

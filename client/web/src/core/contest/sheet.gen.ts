@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 5;
+export const VERSION = 6;
 
 export interface Team {
   name: string;
@@ -158,6 +158,7 @@ export interface Decided {
   at_ms: number;
   what: Phrase;
   pairing: string;
+  stage: string;
   reason: string;
   by: string;
 }
@@ -192,6 +193,12 @@ export interface Day {
   reason: string;
 }
 
+export interface Break {
+  until_ms: number;
+  fixture: Phrase | null;
+  who: [Phrase, Phrase] | null;
+}
+
 export interface Announced {
   fact: "announced";
   id: string;
@@ -212,7 +219,9 @@ export interface ContestSheet {
   running: Called[];
   coming: Coming[];
   later: Later[];
+  reasons: Record<string, Phrase[]>;
   day: Day;
+  pause: Break | null;
   announced: Announced | null;
   decided: Decided[];
   ratings: Rating[];

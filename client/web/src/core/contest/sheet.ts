@@ -66,6 +66,11 @@ export function stateOf(sheet: ContestSheet): "waiting" | "running" | "over" {
   return !sheet.planned.length && sheet.stages.every(isOver) ? "over" : "running";
 }
 
+/** Whether a pause holds all games to come: then each of them is later than it was expected. */
+export function isHeld({ day }: Pick<ContestSheet, "day">, nowMs: number): boolean {
+  return day.paused || day.until_ms > nowMs;
+}
+
 /** The games on the courts, in the order of the courts' names: court 2 comes before court 10. */
 export function running({ running }: ContestSheet): Called[] {
   return running.toSorted((a, b) => a.court.localeCompare(b.court, "en", { numeric: true }));

@@ -17,6 +17,7 @@ import { BracketView } from "./bracket";
 import { Standing } from "./head";
 import { LiveScore, live } from "./now";
 import { big } from "./parts";
+import { PauseLine } from "./pause";
 import { Standings } from "./standings";
 import { Ratings, ranked } from "./teams";
 import { expected, gameTitle, stageHeading, stageTitle, winnersTitle } from "./words";
@@ -140,6 +141,7 @@ function Next({ sheet, games }: { sheet: ContestSheet; games: readonly NextGame[
   useEffect(() => (ownPage ? undefined : live.start()), []);
   return (
     <>
+      <PauseLine sheet={sheet} />
       <h2>{t("contest.coming")}</h2>
       {!games.length && <p class="muted">{t("contest.noneComing")}</p>}
       <ol class="next-games" data-few={games.length <= 2 || undefined}>
@@ -152,7 +154,9 @@ function Next({ sheet, games }: { sheet: ContestSheet; games: readonly NextGame[
             </p>
             <p>
               <span class="muted">{gameTitle(sheet, one.pairing, one.game)}</span>{" "}
-              <span class="expected">{one.call ? <OnCourt game={one} /> : expected(one)}</span>
+              <span class="expected">
+                {one.call ? <OnCourt game={one} /> : expected(sheet, one)}
+              </span>
             </p>
           </li>
         ))}

@@ -105,7 +105,7 @@ function MatchBox({ sheet, view, box }: BoxProps) {
   const note = court
     ? t("contest.on", { court })
     : how
-      ? t(`contest.how.${how}`)
+      ? t(how === "walkover" ? "contest.how.walkover.short" : `contest.how.${how}`)
       : match.pairing.only_if_second_won && !games.length
         ? t("contest.ifNeeded")
         : "";

@@ -10,7 +10,8 @@ import { Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { BEATS_PER_S, clock } from "../../i18n/words";
 import { TeamLink } from "./parts";
-import { expected, gameTitle } from "./words";
+import { PauseLine } from "./pause";
+import { expected, gameTitle, whoTitle } from "./words";
 
 /** Most games to come that are listed. */
 const COMING_MOST = 8;
@@ -23,6 +24,7 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
   const more = coming.length - COMING_MOST;
   return (
     <section id="now" class="now" aria-label={t("contest.now")}>
+      <PauseLine sheet={sheet} />
       <div>
         <h2>{t("contest.running")}</h2>
         {!sheet.running.length && <p class="muted">{t("contest.noneRunning")}</p>}
@@ -63,11 +65,11 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
             return (
               <li key={one.pairing}>
                 {teams && <Sides teams={teams} />}
-                {"who" in one && !teams && <p>{one.who.map(said).join(" – ")}</p>}
+                {"who" in one && !teams && <p>{whoTitle(one.who)}</p>}
                 <p class="muted">
                   {"who" in one ? said(one.fixture) : gameTitle(sheet, one.pairing, one.game)}
                 </p>
-                <p class="expected">{expected(one)}</p>
+                <p class="expected">{expected(sheet, one)}</p>
               </li>
             );
           })}

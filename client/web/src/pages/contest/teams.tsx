@@ -174,7 +174,7 @@ export function TeamDialog({ sheet }: { sheet: ContestSheet }) {
               <dt>{t("contest.coming")}</dt>
               <dd>
                 {gameTitle(sheet, coming.pairing, coming.game)}
-                {expected(coming) && <small class="muted"> {expected(coming)}</small>}
+                {expected(sheet, coming) && <small class="muted"> {expected(sheet, coming)}</small>}
               </dd>
             </div>
           )}

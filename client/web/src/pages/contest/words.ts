@@ -6,6 +6,7 @@ import {
   type ContestMatch,
   type ContestSheet,
   found,
+  isHeld,
   isKnockout,
   isMatch,
   numberOf,
@@ -14,6 +15,7 @@ import {
   type Source,
   type StageView,
 } from "../../core/contest/sheet";
+import type { Phrase } from "../../core/phrase";
 import { isMessage, said, t } from "../../i18n";
 import { timeOf } from "../../i18n/words";
 
@@ -26,16 +28,26 @@ export function stageHeading(sheet: ContestSheet, { stage, format, settings }: P
   return stageTitle(sheet, stage).startsWith(words) ? "" : words;
 }
 
-/** About when a game begins, and where; "" if nobody knows. */
-export function expected({ at_ms = 0, court = "" }: Pick<Coming, "at_ms" | "court">): string {
-  return at_ms && court ? t("contest.expected", { time: timeOf(at_ms), court }) : "";
+/** About when a game begins, and where; in a pause the time before which it does not; "" if nobody knows. */
+export function expected(
+  sheet: ContestSheet,
+  { at_ms = 0, court = "" }: Pick<Coming, "at_ms" | "court">,
+): string {
+  if (!at_ms || !court) return "";
+  const held = isHeld(sheet, Date.now());
+  return t(held ? "contest.notBefore" : "contest.expected", { time: timeOf(at_ms), court });
+}
+
+/** Who plays a match to come, as far as that is known. */
+export function whoTitle(who: readonly Phrase[]): string {
+  return who.map(said).join(" – ");
 }
 
 /** About when and where a match begins that is still to come; "" if nobody knows. */
 export function expectedOf(sheet: ContestSheet, pairing: string): string {
   const to_come = [...sheet.coming, ...sheet.later];
   const one = to_come.find((one) => one.pairing === pairing);
-  return one ? expected(one) : "";
+  return one ? expected(sheet, one) : "";
 }
 
 /** How many rounds are still to be drawn; a format may have its own words for that. */

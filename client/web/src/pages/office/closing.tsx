@@ -1,7 +1,8 @@
 /** Asks before entries are closed or a stage is drawn, because that can't be undone. */
 
 import { useSignal } from "@preact/signals";
-import type { OfficeView } from "../../core/desk";
+import type { OfficeView, ToDraw } from "../../core/desk";
+import { meetAgain } from "../../core/draw";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Reason } from "./dialogs";
@@ -50,7 +51,16 @@ export function DrawDialog({ organiser, view }: Props) {
   const order = useSignal<readonly string[]>(view.to_draw?.entries ?? []);
   if (!view.to_draw) return null;
   const { stage, title, entries } = view.to_draw;
+  const keepApart = () => {
+    how.value = "hand";
+    order.value = view.to_draw?.apart ?? entries;
+    reason.value ||= t("office.draw.apart.reason");
+  };
   const byHand = how.value === "hand";
+  const whyOf = (team: string) => {
+    const why = view.to_draw?.why[entries.indexOf(team)];
+    return why && said(why);
+  };
   const teams = byHand ? order.value : entries;
   const ready = how.value === "lot" ? lot.value.trim() : !byHand || reason.value.trim();
   return (
@@ -102,7 +112,7 @@ export function DrawDialog({ organiser, view }: Props) {
           <ol class="seeds">
             {teams.map((team, at) => (
               <li key={team}>
-                {team}
+                <b>{team}</b> <small class="muted">{whyOf(team)}</small>
                 {byHand && at > 0 && (
                   <button
                     class="button quiet small"
@@ -119,6 +129,7 @@ export function DrawDialog({ organiser, view }: Props) {
             ))}
           </ol>
         )}
+        <Again draw={view.to_draw} order={how.value === "lot" ? null : teams} onApart={keepApart} />
         {byHand && <Reason reason={reason} />}
         <a href="contest" target="_blank" rel="noreferrer">
           {t("office.draw.table")}
@@ -128,6 +139,38 @@ export function DrawDialog({ organiser, view }: Props) {
         </button>
       </form>
     </Dialog>
+  );
+}
+
+interface AgainProps {
+  draw: ToDraw;
+  /** The teams in their order; null: a lot makes it. */
+  order: readonly string[] | null;
+  onApart: () => void;
+}
+
+/** Warns of matches that were played already, before the draw, and names the way out. */
+function Again({ draw, order, onApart }: AgainProps) {
+  const { apart, met } = draw;
+  if (!order) return met.length ? <p class="warning">{t("office.draw.againLot")}</p> : null;
+  const pairs = meetAgain(draw, order);
+  if (!pairs.length) return null;
+  const left = meetAgain(draw, apart.length ? apart : draw.entries).length;
+  const better = apart.length > 0 && left < pairs.length;
+  return (
+    <div class="again" role="status">
+      <p class="warning">
+        {t("office.draw.again", {
+          pairs: pairs.map((pair) => pair.join(" – ")).join(t("office.comma")),
+        })}{" "}
+        {!better && !apart.length && t("office.draw.againAll")}
+      </p>
+      {better && (
+        <button class="button" type="button" onClick={onApart}>
+          {t(left ? "office.draw.apartFewer" : "office.draw.apart")}
+        </button>
+      )}
+    </div>
   );
 }
 

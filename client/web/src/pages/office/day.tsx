@@ -1,15 +1,15 @@
-/** The day as a whole: a line to all, a pause, all later, the staff, and publishing. */
+/** The day as a whole: a line to all, a pause, all later, and publishing. */
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { stateOf } from "../../core/contest/sheet";
-import { type Effect, type OfficeView, TEAM_NAME_MAX } from "../../core/desk";
-import { pictureUrl } from "../../core/picture";
+import type { Effect, OfficeView } from "../../core/desk";
 import { momentOf } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { noticeText } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
-import { CopyButton, Effects, Reason } from "./dialogs";
+import { PauseLine } from "../contest/pause";
+import { Effects, Reason } from "./dialogs";
 import type { Organiser } from "./organiser";
 
 const MINUTE_MS = 60_000;
@@ -75,7 +75,8 @@ export function DayBar({ organiser, view }: Props) {
         </button>
         {view.published && <a href={view.published}>{t("office.day.published")}</a>}
       </div>
-      {held && (
+      {sheet && <PauseLine sheet={sheet} />}
+      {held && !sheet && (
         <p class="warning" role="status">
           {held}
         </p>
@@ -289,64 +290,6 @@ export function SubstituteDialog({ organiser, view, team }: Props & { team: stri
           {t("office.substitute.go")}
         </button>
       </form>
-    </Dialog>
-  );
-}
-
-/** Who of the staff has a link to this page, under a name of their own. */
-export function StaffDialog({ organiser, view }: Props) {
-  const name = useSignal("");
-  const names = view.staff.join("\n");
-  useEffect(() => void organiser.getLinks(), [organiser, names]);
-  const links = organiser.links.value?.staff ?? [];
-  return (
-    <Dialog title={t("office.day.staff")} onClose={() => organiser.close()}>
-      <div class="asks">
-        <p>{t("office.staff.text")}</p>
-        <form
-          class="asks"
-          onSubmit={async (event) => {
-            event.preventDefault();
-            if (await organiser.do({ do: "staff", name: name.value })) name.value = "";
-          }}
-        >
-          <label class="field">
-            <span>{t("office.staff.name")}</span>
-            <input
-              value={name.value}
-              maxLength={TEAM_NAME_MAX}
-              required
-              onInput={(event) => {
-                name.value = event.currentTarget.value;
-              }}
-            />
-          </label>
-          <button class="button strong" type="submit">
-            {t("office.staff.add")}
-          </button>
-        </form>
-        <ul class="staff">
-          {links.map((one) => (
-            <li key={one.name}>
-              <div class="qr">
-                <img src={pictureUrl(one.qr)} alt={t("office.qrOf", { team: one.name })} />
-                <div>
-                  <b>{one.name}</b>
-                  <a href={one.link}>{one.link}</a>
-                  <CopyButton link={one.link} />
-                  <button
-                    class="button quiet small"
-                    type="button"
-                    onClick={() => void organiser.do({ do: "staff", name: one.name, remove: true })}
-                  >
-                    {t("office.staff.remove", { name: one.name })}
-                  </button>
-                </div>
-              </div>
-            </li>
-          ))}
-        </ul>
-      </div>
     </Dialog>
   );
 }

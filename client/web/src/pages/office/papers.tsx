@@ -113,7 +113,7 @@ function Certificates({ sheet }: { sheet: ContestSheet }) {
   );
 }
 
-/** Cards: the links of teams, and the address of /enter while entries are open; on another sheet those of referees. */
+/** Cards: the links of teams, and the address of /enter while entries are open; on another sheet those of staff and referees. */
 function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) {
   const links = organiser.links.value;
   if (!links) return <p class="muted">{t("contest.loading")}</p>;
@@ -146,6 +146,12 @@ function Links({ organiser, view }: { organiser: Organiser; view: OfficeView }) 
         ))}
       </div>
       <div class="cards apart">
+        {links.staff.map(({ name, link, qr }) => (
+          <Card key={`staff ${name}`} qr={qr} title={name}>
+            <p>{t("office.staffLink")}</p>
+            <p class="address">{link}</p>
+          </Card>
+        ))}
         {links.referees.map(({ court, link, qr }) => (
           <Card key={`court ${court}`} qr={qr} title={t("office.refereeOf", { court })}>
             <p>{t("office.refereeLink")}</p>

@@ -1,6 +1,7 @@
 /** The timetable, a column for each court. A match can be dragged, or moved with its button. */
 
 import { type Signal, useSignal } from "@preact/signals";
+import { isHeld } from "../../core/contest/sheet";
 import type { OfficeView, Slot } from "../../core/desk";
 import { type Column, canMove, columns, dropped } from "../../core/timetable";
 import { said, t } from "../../i18n";
@@ -125,14 +126,18 @@ export function versusOf({ teams, who }: Slot): string {
 }
 
 function Card({ organiser, slot }: { organiser: Organiser; slot: Slot }) {
+  const view = organiser.view.value;
+  const held = view !== null && isHeld(view, Date.now());
   const versus = versusOf(slot);
   return (
     <>
-      <span class="time">
+      <span class="time" title={held ? t("office.notBefore.text") : undefined}>
         {slot.running
           ? t(slot.begun ? "office.now" : "office.called")
           : slot.at_ms
-            ? timeOf(slot.at_ms)
+            ? held
+              ? t("office.notBefore", { time: timeOf(slot.at_ms) })
+              : timeOf(slot.at_ms)
             : "–"}
       </span>
       <b class="versus">{versus}</b>

@@ -1,6 +1,7 @@
 /** The card before a seat is held: who, where, with what. */
 
 import { useComputed, useSignal } from "@preact/signals";
+import { setting } from "../../core/address";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
@@ -35,13 +36,26 @@ export function Entrance({ court, player, alone, team }: EntranceProps) {
     case "left":
       return <Gone court={court} player={player} alone={alone} />;
     case "outside":
-      if (!court.welcome.value) return null;
+      if (!court.welcome.value || team?.going.value) return <OnTheWay team={team} />;
       if (team && !(team.isOn.value && team.there.value?.open))
         return <TeamCard court={court} team={team} />;
       return <JoinCard court={court} player={player} alone={alone} team={team} />;
     default:
       return null;
   }
+}
+
+/** The page goes to a court, or has come to it and waits for its first word. */
+function OnTheWay({ team }: { team: Team | null }) {
+  const going = team?.going.value;
+  const court = going || setting("court");
+  if (!court) return null;
+  return (
+    <section class="card entrance" role="status">
+      <h1>{t(going ? "team.going" : "team.connecting", { court })}</h1>
+      <span class="spinner" aria-hidden="true" />
+    </section>
+  );
 }
 
 function WatchOnly({ alone }: { alone: boolean }) {

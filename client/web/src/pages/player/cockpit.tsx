@@ -23,12 +23,13 @@ import {
   WHY_NO,
 } from "../../core/wire";
 import { said, sentence, t } from "../../i18n";
-import { clockTicks, logClock, played } from "../../i18n/words";
+import { clockTicks, logClock, played, ruleOf } from "../../i18n/words";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
 import { useDrop } from "../../ui/drop";
 import { hideKeys, KeyHelp, showKeys } from "../../ui/key_help";
 import { later } from "../../ui/later";
+import { RulesLink } from "../../ui/rules_link";
 import { Settings } from "../../ui/settings";
 import { Toasts, toast } from "../../ui/toasts";
 import { Entrance } from "./card";
@@ -227,7 +228,11 @@ export function Cockpit({ alone }: { alone: boolean }) {
         </Settings>
       )}
       {open.value === "linktest" && <LinkTestDialog court={court} onClose={close} />}
-      <KeyHelp rows={() => keyRows(court.sheet.value, alone)} onClose={focusField} />
+      <KeyHelp rows={() => keyRows(court.sheet.value, alone)} onClose={focusField}>
+        <p>
+          {ruleOf(court.sheet.value)} <RulesLink />
+        </p>
+      </KeyHelp>
       {isIn && <Heard {...{ court, player, alone, tryOut }} />}
       <Toasts />
     </main>

@@ -1,8 +1,8 @@
 /** The field and what lies over it. */
 
-import { type Signal, useComputed, useSignal } from "@preact/signals";
+import { type Signal, useComputed } from "@preact/signals";
 import type { Ref } from "preact";
-import { useEffect, useMemo } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
@@ -10,10 +10,12 @@ import { quality } from "../../core/settings";
 import type { TryOut } from "../../core/try_out";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
+import { played } from "../../i18n/words";
 import { View } from "../../scene/View";
 import { Countdown } from "../../ui/opening";
 import { ResultCard } from "../../ui/result";
 import { ScoreBug } from "../../ui/score";
+import { useMedia } from "../../ui/screen";
 import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
 import { Brief } from "./brief";
@@ -26,6 +28,8 @@ export type ViewName = (typeof VIEWS)[number];
 const INSET = { top: 118, bottom: 40 };
 const INSET_NARROW = { top: 112, bottom: 6 };
 const NARROW = matchMedia("(max-width: 820px)");
+/** The field stands above the keys, and is too small for a card (player.css). */
+export const STACKED = matchMedia("(max-width: 520px), (max-width: 820px) and (min-height: 641px)");
 const INSET_OUTSIDE = {};
 
 interface Props {
@@ -44,14 +48,8 @@ interface Props {
 
 export function Field(props: Props) {
   const { court, player, alone, tryOut, view, field, onView } = props;
-  const isNarrow = useSignal(NARROW.matches);
-  useEffect(() => {
-    const look = () => {
-      isNarrow.value = NARROW.matches;
-    };
-    NARROW.addEventListener("change", look);
-    return () => NARROW.removeEventListener("change", look);
-  }, [isNarrow]);
+  const isNarrow = useMedia(NARROW);
+  const isStacked = useMedia(STACKED);
   const standing = player.standing.value;
   const isIn = standing === "seated" || standing === "joining";
   const hasLevels = (court.sheet.value?.levels.length ?? 0) > 1;
@@ -73,7 +71,7 @@ export function Field(props: Props) {
           labels={!alone}
           own={!alone && isIn ? { seat: player.index.value, name: t("tag.own") } : null}
           worth={player.gains.value?.points ?? null}
-          inset={isIn ? (isNarrow.value ? INSET_NARROW : INSET) : INSET_OUTSIDE}
+          inset={isIn ? (isNarrow ? INSET_NARROW : INSET) : INSET_OUTSIDE}
           label={t("views.label")}
         />
       </div>
@@ -83,8 +81,13 @@ export function Field(props: Props) {
         <>
           <div class="on-stage">
             <ScoreBug match={court} />
-            <NextStep {...props} isNarrow={isNarrow.value} />
-            {!alone && !tryOut?.standing.value && <Brief court={court} player={player} />}
+            {isNarrow && court.sheet.value?.call && (
+              <p class="fixture">{played(court.sheet.value)}</p>
+            )}
+            <NextStep {...props} isNarrow={isNarrow} />
+            {!alone && !isStacked && !tryOut?.standing.value && (
+              <Brief court={court} player={player} />
+            )}
             {!alone && <Countdown match={court} />}
             {!alone && <Sound match={court} own={player.index.value} />}
             {!alone && (
@@ -92,7 +95,7 @@ export function Field(props: Props) {
                 match={court}
                 own={player.index.value}
                 withReplay
-                isLast={isNarrow.value}
+                isLast={isNarrow}
                 next={official(player)}
               >
                 {player.data && player.data.length > 0 && (

@@ -11,6 +11,9 @@ import { t } from "../../i18n";
 import { Board } from "../../ui/board";
 import { later } from "../../ui/later";
 import { EventLog } from "../../ui/log";
+import { useMedia } from "../../ui/screen";
+import { Brief } from "./brief";
+import { STACKED } from "./field";
 import { FilesChanged } from "./files";
 import { useLessons } from "./lessons";
 import { Pad } from "./pad";
@@ -31,7 +34,7 @@ interface Props {
 }
 
 /** What the page shows elsewhere already. */
-const QUIET = new Set(["phase", "ready", "key-refused", "heard"]);
+const QUIET = new Set(["phase", "key-refused", "heard"]);
 
 /** Whether the log has an event. */
 export function isTold(event: Event): boolean {
@@ -64,12 +67,14 @@ export function Rail(props: Props) {
 
 /** What there is to do before a match. */
 function Before(props: Props) {
-  const { court, onLinkTest } = props;
+  const { court, player, onLinkTest } = props;
+  const isStacked = useMedia(STACKED);
   const phase = useMemo(() => phaseOf(court), [court]).value;
   if (phase !== Phase.LOBBY && phase !== Phase.READY) return null;
   return (
     <>
       <Ready {...props} />
+      {isStacked && <Brief court={court} player={player} />}
       <button class="button quiet small" type="button" onClick={onLinkTest}>
         {t("linktest.test")}
       </button>

@@ -2,7 +2,7 @@
 
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
-import { Phase, SeatFlag } from "../../core/wire";
+import { type Frame, Phase, SeatFlag } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { BEATS_PER_S, ruleOf, seatName, team } from "../../i18n/words";
 
@@ -29,6 +29,10 @@ export function nextStep(court: Court, player: Player, alone: boolean, canTry = 
     case Phase.LOBBY:
       if (alone) return { text: t("next.practice"), tone: "wait" };
       if (!(seat.flags & SeatFlag.READY)) {
+        const ready = othersReady(frame, index);
+        if (ready >= 0) {
+          return { text: t("next.otherReady", { team: team(sheet, ready) }), tone: "do" };
+        }
         return { text: t(canTry ? "next.tryOut" : "next.ready"), tone: "do" };
       }
       return { text: othersMissing(court, index), tone: "wait" };
@@ -61,6 +65,11 @@ export function official(player: Player): string {
   const next = player.next.value;
   if (next) return said(next);
   return t(player.court.sheet.value?.call ? "next.byOffice" : "next.official");
+}
+
+/** Another seat whose player is ready; -1: there is none. */
+function othersReady({ seats }: Frame, index: number): number {
+  return seats.findIndex(({ flags }, other) => other !== index && flags & SeatFlag.READY);
 }
 
 function othersMissing(court: Court, index: number): string {

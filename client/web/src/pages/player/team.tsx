@@ -4,6 +4,7 @@ import { useSignal } from "@preact/signals";
 import type { Court } from "../../core/court";
 import type { Team } from "../../core/team";
 import { said, sentence, t } from "../../i18n";
+import { RulesLink } from "../../ui/rules_link";
 
 interface Props {
   court: Court;
@@ -52,6 +53,13 @@ export function TeamCard({ court, team }: Props) {
       ) : (
         <p class="muted">{t("team.byItself")}</p>
       )}
+      <p class="ways">
+        {contest && (
+          <a href={`contest#team=${encodeURIComponent(there.team)}`}>{t("team.matches")}</a>
+        )}
+        {contest && <a href="contest">{t("team.tables")}</a>}
+        <RulesLink />
+      </p>
       {court.welcome.value?.desk && !isOver && (
         <a class="button quiet small" href="enter">
           {t("team.files")}

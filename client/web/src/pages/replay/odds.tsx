@@ -1,6 +1,6 @@
 /** The odds of a recording: those at the beat that is shown, and where they changed most. */
 
-import { useComputed } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { highlights, type Odds } from "../../core/odds";
 import type { Sheet } from "../../core/wire";
@@ -11,7 +11,10 @@ import type { Player } from "./player";
 
 /** A component of its own, because it is drawn again at each beat. */
 export function ChancesNow({ player, odds }: { player: Player; odds: Odds }) {
-  const shown = useComputed(() => chancesAt(odds, player.recording.beat.value)).value;
+  const shown = useMemo(
+    () => computed(() => chancesAt(odds, player.recording.beat.value)),
+    [odds, player],
+  ).value;
   return (
     <span class="chances" title={t(odds.by === "forks" ? "odds.about" : "odds.byScore")}>
       <small class="muted">{t("odds.title")}</small> <b>{shown}</b>

@@ -101,7 +101,7 @@ function Coming({ sheet }: { sheet: ContestSheet }) {
             <span class="kicker">
               {gameTitle(sheet, pairing, game)}
               {call && ` · ${t("contest.court", { court })}`}
-              {at_ms > 0 && ` · ${expected({ at_ms, court })}`}
+              {at_ms > 0 && ` · ${expected(sheet, { at_ms, court })}`}
             </span>
           </li>
         ))}

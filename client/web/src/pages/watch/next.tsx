@@ -27,7 +27,7 @@ function Next({ sheet, team, call }: { sheet: ContestSheet; team: string; call: 
   const game = nextGameOf(sheet, team, call);
   if (!game) return null;
   const [left, right] = game.teams;
-  const when = game.call ? t("contest.court", { court: game.court }) : expected(game);
+  const when = game.call ? t("contest.court", { court: game.court }) : expected(sheet, game);
   return (
     <p>
       {t("event.plays", { team, opponent: left === team ? right : left })}

@@ -5,11 +5,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 import msgspec
 
 from lacoc_server.contest.league.contest import Contest, StageView, next_round
-from lacoc_server.contest.league.draws import clubs_apart
 from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new, stage_of
-from lacoc_server.contest.league.formats.format import Format, Stage
+from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.matches import ContestMatch
-from lacoc_server.contest.league.pairing import Entrant
+from lacoc_server.contest.league.timetable.seeding import kept_apart
 
 
 class Assignment(msgspec.Struct, frozen=True, kw_only=True):
@@ -195,23 +194,9 @@ def _next_stage(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None
     teams = _teams(contest, plan)
     if teams is None:
         return None
-    if plan.apart and plan.format in formats:
-        teams = kept_apart(contest, plan, teams, formats[plan.format])
+    if (plan.apart or plan.met_apart) and plan.format in formats:
+        teams = kept_apart(contest, plan, formats[plan.format], teams)
     return new(Drawn, stage=plan.stage, entries=teams)
-
-
-def kept_apart(
-    contest: Contest, plan: Planned, teams: tuple[str, ...], how: Format
-) -> tuple[str, ...]:
-    """Return the teams of a stage in an order in which those of one club meet late (`apart`)."""
-
-    def met(order: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-        for pairing in how.pairings(Stage(name="", settings=plan.settings, entries=order)):
-            first, second = pairing.sources
-            if isinstance(first, Entrant) and isinstance(second, Entrant):
-                yield first.team, second.team
-
-    return clubs_apart(teams, {team.name: team.club for team in contest.teams}, met)
 
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:

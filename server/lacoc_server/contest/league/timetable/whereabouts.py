@@ -122,7 +122,7 @@ def whereabouts(
         elif not team.gone and name in coming:
             view, match = coming[name]
             found[name] = _waits(contest, name, view, match, begins.get(match.pairing.id), pace)
-        elif not team.gone and _may_come(contest, name):
+        elif not team.gone and may_come(contest, name):
             found[name] = Whereabouts(team=name, state="waits", said=say("team.awaits-draw"))
         else:
             found[name] = _ended(contest, name, over=False)
@@ -133,7 +133,7 @@ def _called(contest: Contest, team: str, call: Called, courts: SeenCourts) -> Wh
     """Say where a team plays, if its game was given to a court; the court may not have it yet."""
     view, match = _match(contest, call.pairing)
     opponent = call.teams[call.teams[0] == team]
-    about = fixture(contest, view, match, call.game)
+    about = fixture(contest, view, match, call.game, stands=True)
     seen = courts.seen.get(call.court)
     if seen is None or seen.call != call.id:
         said = say("team.next", court=call.court, when=say("when.moment"), opponent=opponent)
@@ -170,7 +170,7 @@ def _waits(
     pace: ContestPace,
 ) -> Whereabouts:
     """Say what a team waits for, if its next match is known."""
-    about = fixture(contest, view, match, max(1, match.next_game))
+    about = fixture(contest, view, match, max(1, match.next_game), stands=True)
     opponent = match.teams[match.teams[0] == team] or ""
     if start is None:
         said = say("team.awaits-opponent", fixture=about)
@@ -333,7 +333,7 @@ def _games(plan: Planned, match: ContestMatch) -> int:
     return max(1, plan.settings.games // 2 + 1 - max(wins))
 
 
-def _may_come(contest: Contest, team: str) -> bool:
+def may_come(contest: Contest, team: str) -> bool:
     """Return whether a team without a match may still get one, by a draw that is to come."""
     drawn = {view.name: view for view in contest.stages}
     if any(view.rounds_to_draw and team in view.stage.entries for view in contest.stages):

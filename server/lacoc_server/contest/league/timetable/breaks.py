@@ -1,0 +1,46 @@
+"""The times in which no game is called: a pause, or a break before a stage or its final; pure."""
+
+import msgspec
+
+from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.timetable.foreseen import Foreseen
+from lacoc_server.contest.league.timetable.schedule import not_before_ms, playable
+from lacoc_shared.words import Phrase
+
+_FOREVER_MS = 1 << 62
+
+
+class Break(msgspec.Struct, frozen=True, kw_only=True):
+    """A time in which no game is called, if it is not over yet."""
+
+    until_ms: int
+    """Its end, in milliseconds since 1970, UTC; 0: the organiser says when."""
+    fixture: Phrase | None = None
+    """The match after it: "Semi-final 1"; None: nobody can say."""
+    who: tuple[Phrase, Phrase] | None = None
+    """Who plays in it."""
+
+
+def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None:
+    """Return the break that is on, or was the newest one; None: there is none.
+
+    It follows from the facts alone, so whoever shows it compares its end with the clock.
+
+    Args:
+        contest: the contest.
+        coming: its matches to come (`foreseen`).
+    """
+    if contest.over:
+        return None
+    until_ms = contest.day.until_ms
+    ready = playable(contest)
+    if not contest.day.paused and not contest.running and ready:
+        until_ms = min(not_before_ms(contest, match, _FOREVER_MS) for match in ready)
+    if not contest.day.paused and not until_ms:
+        return None
+    first = next(iter(coming), None)
+    return Break(
+        until_ms=0 if contest.day.paused else until_ms,
+        fixture=first.fixture if first else None,
+        who=first.who if first else None,
+    )
