@@ -40,6 +40,7 @@ export interface Planned {
   title?: Record<"en" | "ja", string>;
   draw?: "at-once" | "organiser";
   apart?: boolean;
+  met_apart?: boolean;
   break_s?: number;
   final_court?: string;
   final_break_s?: number;
