@@ -1,21 +1,31 @@
 """Tests of the groups of a class: pure ones, and some with a real gateway."""
 
+import asyncio
 import io
 import os
 import signal
 import zipfile
-from contextlib import ExitStack
+from collections.abc import AsyncIterator
+from contextlib import ExitStack, asynccontextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+import msgspec
 import pytest
+from aside import run_async
 from class_room import ClassRoom, StudentPage, TeacherPage
 from page_connection import Refused
 from page_table import PageTable
 from test_class import SEQUENCES, closing, code_of, comes, edit, room, teacher
 
 from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_client.workshop.classroom.classroom import CLASS_FILE, Classroom
 from lacoc_client.workshop.classroom.groups.group_state import MEMBERS_MOST, GroupState
+from lacoc_client.workshop.classroom.groups.group_tables import OF_GROUP
+from lacoc_client.workshop.classroom.kept import student_files
+from lacoc_client.workshop.design.requests import GroupAsk, Hello
+from lacoc_client.workshop.phases.class_file import ClassFile, Document
+from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_shared.mistakes import UserError
 
 __all__ = ["closing", "room", "teacher"]
@@ -180,3 +190,119 @@ def test_kill_9_in_the_middle_of_group_work_loses_nothing(
     teacher.ask("forget", student="Gil")
     teacher.until(lambda: teacher.group["groups"] == [])
     assert not any(b"group\n" in file.read_bytes() for file in tmp_path.glob("lacoc-class*"))
+
+
+class NoStudios:
+    """Stands for the studios of a class whose robots do not walk."""
+
+    present, why = 0, None
+
+    def start(self) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+@asynccontextmanager
+async def class_of(folder: Path, *names: str) -> AsyncIterator[Classroom]:
+    """Run a class without a network, with these students."""
+    room = Classroom(folder, cast(Any, NoStudios()))
+    async with room.running():
+        await room.open()
+        for name in names:
+            await room.enter(Hello(id=0, code=room.state.code, name=name), "")
+        yield room
+
+
+def test_students_who_move_at_the_same_time_are_in_one_group_each(tmp_path: Path) -> None:
+    """Two who make the same group share it; one who presses twice is in the last one only."""
+
+    async def move() -> None:
+        async with class_of(tmp_path, "Ann", "Ben", "Cleo") as room:
+            ann, ben, cleo = room.students.values()
+            groups = room.groups
+            await groups.join(ann, "Alone")
+            await asyncio.gather(groups.join(ann, "Ants"), groups.join(ben, "ants"))
+            assert [one.members for one in groups.states.values()] == [("Ann", "Ben")]
+            await asyncio.gather(groups.join(ann, "Bees"), groups.join(ann, "Crabs"))
+            assert {one.name: one.members for one in groups.states.values()} == {
+                "Ants": ("Ben",),
+                "Crabs": ("Ann",),
+            }
+            asked = GroupAsk(id=0, act="join", text="Ants")
+            await asyncio.gather(room.forget(cleo), room.group(cleo, asked))
+            assert groups.find("Ants").members == ("Ben",)
+            assert ann.table.name == groups.find("Crabs").id
+
+    run_async(move)
+
+
+def test_one_student_does_not_use_up_what_all_may_change(tmp_path: Path) -> None:
+    """Whoever changes too much is refused, and others are not."""
+
+    async def flood() -> None:
+        async with class_of(tmp_path, "Ann", "Ben") as room:
+            ann, ben = room.students.values()
+            for one in (ann, ben):
+                await room.group(one, GroupAsk(id=0, act="join", text="Ants"))
+            with pytest.raises(UserError):
+                for number in range(60):
+                    role = ("forward", "turn")[number % 2]
+                    await room.group(ann, GroupAsk(id=0, act="role", text=role))
+            await room.group(ben, GroupAsk(id=0, act="word", text="calm"))
+
+    run_async(flood)
+
+
+def test_a_program_that_ended_halfway_leaves_no_ghosts(tmp_path: Path) -> None:
+    """A member who was deleted, and a table whose group has ended, are gone at the next start."""
+
+    async def end() -> None:
+        async with class_of(tmp_path, "Ann", "Ben", "Cleo") as room:
+            ann, ben, cleo = room.students.values()
+            for one, name in ((ann, "Ants"), (ben, "Ants"), (cleo, "Bees")):
+                await room.groups.join(one, name)
+        file = ClassFile(tmp_path / CLASS_FILE)
+        for one in (ben, cleo):
+            file.forget(one.name)
+        file.write_documents([Document(OF_GROUP + "lost", "table", "", 0.0, b"")])
+        file.close()
+        async with class_of(tmp_path) as again:
+            assert [(one.name, one.members) for one in again.state.groups] == [("Ants", ("Ann",))]
+            assert again.find("Ann").table.name == again.state.groups[0].id
+            owners = {one.student for one in await again.documents() if one.student[:6] == OF_GROUP}
+            assert owners == {OF_GROUP + again.state.groups[0].id}
+
+    run_async(end)
+
+
+def test_a_class_of_an_earlier_version_goes_on(tmp_path: Path) -> None:
+    """Its drafts are tables, and the next table that is handed out is the newest."""
+    table = {"kind": "postures", "legs": 1, "rows": [{"key": 0, "angles_deg": [1.0, 2.0, 3.0]}]}
+    old = {"code": "ABC", "key": "k", "handed": {"number": 3, "title": "A", "table": table}}
+    draft = msgspec.msgpack.encode({"table": table, "saved": False})
+    file = ClassFile(tmp_path / CLASS_FILE)
+    file.add("学生", JoinedClass(), 0.0)
+    file.write_documents(
+        [
+            Document("", "class", "", 0.0, msgspec.json.encode(old)),
+            Document("学生", "draft", "7", 0.0, draft),
+        ]
+    )
+    assert [one.student for one in student_files(file.documents())] == ["学生"]
+    file.close()
+
+    async def go_on() -> None:
+        async with class_of(tmp_path) as room:
+            student = room.find("学生")
+            assert student.draft is not None
+            assert student.draft.table.rows[0].angles_deg == (1.0, 2.0, 3.0)
+            await room.hand_out("B", student.draft.table, None)
+            assert room.state.handed is not None
+            assert room.state.handed.number == 4
+            await room.groups.join(student, "学生")
+            files = student_files(await room.documents())
+            assert sorted(one.student for one in files) == ["学生", "学生 (group)"]
+
+    run_async(go_on)

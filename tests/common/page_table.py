@@ -17,12 +17,13 @@ class PageTable:
 
     Args:
         opened: what the gateway sends a page to begin with.
+        client: the number of the page; None: it draws one.
     """
 
-    def __init__(self, opened: dict[str, Any]) -> None:
+    def __init__(self, opened: dict[str, Any], client: int | None = None) -> None:
         self.opened = opened
         self.seen: int = opened["seq"]
-        self._document: Doc[Any] = Doc()
+        self._document: Doc[Any] = Doc(client_id=client)
         self._map: Map[Any] = self._document.get("table", type=Map)
         self.take(opened["state"])
 

@@ -4,6 +4,7 @@ import asyncio
 import random
 from typing import Any
 
+import msgspec
 import pytest
 from aside import run_async
 from hypothesis import given
@@ -12,6 +13,7 @@ from page_table import PageTable
 from pycrdt import Array, Doc, Map
 
 from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.tables import document as documents
 from lacoc_client.workshop.tables.document import TableDocument, document_of
 from lacoc_client.workshop.tables.draft import draft_of
@@ -20,7 +22,9 @@ from lacoc_client.workshop.tables.entries import (
     Entry,
     without_proposals,
 )
+from lacoc_client.workshop.tables.kept_table import kept_table
 from lacoc_client.workshop.tables.shared_table import SharedTable, TableUpdate
+from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 
 
@@ -273,3 +277,172 @@ def test_a_flood_at_one_table_is_refused() -> None:
         assert refused > 100
 
     run_async(flood)
+
+
+def number(value: int) -> bytes:
+    """Write a number as Yjs does."""
+    found = b""
+    while value > 127:
+        found += bytes([value & 127 | 128])
+        value >>= 7
+    return found + bytes([value])
+
+
+def made(value: bytes, client: int = 5, clock: int = 0, kind: int = 8, named: bool = True) -> bytes:
+    """Make an update that no page writes."""
+    text = b"".join(number(len(one)) + one for one in (b"table", b"p6/0.0/0")[: 1 + named])
+    head = number(1) + number(1) + number(client) + number(clock)
+    return head + bytes([kind | 0x20 * named]) + number(1) + text + value + number(0)
+
+
+FORGED = {
+    "a list in a list in a list": made(number(1) + b"\x75\x01" * 40_000 + b"\x78"),
+    "a value that is not there": made(number(2**31)),
+    "many pages": number(2**40),
+    "no UTF-8": made(number(1) + b"\x77\x01\xff"),
+    "no entry": made(number(1) + b"\x78", named=False),
+    "a nested map": made(number(1), kind=7),
+    "an edit after one that is missing": made(number(1) + b"\x78", clock=3),
+    "an edit without an end": made(number(2**32 - 2), kind=1),
+    "a deletion of what is not there": number(0) + number(1) + number(9) + b"\x01\x00\x05",
+}
+
+
+@pytest.mark.parametrize("update", FORGED.values(), ids=FORGED)
+def test_a_forged_update_does_not_reach_the_library(update: bytes) -> None:
+    """What no page writes is refused: the first one would end the process otherwise."""
+    document = document_of(standing(1))
+    with pytest.raises(UserError):
+        document.merge(update)
+    assert document.merge(page_of(document).put({"p6/0.0/0": 4.0})["update"])
+
+
+def test_an_update_whose_predecessor_is_missing_is_refused() -> None:
+    """It would take cells away otherwise, and would not be on the disk."""
+    document = document_of(standing())
+    page = page_of(document)
+    first, second = (page.put({"p6/1.0/1": angle})["update"] for angle in (5.0, 6.0))
+    before = dict(document.entries)
+    with pytest.raises(UserError, match="older state"):
+        document.merge(second)
+    assert document.entries == before
+    document.merge(first)
+    document.merge(second)
+    assert angle_of(document, 1, 1) == 6.0
+    assert not document.merge(first), "it came again"
+
+
+def test_a_state_with_a_past_is_cut_off_after_a_restart() -> None:
+    """Each restart would allow as much more past otherwise, until nothing fits any more."""
+    document = document_of(standing(1))
+    page = page_of(document)
+    while not document.is_long:
+        document.merge(
+            page.put({f"p6/0.0/{col}": page.seen + col + 0.5 for col in range(18)})["update"]
+        )
+        page.seen += 1
+    assert TableDocument(document.state).is_long
+
+
+def test_a_robot_entry_with_endless_brackets_is_the_workshops_robot() -> None:
+    """The table stays usable, also after a restart."""
+    draft = draft_of({**standing(1), "robot": '{"name":' + "[" * 39_000})
+    assert draft is not None
+    assert draft.robot is None
+
+
+def test_a_draft_of_an_earlier_version_becomes_a_table() -> None:
+    """Its angles, keys, robot and file are in the table; what can't be read is left out."""
+    rows = [{"key": 3, "posture": 0, "angles_deg": [float(col) for col in range(6)]}]
+    old = {
+        "table": {"kind": "postures", "legs": 2, "rows": rows},
+        "sequences": [[3], [3, 3]],
+        "robot": {"name": "a.toml", "data": b"[body]"},
+        "file": "Loco-data.txt",
+        "file_version": "ab",
+        "saved": True,
+    }
+    kept = Document("Ann", "draft", "7", 5.0, msgspec.msgpack.encode(old))
+    token = Document("Ann", "token", "", 0.0, b"secret")
+    table = kept_table([token, kept])
+    assert table is not None
+    entries = TableDocument(table.content).entries
+    draft = draft_of(entries)
+    assert draft is not None
+    assert draft.table.rows[0].angles_deg == tuple(range(6))
+    assert draft.sequences == ((3,), (3, 3))
+    assert draft.robot == SentFile("a.toml", b"[body]")
+    assert '"version":"ab"' in str(entries["file"])
+    newer = Document("Ann", "table", "e", 6.0, document_of(standing(1)).state)
+    assert kept_table([kept, newer]) == newer
+    assert kept_table([token]) is None
+    assert kept_table([Document("Ann", "draft", "", 0.0, b"\xc1")]) is None
+
+
+def test_two_pages_with_one_number_do_not_hide_each_others_edits() -> None:
+    """The second one is told to begin again, with a number of its own."""
+
+    async def keep(state: bytes, epoch: str) -> None:
+        pass
+
+    async def edit() -> None:
+        table = SharedTable("", keep)
+        one, other = Viewer(Wire()), Viewer(Wire())
+        for viewer in (one, other):
+            table.add(viewer, "")
+        await table.take(one, told(PageTable(table.opened()), dict(standing())))
+        pages = [PageTable(table.opened(), client=7) for _ in range(2)]
+        await table.take(one, told(pages[0], {"p6/0.0/0": 1.0}))
+        with pytest.raises(UserError, match="older state"):
+            await table.take(other, told(pages[1], {"p6/0.0/1": 2.0}))
+        table.leave(one)
+        await table.take(other, told(pages[0], {"p6/0.0/2": 4.0}))  # it has connected again
+        assert table.draft is not None
+        assert table.draft.table.rows[0].angles_deg[:3] == (1.0, 0.0, 4.0)
+
+    run_async(edit)
+
+
+def test_the_newest_whole_table_is_the_draft() -> None:
+    """A cell without an angle leaves the draft as it was just before."""
+
+    async def keep(state: bytes, epoch: str) -> None:
+        pass
+
+    async def edit() -> None:
+        table = SharedTable("", keep)
+        viewer = Viewer(Wire())
+        table.add(viewer, "")
+        page = PageTable(table.opened())
+        for change in (dict(standing()), {"p6/0.0/0": 5.0}, {"p6/0.0/1": 6.0}, {"p6/0.0/0": "x"}):
+            await table.take(viewer, told(page, change))
+        await table.take(viewer, told(page, {"p6/0.0/2": 7.0}))
+        assert table.draft is not None
+        assert table.draft.table.rows[0].angles_deg[:3] == (5.0, 6.0, 0.0)
+        await table.take(viewer, told(page, {"p6/0.0/0": 8.0}))
+        assert table.draft.table.rows[0].angles_deg[:3] == (8.0, 6.0, 7.0)
+
+    run_async(edit)
+
+
+def test_pages_hear_of_places_at_a_bounded_rate() -> None:
+    """However many pages move, each is told at most so often; the last place arrives."""
+
+    async def keep(state: bytes, epoch: str) -> None:
+        pass
+
+    async def move() -> None:
+        table = SharedTable("", keep)
+        wires = [Wire() for _ in range(5)]
+        viewers = [Viewer(wire) for wire in wires]
+        for viewer in viewers:
+            table.add(viewer, "")
+        for row in range(200):
+            table.move(viewers[0], row, 0, None)
+        await asyncio.sleep(0.2)
+        for wire in wires:
+            assert len(wire.written) <= 5
+        assert wires[1].written[-1].count(b"row") == 5
+        assert bytes([0xCC, 199]) in wires[1].written[-1]
+
+    run_async(move)

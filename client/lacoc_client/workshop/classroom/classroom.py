@@ -16,7 +16,8 @@ from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.web.office.links import qr_code
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.groups.group_state import Role
-from lacoc_client.workshop.classroom.groups.groups import OF_GROUP, Groups
+from lacoc_client.workshop.classroom.groups.group_tables import OF_GROUP
+from lacoc_client.workshop.classroom.groups.groups import Groups
 from lacoc_client.workshop.classroom.groups.handed import Handed
 from lacoc_client.workshop.classroom.state import (
     NOBODY,
@@ -129,12 +130,13 @@ class Classroom:
         documents = _by_student(store.documents())
         for document in documents.pop(NOBODY, []):
             self.state = read_state(document) or self.state
-        await asyncio.wrap_future(store.write(self.state.kept()))
         of_groups = [name for name in documents if name.startswith(OF_GROUP)]
         kept_groups = [one for name in of_groups for one in documents.pop(name)]
         for name in dict.fromkeys((*evidence, *documents)):
             self._new(name).begin(evidence.get(name, []), documents.get(name, []))
-        self.groups.begin(self.state.groups, kept_groups)
+        await self.groups.begin(self.state.groups, kept_groups)
+        self.state = msgspec.structs.replace(self.state, groups=tuple(self.groups.states.values()))
+        await asyncio.wrap_future(store.write(self.state.kept()))
 
     # What students do
 
@@ -182,6 +184,7 @@ class Classroom:
     async def group(self, student: Student, asked: requests.GroupAsk) -> None:
         """Do what a student asks of the groups (`Host.group`)."""
         assert isinstance(student, ClassStudent)
+        self.groups.spend(student)
         match asked.act:
             case "join":
                 await self.groups.join(student, asked.text)
@@ -271,10 +274,11 @@ class Classroom:
             UserError: if the class file can't be written; then the student stays.
         """
         await student.diary.forget()
-        await self.groups.forget(student)
+        # First: what its pages still ask for brings it back into no group.
         if self.students.get(same_name(student.name)) is student:  # else another page was quicker
             del self.students[same_name(student.name)]
         student.send_away()
+        await self.groups.forget(student)
         self._tell(wire.map_message(MessageKind.GONE, {"name": student.name}))
 
     async def evidence(self) -> list[Kept]:

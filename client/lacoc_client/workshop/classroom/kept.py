@@ -3,13 +3,14 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from lacoc_client.workshop.classroom.groups.groups import OF_GROUP
+from lacoc_client.workshop.classroom.groups.group_state import group_title
+from lacoc_client.workshop.classroom.groups.group_tables import OF_GROUP
 from lacoc_client.workshop.classroom.state import NAME, NOBODY, read_state
-from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
 from lacoc_client.workshop.tables.document import TableDocument
 from lacoc_client.workshop.tables.draft import Draft, draft_of
+from lacoc_client.workshop.tables.kept_table import kept_table
 from lacoc_robots.seat_files import USUAL_NAMES
 from lacoc_shared.command.database import Damaged
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
@@ -24,19 +25,24 @@ def student_files(kept: Iterable[Document]) -> list[Document]:
     The table of a group is under the group's name.
     """
     kept = list(kept)
-    states = [read_state(one) for one in kept if (one.student, one.name) == (NOBODY, NAME)]
-    owners = {OF_GROUP + one.id: one.name for state in states if state for one in state.groups}
-    found = []
+    by_owner: dict[str, list[Document]] = {}
     for one in kept:
-        draft = _draft(one) if one.name == TABLE else None
-        if draft is None:
+        by_owner.setdefault(one.student, []).append(one)
+    states = [read_state(one) for one in kept if (one.student, one.name) == (NOBODY, NAME)]
+    groups = [group for state in states if state for group in state.groups]
+    titles = {OF_GROUP + one.id: group_title(one.name, by_owner) for one in groups}
+    found = []
+    for owner, documents in by_owner.items():
+        one = kept_table(documents)
+        draft = None if one is None else _draft(one)
+        if one is None or draft is None:
             continue
         try:
             files = draft.files()
         except (FileRefused, UserError):
             continue  # a mistake in the table, such as an angle without a number
         found += [
-            Document(owners.get(one.student, one.student), name, one.version, one.at_s, file.data)
+            Document(titles.get(owner, owner), name, one.version, one.at_s, file.data)
             for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]

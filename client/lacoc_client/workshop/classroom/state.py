@@ -42,6 +42,9 @@ def fresh_state() -> ClassState:
 def read_state(kept: Document) -> ClassState | None:
     """Decode kept settings; None if they are of another version of this program."""
     try:
-        return msgspec.json.decode(kept.content, type=ClassState)
+        state = msgspec.json.decode(kept.content, type=ClassState)
     except (msgspec.DecodeError, UnicodeDecodeError):
         return None
+    # An earlier version did not count: the next table would have an older number than this one.
+    handed = state.handed.number if state.handed is not None else 0
+    return msgspec.structs.replace(state, handed_count=max(state.handed_count, handed))

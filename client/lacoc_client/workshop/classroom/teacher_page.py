@@ -14,6 +14,7 @@ from lacoc_client.web.gateway.wire import Ping
 from lacoc_client.workshop.classroom import teacher_requests as requests
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.classroom import Classroom
+from lacoc_client.workshop.classroom.groups.group_state import group_title
 from lacoc_client.workshop.classroom.kept import EVIDENCE, TABLES, student_files
 from lacoc_client.workshop.design.design_page import parsed
 from lacoc_client.workshop.design.requests import Hello, ParseAsk, RobotAsk, TrialAsk
@@ -21,7 +22,7 @@ from lacoc_client.workshop.design.studios.studio_desk import StudioDesk
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
 from lacoc_client.workshop.tables.draft import Draft
 from lacoc_robots.seat_files import SeatFiles
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import say
 
 _ASKS_HZ, _ASKS_BURST = 20.0, 100
@@ -145,12 +146,14 @@ class TeacherPage:
         """Return the files of everybody who has a table, by nickname or name of the group."""
         students = [one for one in self._class.students.values() if one.table is one.own]
         drafts = {one.name: one.draft for one in students if one.draft is not None}
-        for state, draft in self._class.groups.drafts().values():
-            name = state.name if state.name not in drafts else f"{state.name} (group)"
-            drafts[name] = draft
+        for name, draft in self._class.groups.drafts().items():
+            drafts[group_title(name, drafts)] = draft
         players = {}
         for name, draft in drafts.items():
-            files = draft.files()
+            try:
+                files = draft.files()
+            except (FileRefused, UserError):
+                files = SeatFiles(draft.robot)  # it has no key to walk with: it is left out
             players[name] = files._replace(robot=files.robot or self._class.robot)
         return players
 

@@ -1,15 +1,16 @@
 """The document of a shared table: it merges updates of pages, and believes only tables.
 
 Pages merge in the same way with Yjs. An update that would make anything else than a table is
-taken back before anybody else sees it.
+taken back before anybody else sees it. One that lacks its predecessors is not taken at all.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pycrdt import Doc, Map
 
 from lacoc_client.workshop.tables.entries import ENTRIES_MOST, Entry, is_entry
+from lacoc_client.workshop.tables.update import ROOT, Unfit, read_known, read_update
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -18,8 +19,6 @@ STATE_BYTES = 512 << 10
 COMPACT_BYTES = 48 << 10
 """A state that is longer by so much than that of the same table without a past is replaced by
 it [bytes]."""
-
-_ROOT = "table"
 
 
 class TableDocument:
@@ -40,20 +39,34 @@ class TableDocument:
         self._load(b"")
         if state:
             self.merge(state)
-        self._compact_bytes = len(self.state) + COMPACT_BYTES
+        # A state that is read again may have a past.
+        self._compact_bytes = len(_state_of(self._entries)) + COMPACT_BYTES
 
     @property
     def entries(self) -> Mapping[str, Entry]:
-        """All entries by name."""
+        """All entries by name; they stay as they are when another update is merged."""
         return self._entries
 
-    def merge(self, update: bytes) -> bool:
+    def merge(self, update: bytes, may_write: Callable[[int], bool] = lambda _: True) -> bool:
         """Merge an update of a page; return whether it has changed an entry.
 
+        Args:
+            update: the update, as Yjs writes it.
+            may_write: whether the page may bring edits under a number of a page.
+
         Raises:
-            UserError: if the update can't be read, or makes no table; then nothing has changed.
+            UserError: if the update can't be read, makes no table, follows one that is not here,
+                or writes under another page's number; then nothing has changed.
         """
-        before, entries = self.state, dict(self._entries)
+        known = read_known(self._document.get_state())
+        try:
+            read = read_update(update)
+        except Unfit:
+            raise UserError(say("tables.unreadable")) from None
+        if not read.fits(known) or not all(map(may_write, read.writers)):
+            raise UserError(say("tables.older"))
+        before, entries = self.state, self._entries
+        self._entries = dict(entries)
         self._changes.clear()
         try:
             self._document.apply_update(update)
@@ -88,7 +101,7 @@ class TableDocument:
         """
         if len(self.state) > STATE_BYTES:
             raise UserError(say("tables.too-large"))
-        if list(self._document.keys()) != [_ROOT]:
+        if list(self._document.keys()) != [ROOT]:
             raise UserError(say("tables.unreadable"))
         for name in self._changes:
             # What the event itself says is wrong where updates came in another order.
@@ -109,7 +122,7 @@ class TableDocument:
 
     def _load(self, state: bytes) -> None:
         self._document: Doc[Any] = Doc()
-        self._map: Map[Any] = self._document.get(_ROOT, type=Map)
+        self._map: Map[Any] = self._document.get(ROOT, type=Map)
         if state:
             self._document.apply_update(state)
         self.state = state
@@ -121,9 +134,13 @@ class TableDocument:
 
 def document_of(entries: Mapping[str, Entry]) -> TableDocument:
     """Make a document with these entries and no past."""
+    return TableDocument(_state_of(entries))
+
+
+def _state_of(entries: Mapping[str, Entry]) -> bytes:
     document: Doc[Any] = Doc()
-    root: Map[Any] = document.get(_ROOT, type=Map)
+    root: Map[Any] = document.get(ROOT, type=Map)
     with document.transaction():
         for name, value in entries.items():
             root[name] = value
-    return TableDocument(bytes(document.get_update()))
+    return bytes(document.get_update())

@@ -120,5 +120,5 @@ def _robot(text: str) -> SentFile | None:
     try:
         robot = msgspec.json.decode(text, type=_RobotEntry)
         return SentFile(robot.name, robot.text.encode())
-    except (msgspec.DecodeError, UnicodeError):
+    except (msgspec.DecodeError, UnicodeError, RecursionError):
         return None  # the workshop's

@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 import msgspec
@@ -12,7 +12,7 @@ from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.tables.document import TableDocument, document_of
 from lacoc_client.workshop.tables.draft import Draft, draft_of
-from lacoc_client.workshop.tables.entries import without_proposals
+from lacoc_client.workshop.tables.entries import Entry, without_proposals
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
@@ -20,6 +20,12 @@ from lacoc_shared.words import say
 
 UPDATES_HZ, UPDATES_BURST = 100.0, 200
 """Updates of one table [1/s], however many pages send them."""
+_COST_ENTRIES = 500
+"""An update counts once more for each so many entries of the table: it costs more time."""
+_REFUSED_COST = 10
+"""An update that is refused counts so many times: the document is read again."""
+_PEOPLE_S = 0.05
+"""Pages are told at most so often where the others are [s]."""
 
 _FORGET_AFTER = 20_000
 """After so many cells it is no longer remembered who typed into which."""
@@ -75,7 +81,10 @@ class SharedTable:
         self._keep = keep
         self._allowance = Allowance(UPDATES_HZ, UPDATES_BURST)
         self._writing: asyncio.Task[None] | None = None
+        self._telling: asyncio.TimerHandle | None = None
+        self._told_s = 0.0
         self._draft: Draft | None = None
+        """The newest draft that was asked for, or could not be made later."""
         self._begin(TableDocument(state), epoch or new_token())
         self.is_touched = bool(state)
         """Whether anybody has changed anything; else the table is not kept."""
@@ -85,7 +94,7 @@ class SharedTable:
     @property
     def draft(self) -> Draft | None:
         """The newest table whose cells all had angles; None: there was none."""
-        return self._draft if self.is_touched else None
+        return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:
         """Return what a page needs to begin."""
@@ -137,14 +146,22 @@ class SharedTable:
             raise UserError(say("tables.older"))
         if told.begins and self._document.entries:
             raise UserError(say("tables.older"))  # another page was quicker
-        if not self._allowance.take(1, time.monotonic()):
+        now_s = time.monotonic()
+        cost = 1 + len(self._document.entries) // _COST_ENTRIES
+        if self._allowance.left(now_s) < cost:
             raise UserError(say("gateway.too-much"))
-        changes = self._document.merge(told.update)
+        self._allowance.take(cost, now_s)
+        before = self._document.entries
+        try:
+            changes = self._document.merge(told.update, lambda writer: self._is_of(writer, viewer))
+        except UserError:
+            self._allowance.take(_REFUSED_COST * cost, now_s)
+            raise
         self._seq += 1
         seq = self._seq
         self.is_touched = self.is_touched or not told.begins or bool(told.cells)
-        self._draft = draft_of(self._document.entries) or self._draft
         if changes:
+            self._keep_draft(before)
             self._tell_others(viewer, {"update": told.update})
         self._find_clashes(viewer, told)
         if self._document.is_long:
@@ -180,8 +197,35 @@ class SharedTable:
         self._document = document
         self._epoch = epoch
         self._draft = draft_of(document.entries) or self._draft
+        self._is_draft_old = False
+        self._writers: dict[int, Viewer] = {}
+        """Whose the numbers of pages are in this document."""
         self._typed: dict[str, tuple[int, Viewer]] = {}
         """For each cell the number of the last update with it, and whose it was."""
+
+    def _is_of(self, writer: int, viewer: Viewer) -> bool:
+        """Return whether a page may write under a number of a page.
+
+        If two wrote under the same one, the edits of the second would count as here already.
+        """
+        owner = self._writers.setdefault(writer, viewer)
+        if owner is not viewer and owner not in self.people:  # it has connected again
+            owner = self._writers[writer] = viewer
+        return owner is viewer
+
+    def _newest_draft(self) -> Draft | None:
+        if self._is_draft_old:
+            self._is_draft_old = False
+            self._draft = draft_of(self._document.entries) or self._draft
+        return self._draft
+
+    def _keep_draft(self, before: Mapping[str, Entry]) -> None:
+        """Note that the table has changed; a draft is made only of what may be the last one."""
+        after = self._document.entries
+        changed = (name for name in {*before, *after} if before.get(name) is not after.get(name))
+        if self._is_draft_old and not all(isinstance(after.get(name), float) for name in changed):
+            self._draft = draft_of(before) or self._draft
+        self._is_draft_old = True
 
     def _find_clashes(self, viewer: Viewer, told: TableUpdate) -> None:
         """Tell two pages that typed into the same cell without having seen each other's number."""
@@ -209,6 +253,19 @@ class SharedTable:
         return wire.map_message(MessageKind.TABLE, {**head, **body})
 
     def _tell_people(self) -> None:
+        """Tell all pages who is where: at once, or soon if they have just been told."""
+        if not self.people or self._telling is not None:
+            return
+        loop = asyncio.get_running_loop()
+        wait_s = max(0.0, self._told_s + _PEOPLE_S - loop.time())
+        if wait_s:
+            self._telling = loop.call_later(wait_s, self._tell_people_now)
+        else:
+            self._tell_people_now()
+
+    def _tell_people_now(self) -> None:
+        self._telling = None
+        self._told_s = asyncio.get_running_loop().time()
         people = [msgspec.structs.asdict(person) for person in self.people.values()]
         for viewer, person in self.people.items():
             body = {"me": person.id, "people": people}

@@ -1,11 +1,12 @@
 """What is known of a group: who is in it, who does what, and which word it has chosen."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Literal
 
 import msgspec
 
 from lacoc_client.workshop.classroom.groups.handed import Handed
+from lacoc_shared.contest.names import told_apart
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -16,6 +17,7 @@ MEMBERS_MOST = 4
 GROUPS_MOST = 50
 """Most groups of a class."""
 _WORDS_MOST = 12
+_TITLE_MOST = 40
 
 
 class GroupWord(msgspec.Struct, frozen=True, kw_only=True):
@@ -95,3 +97,8 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
     def count(self, word: str) -> int:
         """Return how many votes a word has."""
         return sum(vote == word for vote in self.votes.values())
+
+
+def group_title(name: str, students: Iterable[str]) -> str:
+    """Return the name of a group where it stands beside students: one may be called like it."""
+    return told_apart(name, students, "group", _TITLE_MOST)

@@ -1,9 +1,8 @@
-"""The groups of a class: who comes and goes, and the table of each."""
+"""The groups of a class: who comes and goes."""
 
 import asyncio
 import time
 from collections.abc import Awaitable, Callable, Iterable, Mapping
-from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -12,24 +11,23 @@ from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.groups.group_state import GROUPS_MOST, GroupState, Role
+from lacoc_client.workshop.classroom.groups.group_tables import GroupTables
 from lacoc_client.workshop.classroom.groups.handed import Handed
-from lacoc_client.workshop.design.learning.student import TABLE
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.phases.evidence import Named
 from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_client.workshop.tables.draft import Draft
-from lacoc_client.workshop.tables.shared_table import SharedTable
 from lacoc_shared.contest.names import look_alike, read_name, same_name
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
 
-OF_GROUP = "group\n"
-"""Before the id of a group: whose its documents are in the class file. No nickname has it."""
 _LONGEST_NAME = 20
 _CHANGES_HZ, _CHANGES_BURST = 10.0, 60
 """Changes of all groups [1/s]: each is told to the whole class."""
+_OWN_HZ, _OWN_BURST = 1.0, 20
+"""Changes by one student [1/s]: nobody uses up what all have."""
 
 
 class Groups:
@@ -49,27 +47,31 @@ class Groups:
     ) -> None:
         self.states: dict[str, GroupState] = {}
         """By id."""
-        self._store = store
         self._changed = changed
         self._students = students
-        self._tables: dict[str, SharedTable] = {}
+        self._tables = GroupTables(store)
         self._allowance = Allowance(_CHANGES_HZ, _CHANGES_BURST)
+        self._own_allowances: dict[str, Allowance] = {}
+        self._moving = asyncio.Lock()
+        """Held while a student comes or goes."""
 
-    def begin(self, states: Iterable[GroupState], documents: Iterable[Document]) -> None:
-        """Begin with what the class file has; students sit down at their groups' tables."""
-        kept = {one.student: one for one in documents if one.name == TABLE}
+    async def begin(self, states: Iterable[GroupState], documents: Iterable[Document]) -> None:
+        """Begin with what the class file has; students sit down at their groups' tables.
+
+        The program may have ended while a student was deleted, or a group ended.
+        """
+        gone: dict[str, list[str]] = {}
         for state in states:
-            one = kept.get(OF_GROUP + state.id)
-            content, epoch = (one.content, one.version) if one else (b"", "")
-            self.states[state.id] = state
-            try:
-                table = SharedTable(state.id, self._keeps(state.id), content, epoch)
-            except UserError:  # of another version of this program
-                table = SharedTable(state.id, self._keeps(state.id))
-            self._tables[state.id] = table
+            lost = [name for name in state.members if same_name(name) not in self._students]
+            for name in lost:
+                state = state.left(name)
+            if state.members:
+                self.states[state.id] = state
+                gone[state.id] = lost
+        await self._tables.begin(documents, gone)
+        for state in self.states.values():
             for name in state.members:
-                if student := self._students.get(same_name(name)):
-                    student.sit_at(table)
+                self._students[same_name(name)].sit_at(self._tables[state.id])
 
     def of(self, student: ClassStudent) -> GroupState | None:
         """Return the group of a student; None: the student works alone."""
@@ -87,10 +89,9 @@ class Groups:
                 return state
         raise UserError(say("groups.none", name=name))
 
-    def drafts(self) -> dict[str, tuple[GroupState, Draft]]:
-        """Return the newest table of each group that has one, by id."""
-        drafts = {id_: table.draft for id_, table in self._tables.items()}
-        return {id_: (self.states[id_], draft) for id_, draft in drafts.items() if draft}
+    def drafts(self) -> dict[str, Draft]:
+        """Return the newest table of each group that has one, by the name of the group."""
+        return {self.states[id_].name: one for id_, one in self._tables.drafts().items()}
 
     async def join(self, student: ClassStudent, name: str) -> None:
         """Bring a student into a group, which begins with the student's table if it is new.
@@ -98,51 +99,50 @@ class Groups:
         Raises:
             UserError: if the name is none, too much like another one, or the group is full.
         """
-        self._spend()
         read = read_name(name, _LONGEST_NAME)
         if read is None:
             raise UserError(say("class.bad-name", most=_LONGEST_NAME))
-        known = [one for one in self.states.values() if same_name(one.name) == same_name(read)]
-        state = known[0] if known else self._new(read)
-        state = state.joined(student.name)
-        if self.of(student) is not None:
+        async with self._moving:
+            if self._students.get(same_name(student.name)) is not student:
+                return  # deleted meanwhile
+            known = [one for one in self.states.values() if same_name(one.name) == same_name(read)]
+            state = known[0] if known else self._new(read)
+            joined = state.joined(student.name)
+            if student.name in state.members:
+                return
+            document = student.table.fresh()
             await self._leave(student)
-        is_new = state.id not in self.states
-        self.states[state.id] = self.states.get(state.id, state).joined(student.name)
-        if is_new:
-            table = SharedTable(state.id, self._keeps(state.id))
-            table.replace(student.table.fresh())
-            self._tables[state.id] = table
-        student.sit_at(self._tables[state.id])
-        if is_new and student.draft is None:
-            await self._tables[state.id].keep_now()
-        await self._tell()
+            self.states[state.id] = joined
+            table = self._tables[state.id] if known else self._tables.add(state.id, document)
+            student.sit_at(table)
+            if not known:
+                await table.keep_now()
+            await self._tell()
 
     async def leave(self, student: ClassStudent) -> None:
         """Let a student go back to the own table; a group without members ends."""
-        self._spend()
-        if await self._leave(student):
-            await self._tell()
+        async with self._moving:
+            if await self._leave(student):
+                await self._tell()
 
     async def forget(self, student: ClassStudent) -> None:
         """Remove a student who is deleted, and what the student typed, from the group."""
-        state = self.of(student)
-        if state is None:
-            return
-        table = self._tables[state.id]
-        await self._leave(student)
-        if state.id in self.states:
-            await table.forget(student.name)
-        await self._tell()
+        async with self._moving:
+            self._own_allowances.pop(student.name, None)
+            state = self.of(student)
+            if state is None:
+                return
+            await self._leave(student)
+            if state.id in self.states:
+                await self._tables[state.id].forget(student.name)
+            await self._tell()
 
     async def set_role(self, student: ClassStudent, role: Role) -> None:
         """Give a student a role in the group; "": none."""
-        self._spend()
         await self._change(self._own(student).with_role(student.name, role))
 
     async def vote(self, student: ClassStudent, word: str) -> None:
         """Count a student's vote for a word; it is the student's own word then."""
-        self._spend()
         word = word.strip()
         if not word:
             raise UserError(say("groups.no-word"))
@@ -160,6 +160,17 @@ class Groups:
         for member in state.members:
             if student := self._students.get(same_name(member)):
                 student.send(handed.message())
+
+    def spend(self, student: ClassStudent) -> None:
+        """Count a change that a student asks for.
+
+        Raises:
+            UserError: if there were too many.
+        """
+        own = self._own_allowances.setdefault(student.name, Allowance(_OWN_HZ, _OWN_BURST))
+        now_s = time.monotonic()
+        if not own.take(1, now_s) or not self._allowance.take(1, now_s):
+            raise UserError(say("gateway.too-much"))
 
     def message(self, student: ClassStudent) -> bytes:
         """Return the message with a student's group, and with all groups that can be joined."""
@@ -218,30 +229,15 @@ class Groups:
             return False
         student.sit_at(student.own)
         state = state.left(student.name)
-        self.states[state.id] = state
-        if not state.members:
+        if state.members:
+            self.states[state.id] = state
+        else:
             del self.states[state.id]
-            del self._tables[state.id]
-            with suppress(UserError):  # `trouble` says why
-                store = await self._store()
-                await asyncio.wrap_future(store.forget(OF_GROUP + state.id))
+            # First: a table without a group is deleted at the next start, a group needs its table.
+            await self._changed()
+            await self._tables.end(state.id)
         return True
 
     async def _tell(self) -> None:
         await self._changed()
         self.tell()
-
-    def _keeps(self, id_: str) -> Callable[[bytes, str], Awaitable[None]]:
-        async def keep(content: bytes, epoch: str) -> None:
-            if id_ not in self.states:
-                return  # it has ended
-            with suppress(UserError):  # `trouble` says why
-                store = await self._store()
-                document = Document(OF_GROUP + id_, TABLE, epoch, time.time(), content)
-                await asyncio.wrap_future(store.write(document))
-
-        return keep
-
-    def _spend(self) -> None:
-        if not self._allowance.take(1, time.monotonic()):
-            raise UserError(say("gateway.too-much"))

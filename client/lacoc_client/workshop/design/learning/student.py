@@ -11,11 +11,9 @@ from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.tables.draft import Draft
+from lacoc_client.workshop.tables.kept_table import TABLE, kept_table
 from lacoc_client.workshop.tables.shared_table import SharedTable
 from lacoc_shared.mistakes import UserError
-
-TABLE = "table"
-"""Name under which a student's table is kept."""
 
 
 class Student:
@@ -52,10 +50,10 @@ class Student:
 
     def open_kept(self) -> None:
         """Begin with the table that the diary has read."""
-        for one in self.diary.documents:
-            if one.name == TABLE:
-                with suppress(UserError):  # of another version of this program
-                    self.own = SharedTable("", self._keep, one.content, one.version)
+        kept = kept_table(self.diary.documents)
+        if kept is not None:
+            with suppress(UserError):  # of another version of this program
+                self.own = SharedTable("", self._keep, kept.content, kept.version)
         self.table = self.own
 
     def sit_at(self, table: SharedTable) -> None:
