@@ -6,6 +6,7 @@ import { cellNamed, digestOf, NO_FILE_ENTRY } from "../../../client/web/src/core
 import { History } from "../../../client/web/src/core/design/history.ts";
 import { Outbox } from "../../../client/web/src/core/design/outbox.ts";
 import { changesBetween } from "../../../client/web/src/core/design/rebase.ts";
+import { addRow, removeRow } from "../../../client/web/src/core/design/rows.ts";
 import { SharedTable } from "../../../client/web/src/core/design/shared_table.ts";
 import * as t from "../../../client/web/src/core/design/table.ts";
 import { editOf } from "./design_edits.mjs";
@@ -35,7 +36,7 @@ function tableOf({ kind, rows }, before = { rows: [] }) {
 class Writer {
   constructor() {
     this.outbox = new Outbox();
-    this.shared = new SharedTable((update, cells) => this.outbox.add(update, cells, false));
+    this.shared = new SharedTable((update, names) => this.outbox.add(update, names, false));
     this.isOnline = true;
     this.missed = [];
   }
@@ -50,8 +51,14 @@ class Writer {
   }
 
   take(update) {
+    const before = this.shared.rowNames();
     this.shared.take(update);
-    this.history.rebase(tableOf(this.shared.content(), this.history.table.value));
+    const after = this.shared.rowNames();
+    const moved = (row) => {
+      const at = after.indexOf(before[row]);
+      return at < 0 ? null : at;
+    };
+    this.history.rebase(tableOf(this.shared.content(), this.history.table.value), moved);
   }
 }
 
@@ -194,7 +201,7 @@ test("other tables, robots and files come over, and an angle out of range stays 
 
 test("an outbox keeps the order, sends one parcel at a time, and again after a break", () => {
   const outbox = new Outbox();
-  const shared = new SharedTable((update, cells) => outbox.add(update, cells, false));
+  const shared = new SharedTable((update, names) => outbox.add(update, names, false));
   shared.write(contentOf(sample));
   const first = outbox.next();
   shared.write(contentOf(t.setCell(sample, 1, 1, "5")));
@@ -202,8 +209,8 @@ test("an outbox keeps the order, sends one parcel at a time, and again after a b
   outbox.returned();
   const again = outbox.next();
   assert.ok(again.update.length > first.update.length);
-  assert.ok(again.cells.includes("p6/1.0/1"));
-  assert.deepEqual(cellNamed("p6/1.0/1"), { key: 1, posture: 0, col: 1 });
+  assert.ok(again.names.includes("p6/1.0/1"));
+  assert.deepEqual(cellNamed("p6/1.0/1"), { key: 1, rank: 0, col: 1 });
   const copy = new SharedTable(() => undefined);
   copy.take(again.update);
   assert.deepEqual(copy.content(), shared.content());
@@ -220,4 +227,94 @@ test("changes of one table come over into another one of its shape", () => {
   assert.deepEqual([change(own).rows[2].cells[2], change(own).rows[4].cells[4]], [9, 8]);
   assert.equal(change(walking), walking);
   assert.equal(changesBetween(sample, walking)(own), walking);
+});
+
+/** Two writers at the same table of sequences. */
+function pair(first = walking) {
+  const writers = [new Writer(), new Writer()];
+  const begun = new SharedTable(() => undefined);
+  begun.write(contentOf(first));
+  for (const writer of writers) writer.open(begun.state());
+  return writers;
+}
+
+const meet = (writers) => {
+  for (let round = 0; round < 2; round++) deliver(writers);
+};
+
+test("what is typed into a row of a sequence stays in it while others insert and remove rows", () => {
+  const [one, other] = pair();
+  const count = walking.rows.filter(({ key }) => key === walking.rows[0].key).length;
+  assert.ok(count > 2, "the sequence has rows to move");
+  one.history.apply("add", (table) => addRow(table, 0));
+  one.history.apply("type", (table) => t.setCell(table, 1, 0, "1"));
+  one.write();
+  other.history.apply("type", (table) => t.setCell(table, 1, 2, "7"));
+  other.history.apply("type", (table) => t.setCell(table, 2, 3, "8"));
+  other.write();
+  meet([one, other]);
+  for (const { history } of [one, other]) {
+    const { rows } = history.table.value;
+    assert.deepEqual(rows[1].cells, walking.rows[0].cells.with(0, 1));
+    assert.deepEqual(rows[2].cells, walking.rows[1].cells.with(2, 7));
+    assert.deepEqual(rows[3].cells, walking.rows[2].cells.with(3, 8));
+    assert.equal(rows.length, walking.rows.length + 1);
+  }
+  // Undo takes one's own number out of the row that has moved.
+  other.history.undo();
+  other.write();
+  one.history.apply("remove", (table) => removeRow(table, 0));
+  one.write();
+  meet([one, other]);
+  for (const { history } of [one, other]) {
+    const { rows } = history.table.value;
+    assert.deepEqual(rows[1].cells, walking.rows[1].cells.with(2, 7));
+    assert.deepEqual(rows[2].cells, walking.rows[2].cells);
+  }
+  other.history.undo();
+  assert.deepEqual(other.history.table.value.rows[1].cells, walking.rows[1].cells);
+});
+
+test("two rows that are inserted at the same place at the same time are two", () => {
+  const [one, other] = pair();
+  for (const [writer, angle] of [
+    [one, "1"],
+    [other, "2"],
+  ]) {
+    writer.history.apply("add", (table) => addRow(table, 0));
+    writer.history.apply("type", (table) => t.setCell(table, 1, 0, angle));
+    writer.write();
+  }
+  meet([one, other]);
+  const rows = one.history.table.value.rows;
+  assert.deepEqual(new Set([rows[1].cells[0], rows[2].cells[0]]), new Set([1, 2]));
+  assert.deepEqual(other.history.table.value.rows, rows);
+});
+
+test("rows can be added at one place again and again, and ranks stay short", () => {
+  let [{ shared, history }] = pair();
+  const first = history.table.value.rows.length;
+  for (let number = 0; number < 40; number++) {
+    history.apply("add", (table) => addRow(table, 0));
+    history.apply("type", (table) => t.setCell(table, 1, 0, String(number)));
+    shared.write(contentOf(history.table.value));
+    assert.deepEqual(shared.content().rows, history.table.value.rows);
+  }
+  assert.equal(shared.rowNames().length, first + 40);
+  for (const name of shared.rowNames()) assert.match(name, /^l6\/\d\.\d{1,2}(_\d{1,12})?$/);
+});
+
+test("what is not confirmed goes over into a fresh document: rows, keys and proposals too", () => {
+  const [one] = pair(sample);
+  const fresh = new SharedTable(() => undefined);
+  fresh.take(one.shared.state());
+  one.history.apply("remove", (table) => removeRow(table, 3));
+  one.history.apply("type", (table) => t.setCell(table, 1, 1, "5"));
+  const keys = SEQUENCES.with(2, "12");
+  one.shared.write(contentOf(one.history.table.value, { keys }));
+  one.shared.propose([["p6/4.0/2", "9"]], "Ann");
+  fresh.put([...one.outbox.names].map((name) => [name, one.shared.get(name)]));
+  assert.deepEqual(fresh.content(), one.shared.content());
+  assert.deepEqual(fresh.content().keys, keys);
+  assert.deepEqual(fresh.proposals(), one.shared.proposals());
 });

@@ -64,20 +64,17 @@ def _table(entries: Mapping[str, Entry]) -> FileTable | None:
         return None
     kind, legs = _KINDS[found[1]], int(found[2])
     places = sorted(
-        (int(place[4]), int(place[5]))
+        (int(place[4]), float(place[5].replace("_", ".")), place[0])
         for place in map(PLACE.fullmatch, entries)
         if place is not None and place[1] == shape and place[6] is None
     )
     rows = []
-    for key, posture in places:
-        cells = [
-            entries.get(f"{shape}/{key}.{posture}/{joint}")
-            for joint in range(JOINTS_PER_LEG * legs)
-        ]
+    for key, _, name in places:
+        cells = [entries.get(f"{name}/{joint}") for joint in range(JOINTS_PER_LEG * legs)]
         angles = tuple(cell for cell in cells if isinstance(cell, float))
         if len(angles) < len(cells):
             return None
-        rows.append(FileRow(key=key, posture=posture, angles_deg=angles))
+        rows.append(FileRow(key=key, angles_deg=angles))
     if not rows:
         return None
     numbered = _numbered(rows) if kind == "locomotion" else tuple(rows)
@@ -85,7 +82,7 @@ def _table(entries: Mapping[str, Entry]) -> FileTable | None:
 
 
 def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
-    """Close the gaps that are left where rows were removed on one page and added on another."""
+    """Number the rows, without the gaps where keys were removed on one page, added on another."""
     keys = sorted({row.key for row in rows})
     counts = dict.fromkeys(keys, 0)
     numbered = []

@@ -1,7 +1,8 @@
 """What stands in a shared table: entries by name, each a number, a text or True.
 
     shape        "p6": a table of postures for six legs; "l6": one of sequences
-    p6/3.0       True: the row of key 3 and posture 0 is there
+    p6/3.0       True: the row of key 3 is there
+    l6/3.1_47    True: key 3 has a row of rank 1.47; of two rows the lower rank comes first
     p6/3.0/14    the angle of joint 14 in this row [deg], or a text that is no angle
     p6/3.0/14?   a proposal for it, of somebody else than the row's owner (JSON)
     keys         the digits of each key of level B, such as "0,8765,1234"
@@ -9,7 +10,8 @@
     file         which file has the table (JSON); only pages read it
 
 Names of cells begin with their shape: what somebody typed into another table can't get into this
-one. A removed row keeps its cells, so that it can come back whole.
+one. A removed row keeps its cells, so that it can come back whole. A row keeps its rank while rows
+come and go beside it, so what is typed into it at the same time stays in it.
 """
 
 import math
@@ -33,9 +35,9 @@ LONG_MOST = 40_000
 SHAPE = re.compile(r"([pl])([1-9]|[12][0-9]|3[0-2])", re.ASCII)
 """A shape: its kind and number of legs."""
 PLACE = re.compile(
-    rf"({SHAPE.pattern})/([0-9])\.([0-9]|[1-9][0-9])(?:/([0-9]|[1-9][0-9])(\?)?)?", re.ASCII
+    rf"({SHAPE.pattern})/([0-9])\.((?:[0-9]|[1-9][0-9])(?:_[0-9]{{1,12}})?)(?:/([0-9]|[1-9][0-9])(\?)?)?", re.ASCII
 )
-"""A row or a cell: shape, kind, legs, key, posture, joint, and "?" for a proposal."""
+"""A row or a cell: shape, kind, legs, key, rank, joint, and "?" for a proposal."""
 _LONG = ("keys", "robot", "file")
 
 

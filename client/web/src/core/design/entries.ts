@@ -39,14 +39,15 @@ export interface Content {
   file: FileEntry;
 }
 
-/** A cell by the name of its entry: the digits of key and posture, and the joint id. */
+/** A cell by the name of its entry: the digit of its key, its rank in the key, and the joint id. */
 export interface CellName {
   key: number;
-  posture: number;
+  /** Of two rows the one with the lower rank comes first; 0 in a table of postures. */
+  rank: number;
   col: number;
 }
 
-const PLACE = /^[pl]\d+\/(\d)\.(\d+)(?:\/(\d+))?$/;
+const PLACE = /^[pl]\d+\/(\d)\.(\d+(?:_\d+)?)(?:\/(\d+))?$/;
 
 /** What somebody proposes for a cell. */
 export interface ProposalEntry extends CellName {
@@ -66,16 +67,37 @@ export function proposalIn(name: string, entry: Entry): ProposalEntry | null {
 /** The shape of a table, with which the names of its cells begin. */
 export const shapeOf = ({ kind, legs }: Pick<Content, "kind" | "legs">) => `${kind[0]}${legs}`;
 
-/** The name of a row's entry. */
-export const rowEntry = (shape: string, { key, posture }: Pick<Row, "key" | "posture">) =>
-  `${shape}/${key}.${posture}`;
+/** The name of a posture's entry. */
+export const postureEntry = (shape: string, key: number) => `${shape}/${key}.0`;
 
 /** The cell that an entry is; null: it is no cell. */
 export function cellNamed(name: string): CellName | null {
   const found = PLACE.exec(name);
   if (found?.[3] === undefined) return null;
-  return { key: Number(found[1]), posture: Number(found[2]), col: Number(found[3]) };
+  return { key: Number(found[1]), rank: rankOf(found[2]!), col: Number(found[3]) };
 }
+
+/** The names of all rows of a shape, in their order. */
+export function rowNames(names: Iterable<string>, shape: string): string[] {
+  const rows: { name: string; key: number; rank: number }[] = [];
+  for (const name of names) {
+    const found = name.startsWith(`${shape}/`) ? PLACE.exec(name) : null;
+    if (found && found[3] === undefined) {
+      rows.push({ name, key: Number(found[1]), rank: rankOf(found[2]!) });
+    }
+  }
+  rows.sort((one, other) => one.key - other.key || one.rank - other.rank);
+  return rows.map(({ name }) => name);
+}
+
+/** The digit of a row's key, in its name. */
+export const keyIn = (name: string) => Number(PLACE.exec(name)?.[1]);
+
+/** The rank in a row's name, as text. */
+export const rankIn = (name: string) => PLACE.exec(name)?.[2] ?? "0";
+
+/** A rank as a number: "1_5" stands between "1" and "2". */
+export const rankOf = (text: string) => Number(text.replace("_", "."));
 
 /** The content in a document; null while it has no table. */
 export function contentOf(
@@ -86,17 +108,11 @@ export function contentOf(
   if (!shape) return null;
   const kind = shape[0] === "l" ? "locomotion" : "postures";
   const legs = Number(shape.slice(1));
-  const rows: Row[] = [];
-  for (const name of names) {
-    const found = name.startsWith(`${shape}/`) ? PLACE.exec(name) : null;
-    if (!found || found[3] !== undefined) continue;
-    const cells = Array.from(
-      { length: 3 * legs },
-      (_, col) => (entries.get(`${name}/${col}`) ?? "") as Cell,
-    );
-    rows.push({ key: Number(found[1]), posture: Number(found[2]), cells });
-  }
-  rows.sort((one, other) => one.key - other.key || one.posture - other.posture);
+  const rows = rowNames(names, shape).map((name) => ({
+    key: keyIn(name),
+    posture: 0,
+    cells: cellsIn(entries, name, legs),
+  }));
   return {
     kind,
     legs,
@@ -105,6 +121,18 @@ export function contentOf(
     robot: parsed<RobotText | null>(entries.get("robot"), null),
     file: parsed<FileEntry>(entries.get("file"), NO_FILE_ENTRY),
   };
+}
+
+/** The cells of a row. */
+export function cellsIn(
+  entries: { get(name: string): Entry | undefined },
+  name: string,
+  legs: number,
+): Cell[] {
+  return Array.from(
+    { length: 3 * legs },
+    (_, col) => (entries.get(`${name}/${col}`) ?? "") as Cell,
+  );
 }
 
 export const NO_FILE_ENTRY: FileEntry = { name: "", version: "", digest: "", robotVersion: null };

@@ -1,7 +1,7 @@
 /** Keeps the table that is edited, and all its steps for undo and redo. */
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
-import { changesBetween } from "./rebase";
+import { changesBetween, type Moved } from "./rebase";
 import { type Columns, type Row, refit, type Table } from "./table";
 
 interface Step {
@@ -72,10 +72,11 @@ export class History {
    * Take in what others did: every step has it, so undo takes back only what was done here. Steps
    * that have nothing of their own any more are left out.
    *
+   * @param moved Where rows are now.
    * @returns What it makes of the tables that were steps before.
    */
-  rebase(to: Table): (table: Table) => Table {
-    const change = changesBetween(this.table.peek(), to);
+  rebase(to: Table, moved?: Moved): (table: Table) => Table {
+    const change = changesBetween(this.table.peek(), to, moved);
     const before = this.steps.peek();
     const at = this.at.peek();
     const kept: Step[] = [];

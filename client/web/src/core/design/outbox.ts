@@ -5,8 +5,8 @@ import { mergedUpdates } from "./shared_table";
 /** What goes to the gateway at once. */
 export interface Parcel {
   update: Uint8Array;
-  /** Names of the cells into which somebody typed. */
-  cells: string[];
+  /** Names of the entries that somebody changed. */
+  names: string[];
   /** Whether it has what the page has put into an empty table: no other page may have been quicker. */
   begins: boolean;
 }
@@ -20,9 +20,9 @@ export class Outbox {
     return !this.waiting && !this.sent;
   }
 
-  /** Names of the cells that were typed into, and are not confirmed. */
-  get cells(): ReadonlySet<string> {
-    return new Set([...(this.sent?.cells ?? []), ...(this.waiting?.cells ?? [])]);
+  /** Names of the entries that were changed, and are not confirmed. */
+  get names(): ReadonlySet<string> {
+    return new Set([...(this.sent?.names ?? []), ...(this.waiting?.names ?? [])]);
   }
 
   /** Whether the gateway does not have yet what the page began the table with. */
@@ -30,9 +30,9 @@ export class Outbox {
     return Boolean(this.sent?.begins || this.waiting?.begins);
   }
 
-  add(update: Uint8Array, cells: readonly string[], begins: boolean): void {
+  add(update: Uint8Array, names: readonly string[], begins: boolean): void {
     // What a page begins with was typed by nobody.
-    this.waiting = joined(this.waiting, { update, cells: begins ? [] : [...cells], begins });
+    this.waiting = joined(this.waiting, { update, names: begins ? [] : [...names], begins });
   }
 
   /** Take what waits, unless a parcel is on its way. */
@@ -64,7 +64,7 @@ function joined(one: Parcel | null, other: Parcel | null): Parcel | null {
   if (!one || !other) return one ?? other;
   return {
     update: mergedUpdates([one.update, other.update]),
-    cells: [...new Set([...one.cells, ...other.cells])],
+    names: [...new Set([...one.names, ...other.names])],
     begins: one.begins || other.begins,
   };
 }

@@ -1,13 +1,23 @@
 /** Takes over into one table what others changed in another: so undo keeps what others did. */
 
+import { aligned } from "./row_names";
 import { type Row, type Table, withCells } from "./table";
+
+/** Where a row of one table is in another one; null: nowhere. */
+export type Moved = (row: number) => number | null;
 
 /**
  * What leads from one table to another, as a function of any table of their shape. Where the two
  * tables have other shapes, it gives the second one; a table of yet another shape stays as it is.
  * The same table always gives the same object.
+ *
+ * @param moved Where the rows of sequences are: they have no names in a table.
  */
-export function changesBetween(from: Table, to: Table): (table: Table) => Table {
+export function changesBetween(
+  from: Table,
+  to: Table,
+  moved: Moved = (row) => row,
+): (table: Table) => Table {
   const before = byPlace(from);
   const after = byPlace(to);
   const isSameShape = from.kind === to.kind && from.legs.length === to.legs.length;
@@ -18,6 +28,11 @@ export function changesBetween(from: Table, to: Table): (table: Table) => Table 
   const change = (table: Table): Table => {
     if (table.kind !== from.kind || table.legs.length !== from.legs.length) return table;
     if (!isSameShape) return to;
+    if (from.kind === "locomotion") {
+      const rows = moveInto(table, from, to, moved);
+      const isBefore = isSameRobot && rows.length === table.rows.length;
+      return isBefore && rows.every((row, at) => row === table.rows[at]) ? table : { ...to, rows };
+    }
     const rows: Row[] = [];
     const added = new Set([...changed].filter((place) => !before.has(place)));
     for (const row of table.rows) {
@@ -43,11 +58,48 @@ export function changesBetween(from: Table, to: Table): (table: Table) => Table 
   };
 }
 
+/** The rows of a table of sequences with what others did: rows that they inserted or removed too. */
+function moveInto(table: Table, from: Table, to: Table, moved: Moved): readonly Row[] {
+  const isSame = (one: number, other: number) => sameCells(from.rows[one]!, table.rows[other]!);
+  const old = aligned([...from.rows.keys()], [...table.rows.keys()], isSame);
+  const whereFrom = new Map(from.rows.map((_, row) => [moved(row), row]));
+  const rows: { row: Row; own: number }[] = [];
+  to.rows.forEach((row, at) => {
+    const before = whereFrom.get(at);
+    const own = before === undefined ? -1 : old.indexOf(before);
+    if (own >= 0) rows.push({ row: merged(table.rows[own]!, from.rows[before!]!, row), own });
+    else if (before === undefined) rows.push({ row, own });
+  });
+  table.rows.forEach((row, own) => {
+    if (rows.some((one) => one.own === own)) return;
+    // Others removed a row that has nothing of this step.
+    const before = old[own];
+    if (before != null && moved(before) === null && sameCells(from.rows[before]!, row)) return;
+    const at = rows.findLastIndex((one) => one.own >= 0 && one.own < own);
+    rows.splice(at + 1, 0, { row, own });
+  });
+  return numbered(rows.map(({ row }) => row));
+}
+
+function numbered(rows: readonly Row[]): Row[] {
+  const sorted = rows.toSorted((one, other) => one.key - other.key);
+  const counts = new Map<number, number>();
+  return sorted.map((row) => {
+    const posture = counts.get(row.key) ?? 0;
+    counts.set(row.key, posture + 1);
+    return posture === row.posture ? row : { ...row, posture };
+  });
+}
+
+const sameCells = (one: Row, other: Row) =>
+  one.key === other.key && one.cells.every((cell, col) => cell === other.cells[col]);
+
 function merged(row: Row, old: Row, now: Row): Row {
   if (row === old) return now;
-  return withCells(row, (cell, col) =>
+  const mine = withCells(row, (cell, col) =>
     old.cells[col] === now.cells[col] ? cell : now.cells[col]!,
   );
+  return mine.key === now.key ? mine : { ...mine, key: now.key };
 }
 
 function placeOf({ key, posture }: Row): string {

@@ -16,9 +16,10 @@ import {
   isSameCell,
   type ProposalEntry,
   proposalIn,
-  rowEntry,
+  rowNames,
   shapeOf,
 } from "./entries";
+import { namesFor } from "./row_names";
 
 const OWN = "own";
 
@@ -28,13 +29,13 @@ export class SharedTable {
   /** Names of the entries that the write that is under way has changed. */
   private names: string[] = [];
 
-  /** @param told Gets each update of this page, with the names of its cells. */
-  constructor(told: (update: Uint8Array, cells: readonly string[]) => void) {
+  /** @param told Gets each update of this page, with the names of the entries that it changes. */
+  constructor(told: (update: Uint8Array, names: readonly string[]) => void) {
     this.doc.on("update", (update: Uint8Array, origin: unknown) => {
       if (origin !== OWN) return;
-      const cells = this.names.filter(cellNamed);
+      const names = [...new Set(this.names)];
       this.names = [];
-      told(update, cells);
+      told(update, names);
     });
   }
 
@@ -45,6 +46,21 @@ export class SharedTable {
   /** The table; null: there is none yet. */
   content(): Content | null {
     return contentOf(this.entries, this.entries.keys());
+  }
+
+  /** The names of the rows, in the order in which `content` has them. */
+  rowNames(): string[] {
+    return rowNames(this.entries.keys(), String(this.entries.get("shape") ?? ""));
+  }
+
+  /** The cells among entries, as places in the table; cells of rows that are gone are left out. */
+  placesOf(names: readonly string[]): { row: number; col: number }[] {
+    const rows = this.rowNames();
+    return names.flatMap((name) => {
+      const row = rows.indexOf(name.slice(0, name.lastIndexOf("/")));
+      const cell = cellNamed(name);
+      return cell && row >= 0 ? [{ row, col: cell.col }] : [];
+    });
   }
 
   /** An entry, such as that of a cell. */
@@ -58,10 +74,9 @@ export class SharedTable {
     this.doc.transact(() => {
       if (this.entries.get("shape") !== shape) this.forgetRows();
       for (const [name, value] of headEntries(content)) this.set(name, value);
-      const rows = new Set<string>();
-      for (const row of content.rows) {
-        const name = rowEntry(shape, row);
-        rows.add(name);
+      const rows = namesFor(content, this.entries);
+      content.rows.forEach((row, at) => {
+        const name = rows[at]!;
         let isChanged = !this.entries.has(name);
         row.cells.forEach((cell, col) => {
           if (isSameCell(this.entries.get(`${name}/${col}`), cell)) return;
@@ -69,20 +84,20 @@ export class SharedTable {
           isChanged = true;
         });
         // Said again: another page may have removed the row at the same time.
-        if (isChanged) this.entries.set(name, true);
-      }
-      for (const name of [...this.entries.keys()]) {
-        // The cells of a row that was removed stay, for whoever goes on with it.
-        if (name.split("/").length === 2 && !rows.has(name)) this.entries.delete(name);
-      }
+        if (isChanged) this.say(name, true);
+      });
+      const kept = new Set(rows);
+      // The cells of a row that was removed stay, for whoever goes on with it.
+      for (const name of this.rowNames()) if (!kept.has(name)) this.drop(name);
     }, OWN);
   }
 
-  /** Set entries as they are. */
+  /** Set entries as they are; undefined: remove them. */
   put(entries: Iterable<readonly [string, Entry | undefined]>): void {
     this.doc.transact(() => {
       for (const [name, value] of entries) {
-        if (value !== undefined) this.set(name, value);
+        if (value === undefined) this.drop(name);
+        else this.set(name, value);
       }
     }, OWN);
   }
@@ -106,7 +121,7 @@ export class SharedTable {
   /** Remove entries, such as proposals. */
   remove(names: readonly string[]): void {
     this.doc.transact(() => {
-      for (const name of names) if (this.entries.has(name)) this.entries.delete(name);
+      for (const name of names) this.drop(name);
     }, OWN);
   }
 
@@ -129,13 +144,22 @@ export class SharedTable {
   }
 
   private set(name: string, value: Entry): void {
-    if (this.entries.get(name) === value) return;
+    if (this.entries.get(name) !== value) this.say(name, value);
+  }
+
+  private say(name: string, value: Entry): void {
     this.entries.set(name, value);
     this.names.push(name);
   }
 
+  private drop(name: string): void {
+    if (!this.entries.has(name)) return;
+    this.entries.delete(name);
+    this.names.push(name);
+  }
+
   private forgetRows(): void {
-    for (const name of [...this.entries.keys()]) if (name.includes("/")) this.entries.delete(name);
+    for (const name of [...this.entries.keys()]) if (name.includes("/")) this.drop(name);
   }
 }
 

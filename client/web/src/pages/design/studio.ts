@@ -83,7 +83,7 @@ export class Studio {
     this.robot,
     this.files.file,
     () => this.membership.name.peek() ?? "",
-    (cells, by) => this.people.clashed(cells, by),
+    (places, by) => this.people.clashed(places, by),
   );
   readonly group: Group = new Group(this.gateway, this.sheet, this.sharing, this.membership);
   readonly numbers = new Numbers(this.robot, this.files);

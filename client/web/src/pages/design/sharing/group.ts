@@ -31,9 +31,9 @@ export class Group {
   /** What is proposed for rows that are in the table. */
   readonly proposals = computed<readonly Proposal[]>(() => {
     const table = this.sheet.table.value;
-    return this.sharing.proposals.value.flatMap(({ name, key, posture, col, text, by }) => {
-      const row = table?.rows.findIndex((one) => one.key === key && one.posture === posture) ?? -1;
-      if (!table || row < 0) return [];
+    return this.sharing.proposals.value.flatMap(({ name, key, col, text, by }) => {
+      const row = table?.rows.findIndex((one) => one.key === key) ?? -1;
+      if (!table || row < 0 || table.kind !== "postures") return [];
       const isMine = !this.isForeign(table, table.rows[row]!);
       return [{ name, row, col, text, by, isMine }];
     });

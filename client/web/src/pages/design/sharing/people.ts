@@ -7,8 +7,7 @@ import { toast } from "../../../ui/toasts";
 import type { Membership } from "../class/membership";
 import type { Gateway } from "../gateway";
 import { placeName } from "../names";
-import type { Sheet } from "../table/sheet";
-import { placesOf } from "./sharing";
+import type { Place, Sheet } from "../table/sheet";
 
 /** Where this page is, is told at most so often. */
 const PACE_MS = 150;
@@ -55,10 +54,9 @@ export class People {
   }
 
   /** Say that this page and another one typed into the same cells. */
-  clashed(cells: readonly string[], by: number): void {
+  clashed(places: readonly Place[], by: number): void {
     const table = this.sheet.table.peek();
     const person = this.all.peek().find(({ id }) => id === by);
-    const places = table ? placesOf(table, cells) : [];
     const first = places[0];
     if (!table || !person || !first) return;
     const values = {

@@ -8,8 +8,8 @@ import {
   digestOf,
   type Entry,
   type ProposalEntry,
+  postureEntry,
   type RobotText,
-  rowEntry,
   shapeOf,
 } from "../../../core/design/entries";
 import { Outbox } from "../../../core/design/outbox";
@@ -29,7 +29,7 @@ import type { OpenedTable, TableNews } from "../../../core/wire";
 import type { OpenFile } from "../files/open_file";
 import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
-import type { Sheet } from "../table/sheet";
+import type { Place, Sheet } from "../table/sheet";
 
 /** Two updates of this page have at least so much time between them. */
 const PACE_MS = 40;
@@ -88,7 +88,7 @@ export class Sharing {
     private readonly robot: RobotInUse,
     private readonly file: Signal<OpenFile>,
     private readonly me: () => string,
-    private readonly clashed: (cells: readonly string[], by: number) => void,
+    private readonly clashed: (places: readonly Place[], by: number) => void,
   ) {
     effect(() => {
       const content = this.local.value;
@@ -113,8 +113,9 @@ export class Sharing {
       return;
     }
     this.epoch = opened.epoch; // the gateway has lost its document, and gets this one
+    const rows = this.shared.rowNames();
     if (opened.state.length) this.shared.take(opened.state);
-    this.show();
+    this.show(rows);
     const missing = this.shared.missingIn(opened.state);
     if (missing) this.outbox.add(missing, [], this.begins);
     this.send();
@@ -128,19 +129,21 @@ export class Sharing {
       this.send();
     } else if (news.epoch === this.epoch) {
       if (news.update) {
+        const rows = this.shared.rowNames();
         this.shared.take(news.update);
-        this.show();
+        this.show(rows);
       }
-      if (news.clash) this.clashed(news.clash.cells, news.clash.by);
+      if (news.clash) this.clashed(this.shared.placesOf(news.clash.cells), news.clash.by);
       this.seen = news.seq;
     }
   }
 
   /** Propose cells of rows that others own. */
   propose(table: Table, proposed: readonly Proposed[], by: string): void {
+    if (table.kind !== "postures") return; // nobody owns its rows
     const shape = shapeOf({ kind: table.kind, legs: table.legs.length });
     const values = proposed.map(
-      ({ row, col, cell }) => [`${rowEntry(shape, row)}/${col}`, String(cell)] as const,
+      ({ row, col, cell }) => [`${postureEntry(shape, row.key)}/${col}`, String(cell)] as const,
     );
     this.shared.propose(values, by);
   }
@@ -161,11 +164,12 @@ export class Sharing {
   /** Go on with another document, and add what the gateway does not have of the old one. */
   private change(opened: OpenedTable, isOther: boolean): void {
     const unsent = new Map<string, Entry | undefined>();
-    for (const name of this.outbox.cells) unsent.set(name, this.shared.get(name));
+    for (const name of this.outbox.names) unsent.set(name, this.shared.get(name));
     if (isOther && unsent.size) this.left.set(this.name ?? "", unsent);
     const own = isOther ? this.left.get(opened.table) : unsent;
     this.left.delete(opened.table);
     this.outbox.clear();
+    const rows = this.shared.rowNames();
     this.shared = this.fresh();
     this.name = opened.table;
     this.epoch = opened.epoch;
@@ -174,7 +178,7 @@ export class Sharing {
     if (!this.isOn.peek()) return;
     if (own) this.shared.put(own);
     const content = this.content();
-    if (content) this.show(isOther);
+    if (content) this.show(rows, isOther);
     else {
       const local = this.local.peek();
       if (local) this.shared.write(local);
@@ -183,9 +187,9 @@ export class Sharing {
 
   /** A document; its updates go out. */
   private fresh(): SharedTable {
-    const shared: SharedTable = new SharedTable((update, cells) => {
+    const shared: SharedTable = new SharedTable((update, names) => {
       if (shared !== this.shared) return;
-      this.outbox.add(update, cells, this.begins);
+      this.outbox.add(update, names, this.begins);
       this.isKept.value = false;
       this.lookForProposals();
       this.send();
@@ -202,7 +206,9 @@ export class Sharing {
     }
     this.isKept.value = false;
     const { epoch } = this;
-    const fields = { table: this.name, epoch, seen: this.seen, ...parcel };
+    const { update, names, begins } = parcel;
+    const cells = names.filter(cellNamed);
+    const fields = { table: this.name, epoch, seen: this.seen, update, cells, begins };
     const sentMs = performance.now();
     this.gateway.ask<{ seq: number }>("table", fields).then(
       () => {
@@ -236,22 +242,29 @@ export class Sharing {
     if (found.length || this.proposals.peek().length) this.proposals.value = found;
   }
 
-  /** Show what the document has. */
-  private show(isOther = false): void {
+  /**
+   * Show what the document has.
+   *
+   * @param rows The names of the rows that the page shows.
+   */
+  private show(rows: readonly string[], isOther = false): void {
     const content = this.content();
     const before = this.sheet.table.peek();
     if (!content || !before || !this.isOn.peek()) {
       this.lookForProposals();
       return;
     }
+    const at = new Map(this.shared.rowNames().map((name, row) => [name, row]));
+    const moved = (row: number) => at.get(rows[row] ?? "") ?? null;
     batch(() => {
       const table = this.tableOf(content);
       if (isOther) this.sheet.open(table);
       else if (digestOf(before) !== digestOf(table)) {
         // What was proposed here and taken in was typed here.
         const others = this.withoutOwn(before, table);
-        if (others !== table) this.sheet.merge(others);
-        this.sheet.merge(table, others === table ? null : "hand");
+        const isMine = others !== table;
+        if (isMine) this.sheet.merge(others, null, moved);
+        this.sheet.merge(table, isMine ? "hand" : null, isMine ? undefined : moved);
       }
       if (content.keys.join() !== sequences.peek().join()) sequences.value = content.keys;
       const { name, version, digest } = content.file;
@@ -268,7 +281,7 @@ export class Sharing {
   private withoutOwn(before: Table, table: Table): Table {
     const me = this.me();
     const own = this.proposals.peek().filter(({ by }) => by === me);
-    if (!me || !own.length || before.kind !== table.kind) return table;
+    if (!me || !own.length || before.kind !== table.kind || table.kind !== "postures") return table;
     return mapRows(table, (row) => {
       const old = before.rows.find(
         ({ key, posture }) => key === row.key && posture === row.posture,
@@ -277,7 +290,6 @@ export class Sharing {
         own.some(
           (one) =>
             one.key === row.key &&
-            one.posture === row.posture &&
             one.col === col &&
             one.text === String(cell),
         );
@@ -342,15 +354,4 @@ export class Sharing {
       if (content) this.sheet.merge(this.tableOf(content));
     });
   }
-}
-
-/** The cells of a clash that are in a table, as places. */
-export function placesOf(table: Table, names: readonly string[]): { row: number; col: number }[] {
-  return names.flatMap((name) => {
-    const cell = cellNamed(name);
-    const row = table.rows.findIndex(
-      ({ key, posture }) => key === cell?.key && posture === cell.posture,
-    );
-    return cell && row >= 0 ? [{ row, col: cell.col }] : [];
-  });
 }

@@ -3,6 +3,7 @@
 import { batch, computed, type Signal, signal } from "@preact/signals";
 import { digestOf } from "../../../core/design/entries";
 import { History } from "../../../core/design/history";
+import type { Moved } from "../../../core/design/rebase";
 import { sequenceOf } from "../../../core/design/rows";
 import {
   type Area,
@@ -202,14 +203,18 @@ export class Sheet {
    * Take in what others did to the table: it is no step of this page.
    *
    * @param by Where others took in what was typed here.
+   * @param moved Where rows are now: what is being typed stays in its row.
    */
-  merge(table: Table, by: By = null): void {
+  merge(table: Table, by: By = null, moved: Moved = (row) => row): void {
     const history = this.history.peek();
     const from = this.table.peek();
     if (!history || !from) return;
     if (by) this.followers.before(by);
     batch(() => {
-      const change = history.rebase(table);
+      const change = history.rebase(table, moved);
+      const follow = ({ row, col }: Place) => ({ row: moved(row) ?? row, col });
+      this.active.value = follow(this.active.peek());
+      this.anchor.value = follow(this.anchor.peek());
       this.keySteps = this.keySteps.map((step) => ({
         ...step,
         from: change(step.from),
