@@ -33,16 +33,16 @@ def student_files(kept: Iterable[Document]) -> list[Document]:
     titles = {OF_GROUP + one.id: group_title(one.name, by_owner) for one in groups}
     found = []
     for owner, documents in by_owner.items():
-        one = kept_table(documents)
-        draft = None if one is None else _draft(one)
-        if one is None or draft is None:
+        table = kept_table(documents)
+        draft = None if table is None else _draft(table)
+        if table is None or draft is None:
             continue
         try:
             files = draft.files()
         except (FileRefused, UserError):
             continue  # a mistake in the table, such as an angle without a number
         found += [
-            Document(titles.get(owner, owner), name, one.version, one.at_s, file.data)
+            Document(titles.get(owner, owner), name, table.version, table.at_s, file.data)
             for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]

@@ -35,7 +35,8 @@ LONG_MOST = 40_000
 SHAPE = re.compile(r"([pl])([1-9]|[12][0-9]|3[0-2])", re.ASCII)
 """A shape: its kind and number of legs."""
 PLACE = re.compile(
-    rf"({SHAPE.pattern})/([0-9])\.((?:[0-9]|[1-9][0-9])(?:_[0-9]{{1,12}})?)(?:/([0-9]|[1-9][0-9])(\?)?)?", re.ASCII
+    rf"({SHAPE.pattern})/([0-9])\.((?:[0-9]|[1-9][0-9])(?:_[0-9]{{1,12}})?)(?:/([0-9]|[1-9][0-9])(\?)?)?",
+    re.ASCII,
 )
 """A row or a cell: shape, kind, legs, key, rank, joint, and "?" for a proposal."""
 _LONG = ("keys", "robot", "file")

@@ -1,4 +1,4 @@
-"""Finds the table in what a class file has of a student; drafts of earlier versions become tables."""
+"""Finds the table in what a class file has of a student; an old draft becomes a table."""
 
 from collections.abc import Iterable
 

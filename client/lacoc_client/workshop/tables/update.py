@@ -123,10 +123,9 @@ class _Reader:
         kind = info & 31
         if kind in (_GC, _SKIP):
             return self.number(), kind == _GC
-        for has_origin in (info & _ORIGIN, info & _RIGHT_ORIGIN):
-            if has_origin:
-                needs.append(_span(self.number(), self.number(), 1))
-        if not info & (_ORIGIN | _RIGHT_ORIGIN):
+        origins = bool(info & _ORIGIN) + bool(info & _RIGHT_ORIGIN)
+        needs += [_span(self.number(), self.number(), 1) for _ in range(origins)]
+        if not origins:
             if self.number() != 1 or self._text() != ROOT or not info & _NAMED:
                 raise Unfit("an edit outside the map")
             self._text()

@@ -1,5 +1,6 @@
 /** Takes over into one table what others changed in another: so undo keeps what others did. */
 
+import { MAX_POSTURES_PER_KEY } from "../wire";
 import { aligned } from "./row_names";
 import { type Row, type Table, withCells } from "./table";
 
@@ -28,7 +29,9 @@ export function changesBetween(
   const change = (table: Table): Table => {
     if (table.kind !== from.kind || table.legs.length !== from.legs.length) return table;
     if (!isSameShape) return to;
-    if (from.kind === "locomotion") {
+    const count = from.rows.length;
+    const isStill = count === to.rows.length && from.rows.every((_, row) => moved(row) === row);
+    if (from.kind === "locomotion" && !(isStill && count === table.rows.length)) {
       const rows = moveInto(table, from, to, moved);
       const isBefore = isSameRobot && rows.length === table.rows.length;
       return isBefore && rows.every((row, at) => row === table.rows[at]) ? table : { ...to, rows };
@@ -62,19 +65,32 @@ export function changesBetween(
 function moveInto(table: Table, from: Table, to: Table, moved: Moved): readonly Row[] {
   const isSame = (one: number, other: number) => sameCells(from.rows[one]!, table.rows[other]!);
   const old = aligned([...from.rows.keys()], [...table.rows.keys()], isSame);
-  const whereFrom = new Map(from.rows.map((_, row) => [moved(row), row]));
+  const places: (number | null)[] = from.rows.map((_, row) => moved(row));
+  if (!places.some((place) => place !== null)) {
+    // All have got other names: the numbers must tell which rows are the same.
+    const back = aligned<number, Row>([...places.keys()], to.rows, (one, row) =>
+      sameCells(from.rows[one]!, row),
+    );
+    back.forEach((row, at) => {
+      if (row !== null) places[row] = at;
+    });
+  }
+  const whereFrom = new Map(places.map((place, row) => [place, row]));
+  const ownAt = new Map(old.map((row, own) => [row, own]));
+  const taken = new Set<number>();
   const rows: { row: Row; own: number }[] = [];
   to.rows.forEach((row, at) => {
     const before = whereFrom.get(at);
-    const own = before === undefined ? -1 : old.indexOf(before);
+    const own = before === undefined ? -1 : (ownAt.get(before) ?? -1);
+    taken.add(own);
     if (own >= 0) rows.push({ row: merged(table.rows[own]!, from.rows[before!]!, row), own });
     else if (before === undefined) rows.push({ row, own });
   });
   table.rows.forEach((row, own) => {
-    if (rows.some((one) => one.own === own)) return;
+    if (taken.has(own)) return;
     // Others removed a row that has nothing of this step.
     const before = old[own];
-    if (before != null && moved(before) === null && sameCells(from.rows[before]!, row)) return;
+    if (before != null && places[before] === null && sameCells(from.rows[before]!, row)) return;
     const at = rows.findLastIndex((one) => one.own >= 0 && one.own < own);
     rows.splice(at + 1, 0, { row, own });
   });
@@ -84,15 +100,18 @@ function moveInto(table: Table, from: Table, to: Table, moved: Moved): readonly 
 function numbered(rows: readonly Row[]): Row[] {
   const sorted = rows.toSorted((one, other) => one.key - other.key);
   const counts = new Map<number, number>();
-  return sorted.map((row) => {
+  return sorted.flatMap((row) => {
     const posture = counts.get(row.key) ?? 0;
     counts.set(row.key, posture + 1);
-    return posture === row.posture ? row : { ...row, posture };
+    if (posture >= MAX_POSTURES_PER_KEY) return [];
+    return [posture === row.posture ? row : { ...row, posture }];
   });
 }
 
 const sameCells = (one: Row, other: Row) =>
-  one.key === other.key && one.cells.every((cell, col) => cell === other.cells[col]);
+  one === other ||
+  (one.key === other.key &&
+    (one.cells === other.cells || one.cells.every((cell, col) => cell === other.cells[col])));
 
 function merged(row: Row, old: Row, now: Row): Row {
   if (row === old) return now;

@@ -7,7 +7,6 @@
 
 import {
   type Content,
-  cellsIn,
   type Entry,
   isSameCell,
   keyIn,

@@ -15,15 +15,8 @@ import {
 import { Outbox } from "../../../core/design/outbox";
 import type { Proposed } from "../../../core/design/roles";
 import { SharedTable } from "../../../core/design/shared_table";
-import {
-  type Cell,
-  columnsOf,
-  mapRows,
-  readCell,
-  type Table,
-  USUAL_RANGE,
-  withCells,
-} from "../../../core/design/table";
+import { pageTable, withoutProposed } from "../../../core/design/shown";
+import { columnsOf, type Table } from "../../../core/design/table";
 import { sequences } from "../../../core/files";
 import type { OpenedTable, TableNews } from "../../../core/wire";
 import type { OpenFile } from "../files/open_file";
@@ -261,7 +254,9 @@ export class Sharing {
       if (isOther) this.sheet.open(table);
       else if (digestOf(before) !== digestOf(table)) {
         // What was proposed here and taken in was typed here.
-        const others = this.withoutOwn(before, table);
+        const me = this.me();
+        const own = me ? this.proposals.peek().filter(({ by }) => by === me) : [];
+        const others = withoutProposed(before, table, own);
         const isMine = others !== table;
         if (isMine) this.sheet.merge(others, null, moved);
         this.sheet.merge(table, isMine ? "hand" : null, isMine ? undefined : moved);
@@ -277,50 +272,9 @@ export class Sharing {
     });
   }
 
-  /** A table without the numbers that were proposed here, and are taken in now. */
-  private withoutOwn(before: Table, table: Table): Table {
-    const me = this.me();
-    const own = this.proposals.peek().filter(({ by }) => by === me);
-    if (!me || !own.length || before.kind !== table.kind || table.kind !== "postures") return table;
-    return mapRows(table, (row) => {
-      const old = before.rows.find(
-        ({ key, posture }) => key === row.key && posture === row.posture,
-      );
-      const isOwn = (cell: Cell, col: number) =>
-        own.some(
-          (one) =>
-            one.key === row.key &&
-            one.col === col &&
-            one.text === String(cell),
-        );
-      return withCells(row, (cell, col) => (old && isOwn(cell, col) ? old.cells[col]! : cell));
-    });
-  }
-
-  private tableOf({ kind, legs, rows }: Content): Table {
+  private tableOf(content: Content): Table {
     const robot = this.robot.robot.peek();
-    const before = this.sheet.table.peek();
-    const fits = (count?: number) => count === legs;
-    const columns = fits(robot?.legs.length) && robot ? columnsOf(robot) : null;
-    const labels = columns?.legs ?? Array.from({ length: legs }, (_, leg) => String(leg));
-    const ranges = columns?.ranges ?? Array.from({ length: 3 * legs }, () => USUAL_RANGE);
-    const known = new Map(
-      (fits(before?.legs.length) ? before!.rows : []).map((row) => [
-        `${row.key}.${row.posture}`,
-        row,
-      ]),
-    );
-    return {
-      kind,
-      legs: labels,
-      ranges,
-      rows: rows.map((row) => {
-        const cells = row.cells.map((cell, col) => readCell(String(cell), ranges[col]!));
-        const old = known.get(`${row.key}.${row.posture}`);
-        // What has not changed stays the same object, as after any edit.
-        return old?.cells.every((cell, col) => cell === cells[col]) ? old : { ...row, cells };
-      }),
-    };
+    return pageTable(content, robot && columnsOf(robot), this.sheet.table.peek());
   }
 
   /** Use the robot that others have chosen. */
