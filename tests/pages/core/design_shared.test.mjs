@@ -76,14 +76,18 @@ function deliver(writers) {
   }
 }
 
-for (const [name, first] of Object.entries({ postures: sample, locomotion: walking })) {
-  test(`four pages edit and undo 1,000 times each, with outages, and converge: ${name}`, () => {
+// Rows that are inserted at the same time all stay: tables of sequences become long, and slow.
+for (const [first, rounds] of [
+  [sample, 1000],
+  [walking, 300],
+]) {
+  test(`four pages edit and undo ${rounds} times each, with outages, and converge: ${first.kind}`, () => {
     const chance = chanceOf(5);
     const writers = Array.from({ length: 4 }, () => new Writer());
     const begun = new SharedTable(() => undefined);
     begun.write(contentOf(first));
     for (const writer of writers) writer.open(begun.state());
-    for (let edits = 0; edits < 1000; edits++) {
+    for (let edits = 0; edits < rounds; edits++) {
       for (const writer of writers) {
         const { history } = writer;
         const what = chance();
