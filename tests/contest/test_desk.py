@@ -290,6 +290,28 @@ def test_a_decision_is_shown_before_it_is_made(room: Room) -> None:
     assert room.states()[first] == "withdrawn"
 
 
+def test_a_preview_names_the_match_that_a_team_plays_now(room: Room) -> None:
+    """A team whose last match is at a court has not played its last one."""
+    room.enter("Ants", "Bees", "Crabs")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    matches = room.book.contest.stages[0].matches
+    for number, match in enumerate(match for match in matches if match.next_seats):
+        assert match.next_seats is not None
+        facts = {"pairing": match.pairing.id, "game": 1, "teams": match.next_seats}
+        if number < 2:
+            room.store.append(new(Played, scores=(10, 2), outcome="left", **facts))
+        else:
+            room.store.append(new(Called, court="north", **facts))
+    first = matches[0].pairing.id
+    rule = Rule(secret=KEY, kind="result", pairing=first, scores=(2, 10), reason="swapped")
+    seen = room.ask(rule)
+    assert isinstance(seen, Effect)
+    codes = [line.code for line in seen.lines]
+    assert codes.count("decide.then") + codes.count("decide.plays-no-more") == 2
+    assert "decide.then" in codes
+
+
 @pytest.fixture
 def over(tmp_path: Path) -> Room:
     """Give a contest whose final waits for the organiser: Ann has won, before Ben and Cyd."""

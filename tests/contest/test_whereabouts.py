@@ -1,6 +1,7 @@
 """Tests of where each team of a contest plays, or what it waits for."""
 
 from random import Random
+from typing import Any
 
 import pytest
 from chance_event import GAME_MS, LEAST_REST_MS, Event
@@ -28,6 +29,8 @@ from lacoc_server.contest.league.timetable.whereabouts import (
     whereabouts,
 )
 from lacoc_server.contest.league.titles import titles
+from lacoc_server.contest.live.teller import Teller
+from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import faults, render
 
@@ -328,3 +331,44 @@ def test_a_shared_rank_sends_one_team_of_each_group_on() -> None:
     (view,) = cup.contest.stages
     assert [[row.rank for row in table.rows] for table in view.tables] == [[1, 1], [1, 1]]
     assert view.ranking == ("t001", "t002", "t003", "t004")
+
+
+class _Told:
+    """Stands in for the connection to a court; it keeps what the office tells."""
+
+    is_there = True
+
+    def __init__(self) -> None:
+        self.teams: dict[str, Whereabouts] = {}
+
+    def tell(self, teams: dict[str, Whereabouts]) -> "_Told":
+        self.teams = teams
+        return self
+
+    def take(self) -> Done:
+        return Done()
+
+
+def test_a_team_that_applied_is_told_that_it_waits() -> None:
+    """Its link leads to a page that says so, and goes on when the organiser has approved it."""
+    event = Event(2, 1, Random(1))
+    ann, ben = event.names
+    court, applied = _Told(), ["Zoe", ann]
+    links: Any = {"north": court}
+    teller = Teller(links, ADDRESSES, lambda team: team, 0, applicants=lambda: tuple(applied))
+
+    contest = event.contest
+
+    def said() -> dict[str, str]:
+        teller.tell(contest, (), {}, GAME)
+        return {there.team: there.said.code for there in court.teams.values()}
+
+    # The first team is in; only its newest files wait.
+    approval = "team.awaits-approval"
+    assert {team: code == approval for team, code in said().items()} == {
+        ann: False,
+        ben: False,
+        "Zoe": True,
+    }
+    applied.clear()
+    assert {*said()} == {ann, ben}

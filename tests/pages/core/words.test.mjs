@@ -119,9 +119,12 @@ test("the border names columns and rows of discs; corners and flags have numbers
   assert.deepEqual(borderOf(flags), { columns: [], rows: [] });
 });
 
-test("advice to play again falls away once the result is official", () => {
-  const advice = { kind: "advice", data: {} };
-  const official = { kind: "phase", data: { after: "OFFICIAL" } };
-  assert.deepEqual(toldEvents([advice]), [advice]);
-  assert.deepEqual(toldEvents([advice, official]), [official]);
+test("once the result is official, advice and who comes and goes are no news", () => {
+  const advice = { number: 1, kind: "advice", data: {} };
+  const lost = { number: 2, kind: "silent", data: {} };
+  const official = { number: 3, kind: "phase", data: { after: "OFFICIAL" } };
+  const gone = { number: 4, kind: "silent", data: {} };
+  const next = { number: 5, kind: "decision", data: { decision: "next" } };
+  assert.deepEqual(toldEvents([advice, lost]), [advice, lost]);
+  assert.deepEqual(toldEvents([advice, lost, official, gone, next]), [lost, official, next]);
 });

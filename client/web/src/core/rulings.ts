@@ -66,13 +66,20 @@ export function goneEvents(events: readonly Event[]): Map<number, "takenBack" | 
   return gone;
 }
 
+/** Who comes and goes: after the end of a match that is no news. */
+const COMING_AND_GOING = new Set(["join", "leave", "silent", "heard"]);
+
 /**
- * The events as people read them: the court's advice to play again falls away once the referee has
- * made the result official.
+ * The events as people read them. Once the referee has made the result official, the court's advice
+ * to play again falls away, and nobody needs to know that the teams have moved on.
  */
 export function toldEvents(events: readonly Event[]): readonly Event[] {
-  const isOfficial = events.some(({ data }) => data.after === "OFFICIAL");
-  return isOfficial ? events.filter(({ kind }) => kind !== "advice") : events;
+  const official = events.find(({ data }) => data.after === "OFFICIAL");
+  if (!official) return events;
+  return events.filter(
+    ({ kind, number }) =>
+      kind !== "advice" && !(number > official.number && COMING_AND_GOING.has(kind)),
+  );
 }
 
 /** The decision of an event, with its arguments; null for any other event. */

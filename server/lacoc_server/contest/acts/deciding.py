@@ -86,15 +86,8 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
 
 def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
     """Say what a result means: how its match stands then, and what both teams play next."""
-    match = next(
-        (
-            match
-            for view in then.stages
-            for match in view.matches
-            if match.pairing.id == result.pairing
-        ),
-        None,
-    )
+    matches = [match for view in then.stages for match in view.matches]
+    match = next((match for match in matches if match.pairing.id == result.pairing), None)
     if match is None or {*match.teams} != {*result.teams}:
         return
     about = named(then, result.pairing)
@@ -104,10 +97,15 @@ def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
         return
     if not match.winner:
         yield say("decide.level", match=about, teams=result.teams, points=DRAW)
+    called = {call.pairing for call in then.running}
+    at_courts = [match for match in matches if match.pairing.id in called]
     coming = foreseen(then, FORMATS)
     for team in result.teams:
+        now = next((match for match in at_courts if team in match.teams), None)
         one = next((one for one in coming if team in one.match.teams), None)
-        if one is not None:
+        if now is not None and now.pairing.id != result.pairing:
+            yield say("decide.then", team=team, match=named(then, now.pairing.id))
+        elif one is not None:
             yield say("decide.then", team=team, match=one.fixture)
         elif may_come(then, team):
             yield say("decide.awaits-draw", team=team)

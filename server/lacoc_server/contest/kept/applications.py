@@ -63,6 +63,11 @@ class Applications:
         """The applications by team, the oldest first."""
         return dict(sorted(self._known.items(), key=lambda one: one[1].at_ms))
 
+    @property
+    def teams(self) -> tuple[str, ...]:
+        """The names of the teams that wait; any thread may ask."""
+        return tuple(self._known)
+
     def put(self, team: str, entry: ContestEntry, at_ms: int | None = None) -> None:
         """Keep the files of a team in place of its earlier ones.
 

@@ -55,6 +55,7 @@ class Office:
         draw_from_ms: when the office closes entries and draws the first stage, in milliseconds
             since 1970, UTC; None: it waits until somebody closes entries.
         open_matches: gives open matches to the courts that have no game; None: nobody does.
+        applicants: returns the names of the teams that wait for the organiser.
     """
 
     def __init__(
@@ -67,6 +68,7 @@ class Office:
         least_rest_ms: int = 0,
         draw_from_ms: int | None = 0,
         open_matches: OpenMatches | None = None,
+        applicants: Callable[[], tuple[str, ...]] = tuple,
     ) -> None:
         self._store = store
         self._newest = Newest(FORMATS)
@@ -75,7 +77,9 @@ class Office:
         self._links = dict(links)
         self._addresses = dict(addresses)
         self._open_matches = open_matches
-        self._teller = Teller(self._links, self._addresses, token_of, least_rest_ms, open_matches)
+        self._teller = Teller(
+            self._links, self._addresses, token_of, least_rest_ms, open_matches, applicants
+        )
         self._least_rest_ms = least_rest_ms
         self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)

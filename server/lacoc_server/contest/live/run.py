@@ -137,6 +137,7 @@ def play_live(
         stage, open_matches = where.open_stage, None
         if stage is not None:
             open_matches = OpenMatches(stage, secrets.seat, tell)
+        applications = stack.enter_context(Applications(where.applications))
         office = Office(
             store,
             where.entries,
@@ -146,8 +147,8 @@ def play_live(
             rest_ms,
             draw_from_ms,
             open_matches,
+            lambda: applications.teams,
         )
-        applications = stack.enter_context(Applications(where.applications))
         own_store = stack.enter_context(FactStore(where.facts))
         code = EventCode(where.event_code, secrets.event_code)
         book = Book(where, own_store, applications, code)

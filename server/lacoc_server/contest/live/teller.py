@@ -23,6 +23,7 @@ from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_shared import seal
 from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts
+from lacoc_shared.words import say
 
 _LOOK_MS = 1000
 """Time between two estimates, when nothing else has changed."""
@@ -42,6 +43,7 @@ class Teller:
         token_of: returns a team's token.
         least_rest_ms: shortest time between two matches of a team.
         open_matches: says where the open seats are; None: there are none.
+        applicants: returns the names of the teams that wait for the organiser.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class Teller:
         token_of: Callable[[str], str],
         least_rest_ms: int,
         open_matches: OpenMatches | None = None,
+        applicants: Callable[[], tuple[str, ...]] = tuple,
     ) -> None:
         self._links = links
         self._addresses = addresses
@@ -59,6 +62,7 @@ class Teller:
         self._hash = cache(lambda token: seal.hash_token(token, salt))
         self._token_of = token_of
         self._open_matches = open_matches
+        self._applicants = applicants
         self.pace = ContestPace(0, 0, least_rest_ms)
         """How fast the contest goes, as of the newest estimate."""
         self.expected: dict[str, tuple[str, int]] = {}
@@ -67,7 +71,9 @@ class Teller:
         self._teams: dict[str, Whereabouts] = {}
         self._contest: Contest | None = None
         self._calls: tuple[str, ...] = ()
-        """The contest and the courts' calls, as they were at the newest estimate."""
+        self._waiting: tuple[str, ...] = ()
+        """The contest, the courts' calls and the teams that waited for the organiser, as they were
+        at the newest estimate."""
         self._looked_ms = 0
         self._first_ms = 0
         self._told: dict[str, tuple[int, dict[str, Whereabouts]]] = {}
@@ -89,9 +95,12 @@ class Teller:
             UserError: if a new token can't be written.
         """
         calls = tuple(court.call for court in seen.values())
-        is_new = contest is not self._contest or calls != self._calls
+        waiting = self._applicants()
+        is_new = contest is not self._contest
+        is_new = is_new or (calls, waiting) != (self._calls, self._waiting)
         if is_new or now_ms - self._looked_ms >= _LOOK_MS:
-            self._contest, self._calls, self._looked_ms = contest, calls, now_ms
+            self._contest, self._calls, self._waiting = contest, calls, waiting
+            self._looked_ms = now_ms
             usual_ms = game_ms(facts, self._guess_ms(contest))
             self.pace = ContestPace(now_ms, usual_ms, self._least_rest_ms)
             coming = foreseen(contest, FORMATS)
@@ -102,7 +111,9 @@ class Teller:
                 for pairing, start in begins.items()
             }
             found = whereabouts(contest, SeenCourts(seen, self._addresses), self.pace, begins)
-            here = [(self._token_of(team), there) for team, there in found.items()]
+            awaits = say("team.awaits-approval")
+            applied = {name: Whereabouts(team=name, state="waits", said=awaits) for name in waiting}
+            here = [(self._token_of(team), there) for team, there in (applied | found).items()]
             if self._open_matches is not None:
                 here += self._open_matches.whereabouts(seen, self._addresses)
             self._teams = {self._hash(token): there for token, there in here}

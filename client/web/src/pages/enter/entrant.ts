@@ -11,7 +11,7 @@ import {
   type TeamFiles,
   type TeamLink,
 } from "../../core/desk";
-import { checkSizes, chosenFiles, forgetAll, keepGiven } from "../../core/files";
+import { checkSizes, chosenFiles, chosenNames, forgetAll, keepGiven } from "../../core/files";
 import { filesOf } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
 import type { Mistake, Notice } from "../../core/wire";
@@ -43,6 +43,10 @@ export class Entrant {
       keepGiven(given);
       history.replaceState(null, "", location.pathname + location.search);
     }
+    // Files that were missing are there now.
+    chosenNames.subscribe(() => {
+      if (this.why.peek()?.code === "desk.no-files") this.why.value = null;
+    });
     setInterval(() => void this.look(), LOOK_MS);
     const { state } = this.desk.connection;
     const stop = state.subscribe(({ open }) => {
