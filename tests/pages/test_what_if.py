@@ -86,7 +86,9 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
     page = open_page(viewport={"width": 1366, "height": 768})
     show = Show(page, library.url, f"/replay?file={FORK}.mcap&t=3&q=low")
     show.sees(".fork-note", f"a fork of {MATCH} at 0:02.4, not an official record")
-    show.misses(".odds-curve")  # these are the odds of another match
+    # The odds beside the record are of another match, so they are computed from the score.
+    by_score = "The chance to win by score and clock alone"
+    assert show.find(".transport .chances").get_attribute("title") == by_score
     show.find(".fork-note button").click()
     show.sees(".scene.two .line:nth-child(2) .line-score", "The match")
     page.evaluate("window.__replay.seek(140)")

@@ -223,6 +223,7 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     hall.play()
     hall.walks()
     before, late_ms = frames_of(hall), hall.health.worst_late_ms
+    silences = hall.silences()  # a busy machine may have been slow at the start
     for process in watchers:
         assert process.poll() is None
         os.kill(process.pid, signal.SIGSTOP)
@@ -234,5 +235,5 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     # On a busy machine the spectator may receive fewer; the court drops none of its frames.
     assert frames >= 0.5 * before
     assert hall.health.worst_late_ms <= late_ms + WAITED_MS
-    assert hall.silences() == []
+    assert hall.silences() == silences
     assert all(process.poll() is None for process in watchers)
