@@ -18,7 +18,7 @@ from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import AssignedSeat, Whereabouts
 from lacoc_shared.network.session import open_client
-from lacoc_shared.seat import Phase
+from lacoc_shared.seat import Phase, SeatFlag
 from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
@@ -105,8 +105,9 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".result .side.won", "Bees")
     show.sees(".result .next", "The referee opens the next match")
     left.close()
-    show.sees(".panel .log li[data-kind=silent]", "The connection to Ants is lost")
-    assert show.find(".third[data-kind=silent]").count() == 0, "the game is over: it is no news"
+    referee.wait(lambda: referee.frame.seats[0].flags & SeatFlag.SILENT)
+    for news in (".panel .log li[data-kind=silent]", ".third[data-kind=silent]"):
+        assert show.find(news).count() == 0, "the match is over: it is no news"
     show.page.get_by_role("button", name="Look at the field").click()
     show.misses(".result")
     assert "18 : 18" in show.page.title()

@@ -25,7 +25,7 @@ class Unfit(ValueError):
     """An update that no page of a table writes."""
 
 
-class Span(NamedTuple):
+class ItemSpan(NamedTuple):
     """Edits of one page, counted from 0 on: those from `start` up to, but without, `end`."""
 
     client: int
@@ -37,8 +37,8 @@ class Span(NamedTuple):
 class Update(NamedTuple):
     """What an update brings, and what it is made for."""
 
-    edits: tuple[Span, ...]
-    needs: tuple[Span, ...]
+    edits: tuple[ItemSpan, ...]
+    needs: tuple[ItemSpan, ...]
     """Edits that it names, such as those that it deletes."""
 
     def fits(self, known: Mapping[int, int]) -> bool:
@@ -101,8 +101,8 @@ class _Reader:
                 raise Unfit("a number without an end")
 
     def update(self) -> Update:
-        edits: list[Span] = []
-        needs: list[Span] = []
+        edits: list[ItemSpan] = []
+        needs: list[ItemSpan] = []
         for _ in range(self.number()):
             count, client, clock = self.number(), self.number(), self.number()
             for _ in range(count):
@@ -116,7 +116,7 @@ class _Reader:
             needs += [_span(client, self.number(), self.number()) for _ in range(self.number())]
         return Update(tuple(edits), tuple(needs))
 
-    def _edit(self, needs: list[Span]) -> tuple[int, bool]:
+    def _edit(self, needs: list[ItemSpan]) -> tuple[int, bool]:
         """Read an edit; return how many it counts as, and whether it is there."""
         info = self._data[self.at]
         self.at += 1
@@ -163,7 +163,7 @@ class _Reader:
             raise Unfit("cut off")
 
 
-def _span(client: int, start: int, length: int) -> Span:
+def _span(client: int, start: int, length: int) -> ItemSpan:
     if client >= _CLIENT_MOST or length < 1 or start + length >= _CLOCK_MOST:
         raise Unfit("a number too large")
-    return Span(client, start, start + length)
+    return ItemSpan(client, start, start + length)

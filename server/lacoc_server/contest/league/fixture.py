@@ -39,8 +39,10 @@ def fixture(
     games = max(game, view.stage.settings.games)  # the last ones may be extra games
     if games == 1:
         return said
-    now = standing(match) if stands and match.games else None
-    return say("fixture.game", match=said, game=game, games=games, standing=now)
+    named_game = say("fixture.game", match=said, game=game, games=games)
+    if not (stands and match.games):
+        return named_game
+    return say("fixture.so-far", game=named_game, standing=standing(match))
 
 
 def standing(match: ContestMatch) -> Phrase:
