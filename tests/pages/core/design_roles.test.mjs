@@ -49,7 +49,7 @@ test("a proposal comes over, and goes when it is taken in", () => {
   assert.deepEqual(updates.at(-1).cells.filter(cellNamed), [], "nobody typed into a cell");
   const other = new SharedTable(() => undefined);
   other.take(one.state());
-  const proposal = { name: "p6/5.0/3?", key: 5, posture: 0, col: 3, text: "44", by: "Ben" };
+  const proposal = { name: "p6/5.0/3?", key: 5, rank: 0, col: 3, text: "44", by: "Ben" };
   assert.deepEqual(other.proposals(), [proposal]);
   assert.deepEqual(other.content().rows, all);
   other.remove(["p6/5.0/3?"]);
