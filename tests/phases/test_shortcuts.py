@@ -1,11 +1,11 @@
 """Ways to tick a phase without learning: none ticks anything. The honest way ticks each phase."""
 
-import asyncio
 import math
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import pytest
+from aside import run_async
 from pupil import (
     FIRST,
     LEGS,
@@ -489,7 +489,7 @@ def test_no_way_around_ticks_anything(
         await pupil.end()
         return pupil.done
 
-    assert asyncio.run(goes()) == set()
+    assert run_async(goes) == set()
 
 
 async def honest(pupil: Pupil) -> list[set[int]]:
@@ -557,7 +557,7 @@ def test_the_honest_way_ticks_each_phase(
     tmp_path: Path, ask_trial: Asks, sample_rows: Rows
 ) -> None:
     """Work of one's own, and a right answer, tick each phase; nothing else is ticked with it."""
-    found = asyncio.run(honest(Pupil(tmp_path, ask_trial, sample_rows)))
+    found = run_async(lambda: honest(Pupil(tmp_path, ask_trial, sample_rows)))
 
     assert found == [set(range(number + 1)) for number in range(len(found))]
     assert len(found) == 7
@@ -585,7 +585,7 @@ def test_a_wrong_answer_leads_to_another_question(
         await pupil.end()
         return pupil.done
 
-    assert asyncio.run(goes()) == {2}
+    assert run_async(goes) == {2}
 
 
 def test_evidence_outlives_a_restart(tmp_path: Path, ask_trial: Asks, sample_rows: Rows) -> None:
@@ -604,4 +604,4 @@ def test_evidence_outlives_a_restart(tmp_path: Path, ask_trial: Asks, sample_row
         assert again.diary.progress.lesson_step == len(QUESTIONS)
         await again.end()
 
-    asyncio.run(goes())
+    run_async(goes)
