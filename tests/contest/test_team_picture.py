@@ -2,6 +2,8 @@
 
 import hashlib
 import io
+import struct
+import zlib
 from contextlib import suppress
 from pathlib import Path
 
@@ -47,6 +49,13 @@ def drawn(kind: str, size: tuple[int, int] = (300, 200), **options: object) -> b
 PNG = drawn("PNG")
 
 
+def claiming(width_px: int, height_px: int) -> bytes:
+    """Return a small file that says that its picture is large."""
+    header = b"IHDR" + struct.pack(">IIBBBBB", width_px, height_px, 8, 2, 0, 0, 0)
+    check = struct.pack(">I", zlib.crc32(header))
+    return PNG[:12] + header + check + PNG[33:]
+
+
 def with_picture(data: bytes = PNG, name: str = "we.png") -> TeamFiles:
     """Return the sample's files and a picture."""
     return msgspec.structs.replace(sample(), picture=SentFile(name, data))
@@ -82,6 +91,8 @@ def test_nothing_else_of_a_file_is_kept() -> None:
         (b"<svg xmlns='http://www.w3.org/2000/svg'/>", "desk.no-picture"),
         (PNG[: len(PNG) // 2], "desk.damaged-picture"),
         (drawn("PNG", (5000, 10)), "desk.large-picture"),
+        (claiming(12_000, 12_000), "desk.large-picture"),
+        (claiming(50_000, 50_000), "desk.large-picture"),
     ],
 )
 def test_what_is_no_picture_is_told(data: bytes, why: str) -> None:

@@ -1,6 +1,5 @@
 """Invite teams, referees and staff: a link for each, to hand out."""
 
-import csv
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +11,7 @@ from rich.text import Text
 from lacoc_server.commands.contest.playing import ContestArgument
 from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import options, screen
+from lacoc_shared.command.csv_text import csv_text
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import ContestFile
 from lacoc_shared.contest.link import Link
@@ -60,9 +60,7 @@ def invite(
         screen.print_json(of_kind if staff else links)
         return
     if as_csv:
-        table = csv.writer(sys.stdout, lineterminator="\n")
-        table.writerow(Invited._fields)
-        table.writerows(people)
+        sys.stdout.write(csv_text([Invited._fields, *people]).decode("utf-8-sig"))
         return
     for one in people:
         screen.show(Text(render(_title(one)), style="dim"))

@@ -1,7 +1,6 @@
 """The picture of a team: whatever its members send becomes a small square WebP."""
 
 import io
-import warnings
 
 from PIL import Image, ImageOps, UnidentifiedImageError
 
@@ -31,16 +30,17 @@ def small_picture(file: SentFile) -> bytes:
         UserError: if it is no such picture, is damaged or too large.
     """
     try:
-        with warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning):
-            found = Image.open(io.BytesIO(file.data), formats=_FORMATS)
+        found = Image.open(io.BytesIO(file.data), formats=_FORMATS)
         if max(found.size) > _MOST_PX:
             raise UserError(say("desk.large-picture", name=file.name, most=_MOST_PX))
         upright = ImageOps.exif_transpose(found).convert("RGBA")
         square = ImageOps.fit(upright, (SIDE_PX, SIDE_PX))
         out = io.BytesIO()
         square.save(out, "WEBP", quality=80, method=4)
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning):
+        raise UserError(say("desk.large-picture", name=file.name, most=_MOST_PX)) from None
     except UnidentifiedImageError:
         raise UserError(say("desk.no-picture", name=file.name)) from None
-    except (OSError, ValueError, SyntaxError, EOFError, Warning) as error:
+    except (OSError, ValueError, SyntaxError, EOFError) as error:
         raise UserError(say("desk.damaged-picture", name=file.name, why=str(error))) from None
     return out.getvalue()

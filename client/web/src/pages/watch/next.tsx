@@ -1,6 +1,5 @@
 /** After a match of an event: when and where its teams play again, as far as the office knows. */
 
-import { useEffect } from "preact/hooks";
 import { eventFeed } from "../../core/contest/feed";
 import { nextGameOf } from "../../core/contest/games";
 import { type ContestSheet, stateOf } from "../../core/contest/sheet";
@@ -9,7 +8,6 @@ import { t } from "../../i18n";
 import { expected } from "../contest/words";
 
 export function NextOfTeams({ court }: { court: Court }) {
-  useEffect(() => eventFeed.start(), []);
   const sheet = eventFeed.sheet.value;
   const played = court.sheet.value;
   if (!sheet || !played) return null;
