@@ -1,5 +1,6 @@
 /** A student at a glance: one small card. */
 
+import type { ComponentChildren } from "preact";
 import { barsPath, elapsed, LESSON_STEPS, PHASES } from "../../core/class";
 import type { Card } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -17,29 +18,10 @@ interface Props {
 }
 
 export function StudentCard({ teacher, card, isStop }: Props) {
-  const name = teacher.name(card.name);
   const what = news(teacher, card);
   return (
     <li>
-      <button
-        type="button"
-        class="student"
-        tabIndex={isStop ? 0 : -1}
-        data-student={card.name}
-        data-need={card.need}
-        data-online={card.online}
-        aria-label={`${name}: ${summary(teacher, card)}`}
-        title={summary(teacher, card)}
-        onClick={() => {
-          teacher.opened.value = card.name;
-        }}
-      >
-        <span class="who">
-          {card.hand_up_s !== null && <Icon name="hand" />}
-          <b>{name}</b>
-          {card.coached && <i class="coached">C</i>}
-        </span>
-        <Dots card={card} />
+      <StudentButton teacher={teacher} card={card} isStop={isStop}>
         <span class="walk">
           <Feet card={card} />
           <span class="speeds">
@@ -48,8 +30,44 @@ export function StudentCard({ teacher, card, isStop }: Props) {
           </span>
         </span>
         {what && <span class="news">{what}</span>}
-      </button>
+      </StudentButton>
     </li>
+  );
+}
+
+interface ButtonProps extends Props {
+  /** The line of the student's group in which it stands; without it, the student works alone. */
+  member?: { role: string };
+  children?: ComponentChildren;
+}
+
+/** Opens a student: the name, what the teacher should see at once, and the phases. */
+export function StudentButton({ teacher, card, isStop, member, children }: ButtonProps) {
+  const name = teacher.name(card.name);
+  const text = summary(teacher, card);
+  return (
+    <button
+      type="button"
+      class={member ? "student member" : "student"}
+      tabIndex={isStop ? 0 : -1}
+      data-student={card.name}
+      data-need={card.need}
+      data-online={card.online}
+      aria-label={`${name}: ${text}`}
+      title={(member && news(teacher, card)) || text}
+      onClick={() => {
+        teacher.opened.value = card.name;
+      }}
+    >
+      <span class="who">
+        {card.hand_up_s !== null && <Icon name="hand" />}
+        <b>{name}</b>
+        {member?.role && <small>{member.role}</small>}
+        {card.coached && <i class="coached">C</i>}
+      </span>
+      <Dots card={card} />
+      {children}
+    </button>
   );
 }
 

@@ -2,8 +2,7 @@
 
 import type { Card, ClassGroup } from "../../core/wire";
 import { t } from "../../i18n";
-import { Icon } from "../../ui/icons";
-import { Dots, Feet, news, speed, summary } from "./card";
+import { Feet, StudentButton, speed } from "./card";
 import type { Teacher } from "./teacher";
 
 interface Props {
@@ -27,50 +26,18 @@ export function GroupCard({ teacher, group, cards, stop }: Props) {
         {Number.isFinite(best) && <small>{speed(best)} mm/s</small>}
       </span>
       <Feet card={walked} />
-      {cards.map((card) => (
-        <Member
-          key={card.name}
-          teacher={teacher}
-          card={card}
-          role={group.roles[card.name] ?? ""}
-          isStop={card.name === stop}
-        />
-      ))}
+      {cards.map((card) => {
+        const role = group.roles[card.name];
+        return (
+          <StudentButton
+            key={card.name}
+            teacher={teacher}
+            card={card}
+            isStop={card.name === stop}
+            member={{ role: role ? t(`class.group.${role}`) : "" }}
+          />
+        );
+      })}
     </li>
-  );
-}
-
-interface MemberProps {
-  teacher: Teacher;
-  card: Card;
-  role: ClassGroup["roles"][string];
-  isStop: boolean;
-}
-
-function Member({ teacher, card, role, isStop }: MemberProps) {
-  const name = teacher.name(card.name);
-  const said = summary(teacher, card);
-  return (
-    <button
-      type="button"
-      class="student member"
-      tabIndex={isStop ? 0 : -1}
-      data-student={card.name}
-      data-need={card.need}
-      data-online={card.online}
-      aria-label={`${name}: ${said}`}
-      title={news(teacher, card) || said}
-      onClick={() => {
-        teacher.opened.value = card.name;
-      }}
-    >
-      <span class="who">
-        {card.hand_up_s !== null && <Icon name="hand" />}
-        <b>{name}</b>
-        {role && <small>{t(`class.group.${role}`)}</small>}
-        {card.coached && <i class="coached">C</i>}
-      </span>
-      <Dots card={card} />
-    </button>
   );
 }
