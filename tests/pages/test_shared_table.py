@@ -135,6 +135,15 @@ def test_four_students_make_one_gait(room: ClassRoom, open_page: OpenPage, conso
     ann.page.click(".group-roles button >> nth=0")
     ben.page.click(".group-roles button >> nth=1")
     ben.sees("#gait-grid th[title='Ann designs this row']")
+    colours = [
+        ben.find(where).first.evaluate("it => getComputedStyle(it).getPropertyValue('--person')")
+        for where in (
+            ".group-members li:has-text('Ann') i",
+            "#gait-grid th[title='Ann designs this row']",
+            ".group-members li:has-text('Ben') i",
+        )
+    ]
+    assert colours[0] == colours[1] != colours[2], "whose row it is has one colour everywhere"
     ben.go(1, 2)
     ben.type("44")
     ben.is_toasted("your number for row 1")
