@@ -2,7 +2,7 @@
 
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { Feed } from "../core/contest/feed";
+import { eventFeed as feed } from "../core/contest/feed";
 import {
   type ContestSheet,
   isKnockout,
@@ -25,7 +25,6 @@ import { TeamDialog, Teams } from "./contest/teams";
 import { expected, roundsLeft, stageHeading, stageTitle, whoTitle } from "./contest/words";
 import "./contest/contest.css";
 
-const feed = new Feed();
 effect(() => {
   document.title = `${feed.sheet.value?.name || t("contest.title")} – LACOC`;
 });
