@@ -602,6 +602,7 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
     page.join(TOKENS["left"])
     page.stands("seated")
     page.press("r")
+    page.is_told("準備完了です。右の席の参加を待っています")  # until then keys walk in the lobby
     page.press("2")
     page.is_toasted("キーは試合中だけ使えます")
     words = page.find("main").inner_text().replace("LACOC", "")
