@@ -113,6 +113,7 @@ STRUCTS = (
     schema.Setup,
     schema.Header,
     schema.Result,
+    studio.LegShape,
     studio.RobotReply,
     studio.CellPlace,
     studio.Sentence,
