@@ -26,6 +26,8 @@ import { expected, gameTitle, stageHeading, stageTitle, winnersTitle } from "./w
 
 const SLIDE_MS = 12_000;
 const RATINGS_MOST = 9;
+/** So few teams before the draw can be larger. */
+const FEW_TEAMS = 6;
 /** Tables with so few rows can be larger. */
 const FEW = 5;
 
@@ -156,7 +158,7 @@ function Entered({ sheet, teams }: { sheet: ContestSheet; teams: readonly Team[]
     <>
       <PauseLine sheet={sheet} />
       <h2>{t("contest.hasEntered", { count: teamsOf(sheet).here })}</h2>
-      <ul class="entered">
+      <ul class="entered" data-few={teams.length <= FEW_TEAMS || undefined}>
         {teams.map(({ name }) => (
           <li key={name}>
             <TeamPicture sheet={sheet} team={name} />

@@ -28,6 +28,8 @@ const NOTE = 16;
 /** From box to box: lines go between columns, notes between rows. */
 const STEP = { x: BOX.width + 44, y: BOX.height + NOTE + 6 };
 const NAME_EM = 11;
+/** A bold name has room for so much less text. */
+const BOLD = 0.88;
 const FROM_EM = 14.5;
 const POINTS_WIDTH = 34;
 
@@ -203,7 +205,7 @@ function PlaceLine({ sheet, view, match, place, y }: LineProps) {
         x="24"
         y={y}
       >
-        {fit(team, NAME_EM)}
+        {fit(team, won(match, place) ? NAME_EM * BOLD : NAME_EM)}
       </text>
     </Link>
   );

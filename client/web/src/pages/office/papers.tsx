@@ -57,16 +57,16 @@ function Times({ view, sheet }: { view: OfficeView; sheet: ContestSheet }) {
           <tbody>
             {played.map(({ pairing, game, at_ms, teams, scores }) => (
               <tr key={`${pairing}/${game}`}>
-                <td>{at_ms > 0 && timeOf(at_ms)}</td>
+                <td class="number">{at_ms > 0 && timeOf(at_ms)}</td>
                 <th scope="row">{teams[0]}</th>
                 <th scope="row">{teams[1]}</th>
-                <td class="result">{scores.join(" : ")}</td>
+                <td class="number">{scores.join(" : ")}</td>
                 <td>{gameTitle(sheet, pairing, game)}</td>
               </tr>
             ))}
             {slots.map(({ pairing, at_ms, teams, who, fixture }) => (
               <tr key={pairing}>
-                <td>{timeOf(at_ms)}</td>
+                <td class="number">{timeOf(at_ms)}</td>
                 <th scope="row">{who ? said(who[0]) : teams[0]}</th>
                 <th scope="row">{who ? said(who[1]) : teams[1]}</th>
                 <td />
