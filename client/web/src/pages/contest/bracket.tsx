@@ -29,7 +29,7 @@ const NOTE = 16;
 const STEP = { x: BOX.width + 44, y: BOX.height + NOTE + 6 };
 const NAME_EM = 11;
 /** A bold name has room for so much less text. */
-const BOLD = 0.88;
+const BOLD = 0.82;
 const FROM_EM = 14.5;
 const POINTS_WIDTH = 34;
 
