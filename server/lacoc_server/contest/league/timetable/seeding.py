@@ -1,6 +1,8 @@
 """Who meets first in a stage that is to be drawn, and an order in which fewer meet again; pure."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import NamedTuple
 
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import set_apart
@@ -10,6 +12,22 @@ from lacoc_server.contest.league.pairing import Entrant
 from lacoc_shared.words import Phrase, say
 
 Pairs = tuple[tuple[str, str], ...]
+
+
+class _Apart(NamedTuple):
+    """What keeps teams of a stage apart."""
+
+    meet: tuple[tuple[int, int], ...]
+    """Places in the seeding, from 0, whose teams surely meet."""
+    clubs: frozenset[tuple[str, str]]
+    """Each team that has a club, with the club."""
+    met: frozenset[frozenset[str]]
+    """Pairs that have met."""
+
+    def clash(self, order: tuple[str, ...]) -> Pairs:
+        """Return the pairs of an order that should not meet first, and do."""
+        pairs = ((order[one], order[other]) for one, other in self.meet)
+        return tuple(_clashing(pairs, dict(self.clubs), self.met))
 
 
 def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
@@ -66,7 +84,7 @@ def kept_apart(
     These are teams of one club (`apart`), and teams that have met before (`met_apart`). The order
     changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
     """
-    return set_apart(order, _clash(contest, plan, how))
+    return _set_apart(_apart(contest, plan, how, len(order)), order)
 
 
 def moved_apart(
@@ -74,6 +92,7 @@ def moved_apart(
 ) -> dict[str, Phrase]:
     """Say of each team with another seed than by rank for which pairs it changed its place.
 
+    These are its own; of a team that only made room, all of them.
     Nothing is said where the plan does not give this order: a lot or the organiser made it, or
     the ranking was corrected since.
 
@@ -86,30 +105,33 @@ def moved_apart(
     ranked = tuple(team for team in by_rank(contest, plan) if team in entries)
     if ranked == entries or kept_apart(contest, plan, how, ranked) != entries:
         return {}
-    clash = _clash(contest, plan, how)
+    clash = _apart(contest, plan, how, len(entries)).clash
     still = {frozenset(pair) for pair in clash(entries)}
     avoided = dict.fromkeys(pair for pair in clash(ranked) if frozenset(pair) not in still)
-    pairs = [" – ".join(pair) for pair in avoided]
-    return {
-        team: say("advance.moved", seed=seed, instead=ranked.index(team) + 1, pairs=pairs)
-        for seed, team in enumerate(entries, 1)
-        if ranked.index(team) + 1 != seed
-    }
+    found: dict[str, Phrase] = {}
+    for seed, team in enumerate(entries, 1):
+        instead = ranked.index(team) + 1
+        if seed != instead:
+            own = [pair for pair in avoided if team in pair]
+            pairs = [" – ".join(pair) for pair in own or avoided]
+            found[team] = say("advance.moved", seed=seed, instead=instead, pairs=pairs)
+    return found
 
 
-def _clash(contest: Contest, plan: Planned, how: Format) -> Callable[[tuple[str, ...]], Pairs]:
-    """Return what finds the pairs of an order that the plan keeps apart, and that meet first."""
-    club_of = {team.name: team.club for team in contest.teams if team.club and plan.apart}
-    met = met_before(contest, plan) if plan.met_apart else frozenset()
+def _apart(contest: Contest, plan: Planned, how: Format, teams: int) -> _Apart:
+    numbers = tuple(map(str, range(teams)))
+    meet = tuple((int(one), int(other)) for one, other in first_meetings(plan, how, numbers))
+    clubs = frozenset((one.name, one.club) for one in contest.teams if one.club and plan.apart)
+    return _Apart(meet, clubs, met_before(contest, plan) if plan.met_apart else frozenset())
 
-    def clash(order: tuple[str, ...]) -> Pairs:
-        return tuple(_clashing(first_meetings(plan, how, order), club_of, met))
 
-    return clash
+@lru_cache(maxsize=16)  # each sheet asks again, and with many teams it takes seconds
+def _set_apart(kept: _Apart, order: tuple[str, ...]) -> tuple[str, ...]:
+    return set_apart(order, kept.clash)
 
 
 def _clashing(
-    pairs: Pairs, club_of: Mapping[str, str], met: frozenset[frozenset[str]]
+    pairs: Iterable[tuple[str, str]], club_of: Mapping[str, str], met: frozenset[frozenset[str]]
 ) -> Iterator[tuple[str, str]]:
     """Yield each pair once for each reason why it should not meet."""
     for one, other in pairs:
