@@ -299,8 +299,8 @@ def _show(sheet: "ContestSheet") -> None:
                 screen.show(say("contest.by-the-draw"))
             for above, row in pairwise(table.rows):
                 if row.decided_by and "points" not in table.tie_breaks:  # a bracket
-                    told = {"above": above.team, "below": row.team, "tie": row.decided_by}
-                    screen.show(say("standing.level", **told))
+                    first, second, tie = above.team, row.team, row.decided_by
+                    screen.show(say("standing.level", above=first, below=second, tie=tie))
 
 
 def _deciding(table: "Table") -> list[str]:

@@ -104,9 +104,11 @@ def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
     draw = due(then, FORMATS)
     if not isinstance(draw, Drawn) or (not drawable and draw == due(was, FORMATS)):
         return
-    waits = waits_for_organiser(then, FORMATS) is not None
-    code = "decide.waits-for-draw" if waits else "decide.draws"
-    yield say(code, stage=title(then, draw.stage), teams=draw.entries)
+    stage = title(then, draw.stage)
+    if waits_for_organiser(then, FORMATS) is not None:
+        yield say("decide.waits-for-draw", stage=stage, teams=draw.entries)
+    else:
+        yield say("decide.draws", stage=stage, teams=draw.entries)
     yield from seeds_moved(then, draw)
 
 
