@@ -184,6 +184,7 @@ DESK_STRUCTS = (
     desk.Slot,
     desk.ToDraw,
     desk.Undrawable,
+    desk.ShiftState,
     desk.DayState,
     desk.OfficeView,
     desk.Overviewed,
