@@ -9,12 +9,10 @@ from typing import Any, TypeVar, cast, get_args
 
 import msgspec
 
-from lacoc_client.web.gateway import wire
-from lacoc_client.web.gateway.guesses import Guesses
 from lacoc_client.web.gateway.viewer import Viewer
-from lacoc_client.web.gateway.wire import MessageKind
-from lacoc_client.web.office.links import qr_code
+from lacoc_client.workshop.classroom.cards import Card
 from lacoc_client.workshop.classroom.class_student import ClassStudent
+from lacoc_client.workshop.classroom.door import ClassDoor
 from lacoc_client.workshop.classroom.groups.group_state import Role
 from lacoc_client.workshop.classroom.groups.group_tables import OF_GROUP
 from lacoc_client.workshop.classroom.groups.groups import Groups
@@ -24,6 +22,13 @@ from lacoc_client.workshop.classroom.state import (
     ClassState,
     fresh_state,
     read_state,
+)
+from lacoc_client.workshop.classroom.teacher.news import (
+    Trouble,
+    card_message,
+    class_message,
+    gone_message,
+    tournament_message,
 )
 from lacoc_client.workshop.classroom.tournament import Tournament
 from lacoc_client.workshop.design import requests
@@ -39,13 +44,11 @@ from lacoc_client.workshop.design.playing import Playing
 from lacoc_client.workshop.design.studios.studios import Studios
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document, Kept
-from lacoc_client.workshop.phases.evidence import Hand, JoinedClass
+from lacoc_client.workshop.phases.evidence import Hand
 from lacoc_client.workshop.phases.store import ClassStore
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
-from lacoc_shared import seal
-from lacoc_shared.contest.codes import new_code, read_code
-from lacoc_shared.contest.names import look_alike, read_name, same_name
-from lacoc_shared.contest.tokens import new_token, new_token_hash
+from lacoc_shared.contest.codes import new_code
+from lacoc_shared.contest.names import same_name
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import TrialReply
@@ -56,8 +59,6 @@ CLASS_FILE = "lacoc-class.sqlite"
 
 _T = TypeVar("_T", Kept, Document)
 
-_MOST_STUDENTS = 100
-_LONGEST_NAME = 20
 _SOON_S = 0.1
 """How soon pages are told that a studio has come or gone [s]."""
 _ALIVE_S = 1.0
@@ -101,9 +102,7 @@ class Classroom:
         self._keeper = Keeper(folder / CLASS_FILE)
         self.groups = Groups(self._store, self._keep_groups, self.students)
         self._robot_name = robot or WORKSHOPS_ROBOT
-        self._guesses = Guesses()
-        self._coming = asyncio.Lock()
-        """Held while a student gets a nickname."""
+        self._door = ClassDoor(self.students, lambda: self.state.code, self._new, self.forget)
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
@@ -142,15 +141,7 @@ class Classroom:
 
     async def enter(self, hello: requests.Hello, where: str) -> LetIn:
         """Let a student in who shows a token, or the class code and a nickname (`Host.enter`)."""
-        if hello.token:
-            student, token = self._known(hello), hello.token
-        else:
-            student, token = await self._newcomer(hello, where), new_token()
-            student.add_token(new_token_hash(token))
-            await student.keep_token()
-        if self.students.get(same_name(student.name)) is not student:
-            raise UserError(say("class.enter"))  # forgotten while it came in
-        return LetIn(student, token)
+        return await self._door.enter(hello, where)
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
         """Send a page what it shows first (`Host.greet`)."""
@@ -279,7 +270,7 @@ class Classroom:
             del self.students[same_name(student.name)]
         student.send_away()
         await self.groups.forget(student)
-        self._tell(wire.map_message(MessageKind.GONE, {"name": student.name}))
+        self._tell(gone_message(student.name))
 
     async def evidence(self) -> list[Kept]:
         """Read the evidence of everybody.
@@ -298,55 +289,9 @@ class Classroom:
         self.teachers[viewer] = None
         cards = [student.card() for student in self.students.values()]
         viewer.send(self._class_message(cards))
-        viewer.send(self._tournament_message())
+        viewer.send(tournament_message(self.tournament.state))
 
     # Messages
-
-    def _known(self, hello: requests.Hello) -> ClassStudent:
-        student = self.students.get(same_name(hello.name))
-        hashes = () if student is None else student.token_hashes
-        if student is None or not any(seal.verify_token(hello.token, one) for one in hashes):
-            raise UserError(say("class.unknown-token"))
-        return student
-
-    async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
-        """Check the class code and the nickname, and return the student, who may be new."""
-        if not hello.code:
-            raise UserError(say("class.enter"))
-        if read_code(hello.code) != self.state.code:
-            await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
-            raise UserError(say("class.wrong-code"))
-        name = read_name(hello.name, _LONGEST_NAME)
-        if name is None:
-            raise UserError(say("class.bad-name", most=_LONGEST_NAME))
-        async with self._coming:
-            if same_name(name) not in self.students and len(self.students) >= _MOST_STUDENTS:
-                await self._make_room()
-            student = self.students.get(same_name(name))
-            if student is None:
-                names = (one.name for one in self.students.values())
-                if (there := next((n for n in names if look_alike(n, name)), None)) is not None:
-                    raise UserError(say("class.name-taken", name=there))
-                student = self._new(name)
-            elif not student.is_admitting:
-                raise UserError(say("class.name-taken", name=name))
-            student.is_admitting = False  # nobody else takes the name while this is written
-        await student.diary.add(JoinedClass())
-        return student
-
-    async def _make_room(self) -> None:
-        """Forget the first student who has done nothing and has no page open.
-
-        So nobody can keep others out by entering under a hundred nicknames.
-
-        Raises:
-            UserError: if there is no such student.
-        """
-        idle = (student for student in self.students.values() if student.is_idle)
-        student = next(idle, None)
-        if student is None:
-            raise UserError(say("class.full", most=_MOST_STUDENTS))
-        await self.forget(student)
 
     def _new(self, name: str) -> ClassStudent:
         diary = Diary(self._keeper, name)
@@ -404,53 +349,20 @@ class Classroom:
         if self.students.get(same_name(student.name)) is student:
             card = student.changed_card()
             if card is not None:
-                self._tell(wire.map_message(MessageKind.CARD, msgspec.structs.asdict(card)))
+                self._tell(card_message(card))
 
     def _tell_tournament(self) -> None:
-        self._tell(self._tournament_message())
+        self._tell(tournament_message(self.tournament.state))
 
     def _tell(self, message: bytes) -> None:
         for viewer in self.teachers:
             viewer.send(message)
 
-    def _public(self) -> tuple[Any, ...]:
-        """Return three things that the teacher's page shows.
+    def _public(self) -> Trouble:
+        return Trouble(self._keeper.trouble, self.studios.present, self.studios.why)
 
-        They are what is wrong with the class file, how many studios there are, and why there is
-        none.
-        """
-        return (self._keeper.trouble, self.studios.present, self.studios.why)
-
-    def _class_message(self, cards: Iterable[Any] | None = None) -> bytes:
-        handed = self.state.handed
-        trouble, studios, why = self._public()
-        body = {
-            "code": self.state.code,
-            "addresses": self.addresses,
-            "qr": qr_code(self.addresses[0]) if self.addresses else "",
-            "rules": self.state.rules,
-            "trouble": trouble,
-            "studios": studios,
-            "why": why,
-            "handed": handed and {"number": handed.number, "title": handed.title},
-            "groups": [
-                {
-                    "name": one.name,
-                    "members": one.members,
-                    "roles": one.roles,
-                    "word": one.word,
-                    "handed": one.handed and one.handed.title,
-                }
-                for one in self.state.groups
-            ],
-            "cards": None if cards is None else list(cards),
-        }
-        return wire.map_message(MessageKind.CLASS, body)
-
-    def _tournament_message(self) -> bytes:
-        return wire.map_message(
-            MessageKind.TOURNAMENT, msgspec.structs.asdict(self.tournament.state)
-        )
+    def _class_message(self, cards: Sequence[Card] | None = None) -> bytes:
+        return class_message(self.state, self.addresses, self._public(), cards)
 
 
 def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:

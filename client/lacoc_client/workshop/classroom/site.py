@@ -14,7 +14,7 @@ from lacoc_client.web.gateway.files import PageFiles
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.site import LESSON, page_routes, recording_routes
 from lacoc_client.workshop.classroom.classroom import Classroom
-from lacoc_client.workshop.classroom.teacher_page import TeacherPage
+from lacoc_client.workshop.classroom.teacher.page import TeacherPage
 from lacoc_client.workshop.design.design_page import DesignPage
 from lacoc_client.workshop.design.site import PATH as STUDENTS
 

@@ -11,11 +11,11 @@ from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import Ping
-from lacoc_client.workshop.classroom import teacher_requests as requests
 from lacoc_client.workshop.classroom.class_student import ClassStudent
 from lacoc_client.workshop.classroom.classroom import Classroom
 from lacoc_client.workshop.classroom.groups.group_state import group_title
 from lacoc_client.workshop.classroom.kept import EVIDENCE, TABLES, student_files
+from lacoc_client.workshop.classroom.teacher import requests
 from lacoc_client.workshop.design.design_page import parsed
 from lacoc_client.workshop.design.requests import Hello, ParseAsk, RobotAsk, TrialAsk
 from lacoc_client.workshop.design.studios.studio_desk import StudioDesk

@@ -1,0 +1,78 @@
+"""What the teacher's pages of a class are told."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import msgspec
+
+from lacoc_client.web.gateway import wire
+from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_client.web.office.links import qr_code
+from lacoc_client.workshop.classroom.cards import Card
+from lacoc_client.workshop.classroom.state import ClassState
+from lacoc_client.workshop.classroom.tournament import TournamentState
+from lacoc_shared.words import Phrase
+
+
+class Trouble(NamedTuple):
+    """What may be wrong around a class."""
+
+    file: Phrase | None
+    """What is wrong with the class file; None: nothing."""
+    studios: int
+    why: Phrase | None
+    """Why there is no studio; None: there is one, or nothing is known."""
+
+
+def class_message(
+    state: ClassState,
+    addresses: Sequence[str],
+    trouble: Trouble,
+    cards: Sequence[Card] | None,
+) -> bytes:
+    """Return the message about a class.
+
+    Args:
+        state: its settings, groups, and what was handed out.
+        addresses: addresses that students can open.
+        trouble: what may be wrong.
+        cards: of all students, for a page that has just come; None: it has them.
+    """
+    handed = state.handed
+    body = {
+        "code": state.code,
+        "addresses": addresses,
+        "qr": qr_code(addresses[0]) if addresses else "",
+        "rules": state.rules,
+        "trouble": trouble.file,
+        "studios": trouble.studios,
+        "why": trouble.why,
+        "handed": handed and {"number": handed.number, "title": handed.title},
+        "groups": [
+            {
+                "name": one.name,
+                "members": one.members,
+                "roles": one.roles,
+                "word": one.word,
+                "handed": one.handed and one.handed.title,
+            }
+            for one in state.groups
+        ],
+        "cards": cards,
+    }
+    return wire.map_message(MessageKind.CLASS, body)
+
+
+def card_message(card: Card) -> bytes:
+    """Return the message about a student whose card has changed."""
+    return wire.map_message(MessageKind.CARD, msgspec.structs.asdict(card))
+
+
+def gone_message(name: str) -> bytes:
+    """Return the message about a student who was forgotten."""
+    return wire.map_message(MessageKind.GONE, {"name": name})
+
+
+def tournament_message(state: TournamentState) -> bytes:
+    """Return the message about the tournament of a class."""
+    return wire.map_message(MessageKind.TOURNAMENT, msgspec.structs.asdict(state))
