@@ -6,7 +6,13 @@ import { bySeat, gamesOf, pointsOf } from "../../../client/web/src/core/contest/
 import { places } from "../../../client/web/src/core/contest/places.ts";
 import { meetAgain } from "../../../client/web/src/core/draw.ts";
 import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
-import { clockOf, columns, dropped, momentOf } from "../../../client/web/src/core/timetable.ts";
+import {
+  clockOf,
+  columns,
+  dropped,
+  momentOf,
+  teamsOfNext,
+} from "../../../client/web/src/core/timetable.ts";
 
 const slot = (pairing, court, at_ms, more = {}) => ({
   ...{ pairing, court, at_ms, teams: ["A", "B"], fixture: { code: "x" } },
@@ -15,6 +21,12 @@ const slot = (pairing, court, at_ms, more = {}) => ({
 const first = slot("s:a1.1", "north", 10, { running: true });
 const second = slot("s:a1.2", "north", 20);
 const third = slot("s:a1.3", "south", 5);
+
+test("the next game is named by its teams, once both are known", () => {
+  assert.equal(teamsOfNext([second, third]), "A – B");
+  assert.equal(teamsOfNext([slot("s:f1.1", "north", 5, { teams: ["A", ""] }), second]), "");
+  assert.equal(teamsOfNext([]), "");
+});
 
 test("a column has what its court plays, and then what it will play", () => {
   const view = {

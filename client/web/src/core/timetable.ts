@@ -22,6 +22,11 @@ export function columns(view: OfficeView): Column[] {
   }));
 }
 
+/** Who plays in the first of some games to come; "" if nobody knows both teams. */
+export function teamsOfNext([next]: readonly Slot[]): string {
+  return next?.teams.every(Boolean) ? next.teams.join(" – ") : "";
+}
+
 /** Whether a match can be moved: its game has not begun. */
 export function canMove(slot: Slot): boolean {
   return !slot.begun;

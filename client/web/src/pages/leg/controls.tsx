@@ -3,6 +3,7 @@
 import { joint, LEVELS } from "../../core/design/table";
 import type { Leg, Unreached } from "../../core/leg/leg";
 import { t } from "../../i18n";
+import { hasKeyboard } from "../../ui/screen";
 import type { Lesson } from "./lesson";
 import { mm } from "./svg";
 
@@ -59,7 +60,8 @@ export function Pairs({ lesson }: { lesson: Lesson }) {
   return (
     <div class="pairs">
       <p class="muted">
-        {t("leg.spot", { ...lesson.spot.value })} · {t("leg.back.keys")}
+        {t("leg.spot", { ...lesson.spot.value })}
+        {hasKeyboard.value && ` · ${t("leg.back.keys")}`}
       </p>
       {postures.map(([first, second], index) => (
         <button

@@ -4,6 +4,7 @@ import type { Signal } from "@preact/signals";
 import type { Sheet } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
 import type { CameraName } from "../../scene/View";
+import { Kbd } from "../../ui/kbd";
 import type { KeyRow } from "../../ui/key_help";
 
 const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
@@ -44,8 +45,8 @@ export function Cameras({ camera, sheet }: { camera: Signal<CameraName>; sheet: 
               camera.value = name;
             }}
           >
-            <span class="key" aria-hidden="true">
-              {index + 1}
+            <span aria-hidden="true">
+              <Kbd>{index + 1}</Kbd>
             </span>
             {word}
           </button>

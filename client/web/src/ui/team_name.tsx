@@ -1,0 +1,14 @@
+/** A team's name where room is short. */
+
+interface Props {
+  name: string;
+}
+
+/** It breaks between words; a word that is too long ends with "…", and the title has it all. */
+export function TeamName({ name }: Props) {
+  return (
+    <span class="team-name" title={name}>
+      {name}
+    </span>
+  );
+}
