@@ -180,6 +180,8 @@ function OnCourt({ game: { court, call } }: { game: NextGame }) {
 function Podium({ sheet }: { sheet: ContestSheet }) {
   const { steps, more } = podium(sheet);
   const winners = steps.find(({ rank }) => rank === 1)?.teams ?? [];
+  const pictured = sheet.teams.filter(({ picture }) => picture).map(({ name }) => name);
+  const withLetter = steps.some(({ teams }) => teams.some((team) => pictured.includes(team)));
   return (
     <div class="podium">
       <h2>{winnersTitle(winners)}</h2>
@@ -188,7 +190,7 @@ function Podium({ sheet }: { sheet: ContestSheet }) {
           <li key={rank} data-rank={rank}>
             {teams.map((team) => (
               <Fragment key={team}>
-                <TeamPicture sheet={sheet} team={team} />
+                <TeamPicture sheet={sheet} team={team} withLetter={withLetter} />
                 <b>{team}</b>
               </Fragment>
             ))}

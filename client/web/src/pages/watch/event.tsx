@@ -10,6 +10,7 @@ import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { hint } from "../../i18n/words";
 import { directorBegins } from "../../ui/banner";
+import { TeamPicture } from "../../ui/team_picture";
 import {
   expected,
   gameTitle,
@@ -55,6 +56,9 @@ function Coming({ sheet }: { sheet: ContestSheet }) {
     return (
       <>
         <p class="next">
+          {winners.map((team) => (
+            <TeamPicture key={team} sheet={sheet} team={team} />
+          ))}{" "}
           {winners.length > 0
             ? `${winnersTitle(winners)}: ${listed(winners)}`
             : `${t(`contest.state.${stateOf(sheet)}`)} · ${t("contest.teamCount", { count: teamsOf(sheet).here })}`}
