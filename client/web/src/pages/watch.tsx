@@ -23,7 +23,7 @@ import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
-import { isNarrow, tellHeight } from "../ui/screen";
+import { isNarrow, keepHeight, tellHeight } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
@@ -55,6 +55,7 @@ const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const between = new Between(court, shown);
+const footPx = signal(52);
 /** After the end of a match its last picture does not count as old. */
 const isStale = computed(() => court.begun.value && !court.live.value && !isOver(court));
 const title = computed(() => {
@@ -85,7 +86,7 @@ export default function Watch() {
     ? {}
     : isNarrow.value
       ? { top: opening ? 64 : 92, bottom: 8 }
-      : { top: opening ? 78 : 108, bottom: opening ? 272 : 66, right: beside ? 314 : 0 };
+      : { top: opening ? 78 : 108, bottom: opening ? 272 : footPx.value + 20, right: beside ? 314 : 0 };
   return (
     <main class="show watch">
       <div class={`scene${isStale.value ? " stale" : ""}`}>
@@ -159,8 +160,13 @@ function Hud() {
   );
 }
 
-/** What stands above the foot needs to know how high it is: cheers make it two rows. */
-const tellFoot = (foot: HTMLElement | null) => tellHeight("--foot", foot);
+/** What stands above the foot, as the field does, needs to know how high it is: cheers make it two rows. */
+const tellFoot = (foot: HTMLElement | null) => {
+  tellHeight("--foot", foot);
+  keepHeight(foot, (px) => {
+    footPx.value = px;
+  });
+};
 
 /** Which court and match this is; with several courts, the way to another one. */
 function Brand() {

@@ -29,7 +29,7 @@ export function Footer({ court, player, onKeys, onFiles, onSettings }: Props) {
     <footer class="foot">
       <p class="who">
         {sheet && seat && sheet.seats.length > 1 && (
-          <b>
+          <b title={team(sheet, index)}>
             {team(sheet, index)} ({seatName(seat.id)})
           </b>
         )}

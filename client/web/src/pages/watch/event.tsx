@@ -55,10 +55,12 @@ function Coming({ sheet }: { sheet: ContestSheet }) {
   if (!games.length) {
     return (
       <>
-        <p class="next">
+        <div class="pictures">
           {winners.map((team) => (
             <TeamPicture key={team} sheet={sheet} team={team} />
-          ))}{" "}
+          ))}
+        </div>
+        <p class="next">
           {winners.length > 0
             ? `${winnersTitle(winners)}: ${listed(winners)}`
             : `${t(`contest.state.${stateOf(sheet)}`)} · ${t("contest.teamCount", { count: teamsOf(sheet).here })}`}
