@@ -86,7 +86,11 @@ export default function Watch() {
     ? {}
     : isNarrow.value
       ? { top: opening ? 64 : 92, bottom: 8 }
-      : { top: opening ? 78 : 108, bottom: opening ? 272 : footPx.value + 20, right: beside ? 314 : 0 };
+      : {
+          top: opening ? 78 : 108,
+          bottom: opening ? 272 : footPx.value + 20,
+          right: beside ? 314 : 0,
+        };
   return (
     <main class="show watch">
       <div class={`scene${isStale.value ? " stale" : ""}`}>
