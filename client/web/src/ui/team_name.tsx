@@ -2,6 +2,11 @@
 
 const JAPANESE = /[\p{sc=Hira}\p{sc=Kana}\p{sc=Han}]/u;
 
+/** The language by which a name breaks between words on a page of any language. */
+export function languageOf(name: string): "ja" | undefined {
+  return JAPANESE.test(name) ? "ja" : undefined;
+}
+
 interface Props {
   name: string;
 }
@@ -9,7 +14,7 @@ interface Props {
 /** It breaks between words; a word that is too long ends with "…", and the title has it all. */
 export function TeamName({ name }: Props) {
   return (
-    <span class="team-name" title={name} lang={JAPANESE.test(name) ? "ja" : undefined}>
+    <span class="team-name" title={name} lang={languageOf(name)}>
       {name}
     </span>
   );

@@ -1,7 +1,7 @@
 /** The contest on a projector: the match that is played; between matches tables, turned over by itself. */
 
 import { effect, type Signal, signal, useSignal } from "@preact/signals";
-import { type ComponentType, Fragment } from "preact";
+import type { ComponentType } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import type { NextGame } from "../../core/contest/games";
@@ -12,6 +12,7 @@ import { said, t } from "../../i18n";
 import { KeyHelp, type KeyRow } from "../../ui/key_help";
 import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
+import { languageOf } from "../../ui/team_name";
 import { TeamPicture } from "../../ui/team_picture";
 import { BracketView } from "./bracket";
 import { Standing } from "./head";
@@ -189,10 +190,10 @@ function Podium({ sheet }: { sheet: ContestSheet }) {
         {steps.map(({ rank, teams }) => (
           <li key={rank} data-rank={rank}>
             {teams.map((team) => (
-              <Fragment key={team}>
+              <p key={team} class="who">
                 <TeamPicture sheet={sheet} team={team} withLetter={withLetter} />
-                <b>{team}</b>
-              </Fragment>
+                <b lang={languageOf(team)}>{team}</b>
+              </p>
             ))}
             <span>{rank}</span>
           </li>
