@@ -4,8 +4,8 @@ import type { Signal } from "@preact/signals";
 import type { Sheet } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
 import type { CameraName } from "../../scene/View";
-import { Kbd } from "../../ui/kbd";
 import type { KeyRow } from "../../ui/key_help";
+import { hasKeyboard } from "../../ui/screen";
 
 const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
 const ALONE: readonly CameraName[] = ["auto", "arena", "top", "chase", "map"];
@@ -45,9 +45,7 @@ export function Cameras({ camera, sheet }: { camera: Signal<CameraName>; sheet: 
               camera.value = name;
             }}
           >
-            <span aria-hidden="true">
-              <Kbd>{index + 1}</Kbd>
-            </span>
+            {hasKeyboard.value && <kbd aria-hidden="true">{index + 1}</kbd>}
             {word}
           </button>
         );
