@@ -3,8 +3,11 @@
 import json
 import math
 
+from msgspec.structs import asdict
+
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
+from lacoc_server.studio.facts import leg_shape
 
 SAMPLES = ("hexapod", "long-legs", "quadruped", "octopod")
 """The sample robots, the workshop's first."""
@@ -24,16 +27,7 @@ def _sample(name: str) -> str:
     """Write a robot, with a line for each leg."""
     file, content = find_robot(name)
     robot = read_robot(content, file)
-    legs = (
-        {
-            "label": leg.label,
-            "position_mm": [round(1000 * one, 6) for one in leg.position_m],
-            "outward_deg": round(math.degrees(leg.outward_rad), 9),
-            "lengths_mm": [round(1000 * one, 6) for one in leg.lengths_m],
-            "range_deg": leg.range_deg,
-        }
-        for leg in robot.legs
-    )
+    legs = (asdict(leg_shape(leg)) for leg in robot.legs)
     lines = (
         f'    "name": {json.dumps(robot.name)}',
         f'    "size_mm": {json.dumps([round(1000 * side, 6) for side in robot.size_m])}',

@@ -77,12 +77,29 @@ class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     robot: SentFile | None = None
 
 
+class LegShape(msgspec.Struct, frozen=True, kw_only=True):
+    """A leg of a robot, so that a page can bend it (docs/robot-file.md)."""
+
+    label: str
+    """The leg's name in tables, such as "R,F"."""
+    position_mm: tuple[float, float, float]
+    """The root hinge in the body frame."""
+    outward_deg: float
+    """Direction of the leg at Root 0: 0 = right, 90 = forward, 180 = left."""
+    lengths_mm: tuple[float, float, float]
+    """L0, L1 and L2, from hinge to hinge; the last one to the foot."""
+    range_deg: tuple[float, float]
+    """Lowest and highest angle of each of the three joints."""
+
+
 class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
     """A robot: what a page needs to draw it, and to make the columns of its table."""
 
     name: str
     legs: tuple[str, ...]
     """Leg labels in leg order; each leg has three joints."""
+    shapes: tuple[LegShape, ...]
+    """The legs in leg order."""
     ranges_deg: tuple[tuple[float, float], ...]
     """Lowest and highest angle of each joint, by joint id."""
     start_deg: tuple[float, ...]

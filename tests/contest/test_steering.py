@@ -28,6 +28,7 @@ from lacoc_shared.messages.desk import (
     PauseContest,
     Publish,
     ResumeContest,
+    Rule,
     Said,
     Shift,
     Staff,
@@ -35,6 +36,7 @@ from lacoc_shared.messages.desk import (
     TokenList,
     Tokens,
     Undraw,
+    Unshift,
 )
 
 _KNOCKOUT = """
@@ -110,6 +112,41 @@ def test_the_day_is_paused_shifted_and_goes_on(room: Room) -> None:
     assert code_of(room.ask(Shift(secret=KEY, by_ms=900_000))) == "day.shifted"
     assert min(slot.at_ms for slot in room.view.slots) >= min(before)
     assert wrongs(room.facts) == []
+
+
+def test_a_shift_is_taken_back_once(room: Room) -> None:
+    """The page shows the newest shift while it matters; who asks twice takes one back."""
+    room.ask(Move(secret=KEY, pairing="finals:w1.1", not_before_ms=NOW_MS + 9_000_000))
+    for minutes in (1, 15):
+        assert code_of(room.ask(Shift(secret=KEY, by_ms=minutes * 60_000))) == "day.shifted"
+    shift = room.view.shift
+    assert shift is not None
+    assert shift.by_ms == 900_000
+    back = Unshift(secret=KEY, shift=shift.shift)
+    assert code_of(room.ask(back)) == "day.unshifted"
+    assert said(room.ask(back)) == "day.not-shifted"
+    assert room.view.shift is not None
+    assert room.view.shift.by_ms == 60_000
+    assert wrongs(room.facts) == []
+
+
+@pytest.mark.parametrize(
+    ("how", "code"), [("", "decide.draws"), ('draw = "organiser"', "decide.waits-for-draw")]
+)
+def test_a_decision_that_ends_a_stage_says_what_is_drawn_then(
+    tmp_path_factory: pytest.TempPathFactory, how: str, code: str
+) -> None:
+    """Before a no-show ends the last match, it is told who is in the next stage, and when."""
+    room = Room(tmp_path_factory.mktemp("cup"), _KNOCKOUT + how)
+    room.enter("Ants", "Bees")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    rule = Rule(secret=KEY, kind="no-show", pairing="cup:a1.1", team="Ants", reason="?")
+    seen = room.ask(rule)
+    assert isinstance(seen, Effect)
+    lines = {line.code: line.values for line in seen.lines}
+    assert [*lines][-2:] == ["decide.ends", code]
+    assert lines[code]["teams"] == ("Bees", "Ants")
 
 
 def test_a_line_is_told_to_all(room: Room) -> None:
@@ -278,6 +315,7 @@ def test_the_staff_decide_under_their_names(room: Room) -> None:
         PauseContest(),
         ResumeContest(),
         Shift(by_ms=60_000),
+        Unshift(shift="f1"),
         Announce(text="x"),
         Publish(),
         Staff(name="x"),
@@ -294,6 +332,8 @@ def test_only_the_staff_may(room: Room, asked: AnyRequest) -> None:
 def test_the_office_publishes(room: Room) -> None:
     """The published folder stands beside the contest file, and can be checked."""
     assert room.view.published == ""
-    assert code_of(room.ask(Publish(secret=KEY))) == "desk.published"
-    assert room.view.published == PUBLISHED
+    done = room.ask(Publish(secret=KEY))
+    assert code_of(done) == "desk.published"
+    assert cast("Said", done).said[0].values["folder"] == str(room.where.published)
+    assert (room.view.published, room.view.folder) == (PUBLISHED, str(room.where.published))
     assert [one.code for one in check_published(room.where.published, room.facts)] == []

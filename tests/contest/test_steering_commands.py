@@ -9,7 +9,7 @@ from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest, compute
-from lacoc_server.contest.league.facts import Announced, Drawn, Moved, Shifted
+from lacoc_server.contest.league.facts import Announced, Drawn, Moved, Unshifted
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.schedule import due
 
@@ -83,6 +83,8 @@ def test_a_day_by_commands(file: Path, lacoc: Run) -> None:
     does("resume", says="goes on")
     refuses("resume", says="not paused")
     does("shift", "15", "--reason", "a speech", says="later by 15 minutes")
+    does("shift", "1", says="later by 1 minute.")
+    does("unshift", says="The 1 minute")
     does("announce", "Lunch until one", says="stands on all pages")
     entering = ("enter", "Eels", "--reason", "a reserve", "--club", "North", "--by", "Aiko")
     does(*entering, says="Eels")
@@ -94,7 +96,11 @@ def test_a_day_by_commands(file: Path, lacoc: Run) -> None:
     assert {team.name: team.club for team in now.teams}["Eels"] == "North"
     with FactStore(ContestFolder(file).facts) as store:
         kinds = [type(fact) for fact in store.facts()]
-    assert kinds.count(Moved) == kinds.count(Shifted) == kinds.count(Announced) == 1
+    assert kinds.count(Moved) == kinds.count(Unshifted) == kinds.count(Announced) == 1
+    assert now.shifted is not None
+    assert now.shifted.by_ms == 15 * 60_000
+    does("unshift", says="The 15 minutes are taken back")
+    refuses("unshift", says="nothing to take back")
 
     does("staff", "Ben", says="/office#token=")
     does("staff", "Ben", "--remove", says="opens nothing")

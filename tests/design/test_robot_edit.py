@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.workshop.design.saving.robot_edit import RobotEntry, edit_robot
+from lacoc_client.workshop.design.saving.robot_edit import LegEntry, RobotEntry, edit_robot
 from lacoc_robots.library import find_robot
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot_file import read_robot
@@ -65,6 +65,38 @@ def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: R
     new = facts(read_robot(edit_robot(text, entry, value), "robot.toml"))[entry]
     assert new == pytest.approx((value, value) if isinstance(old, tuple) else value, abs=1e-6)
     assert entry == "start_height_m" or entry in bounds(Limits())
+
+
+@given(
+    st.sampled_from(SAMPLES),
+    st.sampled_from(get_args(LegEntry)),
+    st.integers(0, 3),
+    st.floats(-0.05, 0.05),
+    st.booleans(),
+)
+def test_one_leg_is_moved_and_the_others_stay(
+    text: str, entry: LegEntry, leg: int, value: float, is_on_body: bool
+) -> None:
+    """A number of a leg changes in that leg alone, also where it is a share of the body."""
+    if is_on_body:
+        text = re.sub(r"position_m = .*", "on_body = [0.5, 0.25, -0.4]  # shares", text)
+    edited = edit_robot(text, entry, value, leg)
+    assert NUMBER.sub("#", edited) == NUMBER.sub("#", text)
+    wanted = tomllib.loads(text)
+    if entry == "leg_outward_deg":
+        wanted["leg"][leg]["outward_deg"] = value
+    else:
+        at = ("leg_x_m", "leg_y_m", "leg_z_m").index(entry)
+        half_m = wanted["body"]["size_m"][at] / 2
+        name = "on_body" if is_on_body else "position_m"
+        wanted["leg"][leg][name][at] = pytest.approx(value / half_m if is_on_body else value)
+    assert tomllib.loads(edited) == wanted
+
+
+def test_a_leg_that_is_not_there_is_refused() -> None:
+    """A number of the ninth leg has no place in a robot with six."""
+    with pytest.raises(UserError):
+        edit_robot(SAMPLES[0], "leg_x_m", 0.01, 8)
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,15 @@ pytestmark = pytest.mark.slow
 
 
 def test_a_gateway_without_secrets_shows_all_courts_and_the_contest(venue: Venue) -> None:
-    """With a link, a second gateway serves the same courts and the newest sheet of the contest."""
+    """With a link, a second gateway serves the same courts, the newest sheet and its pictures."""
     sheet = venue.contest.with_suffix(".json")
     sheet.write_text('{"stages": []}')
+    pictures = {
+        hash: sheet.parent / "entries" / hash / "picture.webp" for hash in ("0a" * 16, "0b" * 16)
+    }
+    for hash, path in pictures.items():
+        path.parent.mkdir(parents=True)
+        path.write_bytes(b"RIFF" + hash.encode())
     venue.court()
     venue.web()
     second = venue.started("web", venue.url, "--json", name="second")
@@ -32,6 +38,25 @@ def test_a_gateway_without_secrets_shows_all_courts_and_the_contest(venue: Venue
         until(lambda: contest() == {"stages": []})
         sheet.write_text('{"stages": [1]}')
         until(lambda: contest() == {"stages": [1]})
+        teams = [{"files": hash, "picture": hash != "0b" * 16} for hash in (*pictures, "0c" * 16)]
+        sheet.write_text(json.dumps({"stages": [], "teams": teams}))
+        until(lambda: contest() == {"stages": [], "teams": teams})
+
+        def picture(hash: str) -> bytes | int:
+            try:
+                with urllib.request.urlopen(f"{url}/pictures/{hash}.webp") as answer:
+                    return bytes(answer.read())
+            except urllib.error.HTTPError as error:
+                return error.code
+
+        # It is there before the sheet that names it; who gave none has none.
+        assert picture("0a" * 16) == pictures["0a" * 16].read_bytes()
+        assert [picture("0b" * 16), picture("0c" * 16)] == [404, 404]
+        late = sheet.parent / "entries" / ("0c" * 16) / "picture.webp"
+        late.parent.mkdir()
+        late.write_bytes(b"RIFF")
+        sheet.write_text(json.dumps({"stages": [2], "teams": teams}))
+        until(lambda: picture("0c" * 16) == b"RIFF")
         with PageClient(url, token=TOKENS["left"]) as page:
             assert page.welcome["courts"] == ["main"]
             page.ask("join", seat="left", token=TOKENS["left"], name="Ants")

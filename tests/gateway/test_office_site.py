@@ -1,11 +1,11 @@
 """Tests of the connection of the pages /office and /enter that need no desk."""
 
+import json
 import threading
+import urllib.request
 
-import msgpack
 from starlette.applications import Starlette
 from waiting import LIMIT_S
-from websockets.sync.client import connect
 
 from lacoc_client.web.gateway import server
 from lacoc_client.web.office.site import DeskSite
@@ -21,11 +21,9 @@ def test_a_page_learns_the_address_of_the_network() -> None:
     )
     serving.start()
     try:
-        at = opened.url.replace("http", "ws")
-        with connect(f"{at}/office/ws", compression=None) as page:
-            page.send(msgpack.packb({"id": 1, "do": "address"}))
-            answer = page.recv(LIMIT_S)
+        with urllib.request.urlopen(f"{opened.url}/enter.json", timeout=LIMIT_S) as found:
+            answer = json.load(found)
     finally:
         ended.set()
         serving.join(LIMIT_S)
-    assert address.encode() in answer
+    assert answer == {"pages": address}

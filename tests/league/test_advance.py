@@ -1,10 +1,15 @@
 """Tests of why a team goes on into a stage."""
 
+from random import Random
+
+from chance_event import Event
 from cup import Cup
 
 from lacoc_server.contest.league.advance import reasons
-from lacoc_server.contest.league.facts import Planned, Played, Withdrawn
+from lacoc_server.contest.league.facts import Closed, Drawn, Entered, Planned, Played, Withdrawn
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
+from lacoc_server.contest.league.timetable.schedule import due
 from lacoc_shared.words import render
 
 
@@ -38,6 +43,7 @@ def test_a_place_the_points_and_the_rule_that_broke_the_tie() -> None:
         "place 2, 2 points; ahead of t003 by the difference of points",
     ]
     assert "得失点差" in told(cup, 2, "ja")[0]
+    assert told(cup, 3)[2] == "place 3, 2 points; behind t001 by the difference of points"
 
 
 def test_the_best_of_those_at_the_same_place_of_their_groups() -> None:
@@ -67,3 +73,42 @@ def test_a_team_that_moves_up_says_for_whom() -> None:
 def test_a_stage_that_follows_none_needs_no_reason() -> None:
     """The first stage has whoever entered; the sheet then has no reasons."""
     assert sheet("Cup", Cup().contest).reasons == {}
+
+
+def drawn(event: Event) -> list[str]:
+    """Draw what is due, and return the reasons of the newest stage, with the names of its teams."""
+    event.add(Closed)
+    draw = due(event.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    event.append(draw)
+    why = sheet("Cup", event.contest).reasons[draw.stage]
+    return [f"{team}: {render(one)}" for team, one in zip(draw.entries, why, strict=True)]
+
+
+def test_a_team_that_changed_its_place_in_the_draw_says_for_which_pairs() -> None:
+    """With `apart` the seconds of two groups change places: both say why, the others do not."""
+    cup = Cup(teams=4, groups=2)
+    play(cup, {("t001", "t004"): (9, 1), ("t002", "t003"): (3, 2)})
+    cup.add(Planned, stage="finals", format="single-knockout", after="cup", met_apart=True)
+    assert drawn(cup) == [
+        "t001: place 1 of group A, 2 points",
+        "t002: place 1 of group B, 2 points",
+        "t004: place 2 of group A, 0 points; seed 3 instead of 4, "
+        "so that t001 – t004 do not meet at once",
+        "t003: place 2 of group B, 0 points; seed 4 instead of 3, "
+        "so that t002 – t003 do not meet at once",
+    ]
+
+
+def test_a_first_stage_that_keeps_clubs_apart_says_its_order() -> None:
+    """Where clubs make another order than that of the entries, each team says its number."""
+    event = Event(0, 2, Random(1))
+    for team, club in (("a1", "a"), ("b1", "b"), ("b2", "b"), ("a2", "a")):
+        event.add(Entered, team=team, club=club, files=team)
+    event.add(Planned, stage="cup", format="single-knockout", apart=True)
+    assert drawn(event) == [
+        "a1: entered as number 1",
+        "b1: entered as number 2",
+        "a2: entered as number 4; seed 3 instead of 4, so that a1 – a2 do not meet at once",
+        "b2: entered as number 3; seed 4 instead of 3, so that b1 – b2 do not meet at once",
+    ]

@@ -24,6 +24,7 @@ from lacoc_server.contest.league.facts import (
     StageSettings,
     Substituted,
     Undrawn,
+    Unshifted,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import SeenCourt
@@ -202,6 +203,29 @@ def test_all_that_is_to_come_is_shifted() -> None:
     cup.now_ms += 15 * MINUTE_MS
     assert first not in dict(called(cup))
     assert second in dict(called(cup))
+
+
+def test_a_shift_is_taken_back_as_if_it_had_never_been() -> None:
+    """Set times are as before, a pause has its own end again, and an older shift stays."""
+    cup = Cup()
+    first, second = (match.pairing.id for match in cup.contest.stages[0].matches[:2])
+    cup.add(Moved, pairing=first, not_before_ms=cup.now_ms + 5 * MINUTE_MS)
+    cup.add(Paused, until_ms=cup.now_ms + 3 * MINUTE_MS)
+    before = cup.contest
+    one = cup.add(Shifted, by_ms=MINUTE_MS)
+    other = cup.add(Shifted, by_ms=15 * MINUTE_MS)
+    cup.add(Moved, pairing=second, not_before_ms=cup.now_ms + 9 * MINUTE_MS)
+    cup.add(Unshifted, shift=other.id)
+    now = cup.contest
+    assert now.shifted == one
+    assert [move.not_before_ms - cup.now_ms for move in now.moves] == [6 * MINUTE_MS, 9 * MINUTE_MS]
+    cup.add(Unshifted, shift=one.id)
+    now = cup.contest
+    assert (now.shifted, now.day, now.moves[0]) == (None, before.day, before.moves[0])
+    again = cup.add(Unshifted, shift=one.id)
+    assert [(one.fact, one.why.code) for one in cup.contest.unused] == [
+        (again.id, "league.no-shift")
+    ]
 
 
 def test_the_newest_line_is_shown() -> None:

@@ -28,6 +28,7 @@ from lacoc_server.contest.league.facts import (
     decode,
     encode,
 )
+from lacoc_server.contest.league.fixture import standing
 from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.formats.knockout import double_bracket, single_bracket
@@ -36,6 +37,7 @@ from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.pairing import Entrant, WinnerOf
 from lacoc_server.contest.league.timetable.schedule import assign
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render
 
 FIRST = "s:w1.1"
 SCORE = {"scores": (0, 1), "outcome": "right"}
@@ -101,6 +103,53 @@ def test_a_level_match_of_a_knockout(games: list[tuple[int, int]], winner: str, 
         seats = ("a", "b") if number % 2 else ("b", "a")
         facts.play(FIRST, number, *seats, *scores)
     assert (facts.match().winner, facts.match().how) == (winner, how)
+
+
+def test_a_corrected_game_keeps_its_record() -> None:
+    """What was played stays to be seen, with court and time, whatever a decision says of it."""
+    facts = Facts("single-knockout", "ab")
+    game = {"pairing": FIRST, "game": 1, "teams": ("a", "b")}
+    facts.add(Called, court="north", at_ms=7000, **game)
+    facts.add(Played, scores=(3, 1), outcome="left", record="x.mcap", **game)
+    facts.add(Replaced, **ABOUT, game=1, **SCORE)
+    (counted,) = facts.match().games
+    assert (counted.scores, counted.record) == ((0, 1), "x.mcap")
+    assert (counted.court, counted.began_ms) == ("north", 7000)
+    facts.add(Replay, **ABOUT, game=1)
+    facts.add(Replaced, **ABOUT, game=1, **SCORE)
+    (counted,) = facts.match().games
+    assert (counted.record, counted.court) == ("", ""), "it was to be played again"
+    facts.add(Replay, **ABOUT, game=1)
+    facts.add(Played, scores=(0, 0), outcome="void", record="y.mcap", **game)
+    facts.add(Replaced, **ABOUT, game=1, **SCORE)
+    assert facts.match().games[0].record == "y.mcap", "the referee had halted it for good"
+
+
+def test_teams_are_named_as_they_sat_in_the_first_game() -> None:
+    """From game to game teams change sides, and people read them in one order."""
+    facts = Facts("single-knockout", "abcd", games=3, third_place=True)
+    assert facts.match().seated == ("a", "d")
+    facts.play(FIRST, 1, "d", "a", 3, 1)
+    assert (facts.match().next_seats, facts.match().seated) == (("a", "d"), ("d", "a"))
+    assert render(standing(facts.match())) == "d 1 : 0 a"
+    facts.play(FIRST, 2, "a", "d", 3, 1)
+    assert facts.match().seated == ("d", "a")
+    waiting = facts.match("s:w2.1")
+    assert waiting.seated == waiting.teams
+
+
+def test_a_place_of_a_bracket_says_that_a_level_match_decided_it() -> None:
+    """Third place and final tell by which tie-break they were decided; other places tell none."""
+    facts = Facts("single-knockout", "abcd", third_place=True, extra_games=0)
+    facts.play(FIRST, 1, "a", "d", 1, 0).play("s:w1.2", 1, "b", "c", 1, 0)
+    facts.play("s:p1.1", 1, "c", "d", 2, 2).play("s:w2.1", 1, "b", "a", 1, 0)
+    (table,) = facts.contest.stage("s").tables
+    assert [(row.team, row.rank, row.decided_by) for row in table.rows] == [
+        ("b", 1, ""),
+        ("a", 2, ""),
+        ("c", 3, ""),
+        ("d", 4, "seed"),
+    ]
 
 
 def test_difference_decides_before_the_seed() -> None:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from chromium import OpenPage
+from msgspec.structs import replace
 from playwright.sync_api import expect
 from show import violations
 from stand import served
@@ -16,7 +17,7 @@ from venue import Venue
 from lacoc_robots.library import robot_folder
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.pool import Pool
-from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.contest import Day, compute
 from lacoc_server.contest.league.facts import (
     Called,
     Entered,
@@ -27,6 +28,8 @@ from lacoc_server.contest.league.facts import (
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import ContestSheet, encode, sheet
+from lacoc_server.contest.league.timetable.breaks import Break
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 
@@ -128,6 +131,27 @@ def test_decisions_stand_with_their_reasons(cup: Cup, open_page: OpenPage, tmp_p
         expect(told.last).to_contain_text(f"the result is {left} 3 : 9 {right}")
         told.last.get_by_role("link").click()
         expect(page.locator(f'[id="match-{league.pairing}"]')).to_be_in_viewport()
+
+
+def test_a_pause_ends_on_the_page_at_its_moment(
+    cup: Cup, open_page: OpenPage, tmp_path: Path
+) -> None:
+    """Nobody has to load the page again: the pause goes by itself, and a decided place says why."""
+    shutil.copytree(cup.folder, tmp_path, dirs_exist_ok=True)
+    until_ms = 1_800_000_000_000
+    made = replace(
+        cup.sheet,
+        day=Day(paused=False, until_ms=until_ms, reason="lunch"),
+        pause=Break(until_ms=until_ms, fixture=say("fixture.final", stage=None)),
+    )
+    (tmp_path / "contest.json").write_bytes(encode(made))
+    with served(tmp_path) as url:
+        page = open_page(viewport=LAPTOP)
+        page.clock.install(time=(until_ms - 5000) / 1000)
+        page.goto(f"{url}?big")
+        expect(page.locator(".banner")).to_contain_text("lunch")
+        page.clock.run_for(6000)
+        expect(page.locator(".banner")).to_have_count(0)
 
 
 def test_a_bracket_shows_all_its_texts(cup: Cup, open_page: OpenPage) -> None:

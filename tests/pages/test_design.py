@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import av
 import psutil
 import pytest
 from chromium import OpenPage
@@ -14,8 +15,10 @@ from contestant import Contestant
 from drop import drop
 from openpyxl import load_workbook
 from own_page import OwnPage
+from PIL import Image, ImageStat
 from playwright.sync_api import expect
 from show import violations
+from waiting import until
 
 from lacoc_robots.library import find_robot, sample_gait_files
 
@@ -339,6 +342,100 @@ def test_a_table_goes_to_practice(
     page.page.click("dialog >> text=Practise with it")
     expect(page.find("dialog a")).to_have_attribute("href", re.compile("/practice#key="))
     assert violations(page.page) == []
+
+
+def test_a_foot_is_moved_in_the_picture(open_page: OpenPage, address: tuple[str, str]) -> None:
+    """A foot follows arrow keys and a drag: three cells change in one step; too far is said."""
+    page = designer(open_page, address)
+    page.go(1, 3)
+    before = [page.cell(1, col) for col in range(18)]
+    foot = page.find(".feet .foot").first
+    foot.focus()
+    expect(page.find("#cell-1-12")).to_have_attribute("aria-selected", "true")
+
+    def place_mm() -> list[int]:
+        return [int(one) for one in re.findall(r"-?\d+", foot.get_attribute("aria-label") or "")]
+
+    was = place_mm()
+    for _ in range(4):
+        page.press("Shift+ArrowDown")
+    page.press("PageUp")
+    # Whole degrees bring it only near.
+    until(lambda: math.dist(place_mm(), (was[0], was[1] - 40, was[2] + 2)) < 4)
+    moved = [page.cell(1, col) for col in range(18)]
+    assert [col for col in range(18) if moved[col] != before[col]] == [0, 6, 12]
+    page.press("Control+z")  # one step
+    assert [page.cell(1, col) for col in range(18)] == before
+
+    box = foot.bounding_box()
+    page.page.wait_for_timeout(300)
+    while box != (now := foot.bounding_box()):  # the camera comes to rest
+        box = now
+        page.page.wait_for_timeout(300)
+    assert box
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    mouse = page.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x - 24, y + 6, steps=4)
+
+    def off_px() -> float:
+        place = foot.bounding_box() or box
+        return math.hypot(place["x"] - box["x"] + 24, place["y"] - box["y"] - 6)
+
+    until(lambda: off_px() < 6)  # whole degrees are not as fine as the pointer
+    assert place_mm() != was
+    mouse.move(x + 900, y - 300, steps=4)
+    page.sees(".feet .why", "Too far, by")
+    mouse.up()
+    assert [page.cell(1, col) for col in (1, 7, 13)] == [before[col] for col in (1, 7, 13)]
+    page.press("Control+z")
+    assert [page.cell(1, col) for col in range(18)] == before
+    expect(page.find(".feet polyline.way")).to_have_count(6)
+    page.page.click(".ways")
+    expect(page.find(".feet polyline")).to_have_count(0)
+    assert violations(page.page) == []
+
+
+@pytest.mark.long
+def test_a_gait_is_shared(
+    open_page: OpenPage, address: tuple[str, str], tmp_path: Path, built_pages: Path
+) -> None:
+    """A link brings table and robot to another computer's page; a trial is a picture and a film."""
+    page = designer(open_page, address)
+    page.go(1, 0)
+    page.type("12.5")
+    page.tries()
+    page.page.click("text=Share")
+    link = page.find(".design-share input")
+    expect(link).to_have_value(re.compile(r"/design#gait=[\w-]{100,}$"))
+    assert violations(page.page) == []
+    with page.page.expect_download() as picture:
+        page.page.click("text=Save a picture")
+    with Image.open(picture.value.path()) as found:
+        assert ImageStat.Stat(found.convert("L")).stddev[0] > 5, "there is a robot in it"
+    with page.page.expect_download() as film:
+        page.page.click("text=Save a film")
+    with av.open(str(film.value.path())) as found:
+        shown = [frame.to_ndarray(format="gray") for frame in found.decode(video=0)]
+    assert len({each.tobytes() for each in shown}) > 10
+    assert shown[0].std() > 5, "there is a robot in it"
+
+    (tmp_path / "robot.toml").write_bytes(find_robot("quadruped")[1])
+    with OwnPage(tmp_path, "design") as own:
+        friend = Designer(open_page, own.url)
+        friend.begin(own.key)
+        friend.paste(f"Look: {link.input_value()}")
+        friend.sees(".banner", "A friend shares a gait: Loco-data.txt")
+        friend.page.click("text=Take it")
+        friend.cell_is(1, 0, "12.5")
+        expect(friend.find(".trials > li")).to_have_count(1)
+        assert friend.figure("speed_mm_s") == page.figure("speed_mm_s")
+        friend.press("Control+z")
+        expect(friend.find("#cell-1-12")).to_have_count(0)  # four legs again, in one step
+        friend.paste(f"{link.input_value()[:-20]}")
+        friend.is_toasted("has no whole gait")
+        friend.page.close()
 
 
 @pytest.mark.long

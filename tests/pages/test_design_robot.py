@@ -91,6 +91,18 @@ def test_a_number_of_the_robot_is_changed_and_saved(
     page.press("Control+Enter")
     page.sees(".tiles [data-figure=speed_mm_s]")
 
+    # A leg is moved, and the one of the other side with it; undo brings both back.
+    right, left = (page.page.get_by_label(f"{leg}, forward (mm)") for leg in ("R,F", "L,F"))
+    right.fill("52")
+    page.press("Enter")
+    expect(left).to_have_value("52")
+    right.fill("-60")
+    page.press("Enter")
+    page.sees(".leg-places .wrong", "clockwise")
+    page.press("Escape")
+    page.press("Control+z")
+    expect(left).to_have_value("45")
+
     # Undo and redo, a step of the arrow keys, and a file that keeps its comments.
     page.press("Control+z")
     field_is(page, "second_link_m", "70")

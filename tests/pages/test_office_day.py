@@ -122,7 +122,7 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
     expect(office.locator(".day [role=status]")).to_contain_text("A pause until")
     expect(contest.locator(".coming .expected").first).to_contain_text("not before")
     assert violations(office) == []
-    press(office, "Go on")
+    press(office, "Take the 15 minutes back")
     expect(office.locator(".day [role=status]")).to_have_count(0)  # the buttons move then
 
     press(office, "Staff")
@@ -141,6 +141,7 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
 
     press(helper, "Publish")
     published = helper.get_by_role("link", name="The published contest")
+    expect(helper.locator(".folder")).to_contain_text(str(event.facts.parent / "contest-published"))
     published.click()
     expect(helper.locator("h1")).to_be_visible()
     assert "/published/" in helper.url

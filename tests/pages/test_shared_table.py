@@ -113,6 +113,69 @@ def joins_group(page: Pupil, name: str) -> None:
     page.sees(".group h3", name)
 
 
+EDITS = 1000
+TYPES = """([edits, seed]) => {
+  const { sheet } = window.__studio;
+  let state = seed;
+  const draw = (below) => {
+    state = (state * 16807) % 2147483647;
+    return state % below;
+  };
+  window.__edits = new Promise((done) => {
+    let made = 0;
+    const some = () => {
+      for (let each = 0; each < 5 && made < edits; each++, made++) {
+        const [row, col] = [draw(sheet.table.value.rows.length), draw(18)];
+        const angle = draw(120) - 60;
+        const change = (table) => ({
+          ...table,
+          rows: table.rows.map((one, at) =>
+            at === row ? { ...one, cells: one.cells.with(col, angle) } : one),
+        });
+        if (draw(10)) sheet.edit("typing", change);
+        else sheet.undo();
+      }
+      made < edits ? setTimeout(some, 30) : done();
+    };
+    some();
+  });
+}"""
+"""Types at random, five times in 30 ms; one time in ten it takes back its own last number."""
+
+
+@pytest.mark.long
+def test_four_browsers_of_one_group_converge(
+    room: ClassRoom, open_page: OpenPage, console: Any
+) -> None:
+    """Four pages make 1,000 random edits each, with outages: in the end all have one table."""
+    console.expect_a_break()
+    pages = [Pupil(open_page, room.url) for _ in range(4)]
+    for name, page in zip(("Ann", "Ben", "Cleo", "Dora"), pages, strict=True):
+        page.joins(room, name)
+        joins_group(page, "Ants")
+    gateway = psutil.Process(room.process.pid)
+    for seed, page in enumerate(pages, 1):
+        page.page.evaluate(TYPES, [EDITS, seed])
+    for _ in range(3):
+        pages[0].page.wait_for_timeout(1000)
+        gateway.suspend()
+        pages[0].page.wait_for_timeout(500)
+        gateway.resume()
+        for page in pages[:2]:
+            page.page.context.set_offline(True)
+            page.page.wait_for_timeout(300)
+            page.page.context.set_offline(False)
+    for page in pages:
+        page.page.evaluate("window.__edits")
+    digest = "window.__studio.sheet.digest.value"
+    until(lambda: len({page.page.evaluate(digest) for page in pages}) == 1)
+    for page in pages:
+        expect(page.find(".bar .name small")).to_have_text("everything is kept")
+    (last,) = {page.page.evaluate(digest) for page in pages}
+    pages[3].page.reload()
+    pages[3].until(f"window.__studio?.sheet.digest.value === '{last}'")
+
+
 def test_four_students_make_one_gait(room: ClassRoom, open_page: OpenPage, console: Any) -> None:
     """Four students share a table with roles and a word; an outage loses nothing.
 

@@ -1,5 +1,6 @@
 """Tests of a studio in a process of its own, over a real network connection."""
 
+import math
 import os
 import signal
 import subprocess
@@ -16,6 +17,7 @@ from sample_walks import entry_of
 from waiting import LIMIT_S, until
 
 from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.robot_file import read_robot
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.answers import answer, read_files, try_gait
 from lacoc_server.studio.coach.coach import coach, reply_of, task_of
@@ -167,6 +169,12 @@ def test_a_robot_is_described(asker: Asker, name: str) -> None:
     assert robot.facts["joints"] == 3 * legs == len(robot.ranges_deg) == len(robot.start_deg)
     assert sorted(one.joint for one in robot.scene.bodies if one.joint >= 0) == [*range(3 * legs)]
     assert robot.sheet.seats[0].legs == robot.legs
+    spec = read_robot(file.data, name)
+    assert [shape.label for shape in robot.shapes] == [*robot.legs]
+    for shape, leg in zip(robot.shapes, spec.legs, strict=True):
+        assert shape.position_mm == pytest.approx([1000 * one for one in leg.position_m])
+        assert shape.lengths_mm == pytest.approx([1000 * one for one in leg.lengths_m])
+        assert math.radians(shape.outward_deg) == pytest.approx(leg.outward_rad)
     assert robot.limits.keys() <= robot.facts.keys()
     for fact, (low, high) in robot.limits.items():
         numbers = robot.facts[fact]

@@ -14,7 +14,7 @@ from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.doors.inbox import FILE_NAME_MAX
-from lacoc_server.studio.facts import bounds, facts
+from lacoc_server.studio.facts import bounds, facts, leg_shape
 from lacoc_server.trial.course import LONGEST_TICKS, SETTLE_TICKS, Course
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.keys import forward_key, parse_keys
@@ -257,6 +257,7 @@ def _robot(request: RobotRequest, course_of: CourseOf) -> RobotReply:
     return RobotReply(
         name=robot.name,
         legs=robot.labels,
+        shapes=tuple(map(leg_shape, robot.legs)),
         ranges_deg=robot.ranges_deg,
         start_deg=tuple(round(math.degrees(angle), 9) for angle in robot.start_posture),
         start_z_m=robot.start_z_m,

@@ -4,9 +4,11 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from lacoc_robots.leg import LegSpec
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import ANG_MIN_LEAST_DEG_S, BODY_MIN_M, KP_LEAST, TORQUE_LEAST_N_M
+from lacoc_shared.studio import LegShape
 
 Bounds = tuple[float | None, float | None]
 """Lowest and highest value that the rules allow; None: no limit on this side."""
@@ -55,6 +57,19 @@ def facts(robot: RobotSpec) -> dict[str, Any]:
         "armature": robot.armature,
         "friction": robot.friction,
     }
+
+
+def leg_shape(leg: LegSpec) -> LegShape:
+    """Return a leg in millimetres and degrees, as a page bends it."""
+    x, y, z = (round(1000 * one, 6) for one in leg.position_m)
+    l0, l1, l2 = (round(1000 * one, 6) for one in leg.lengths_m)
+    return LegShape(
+        label=leg.label,
+        position_mm=(x, y, z),
+        outward_deg=round(math.degrees(leg.outward_rad), 9),
+        lengths_mm=(l0, l1, l2),
+        range_deg=leg.range_deg,
+    )
 
 
 def bounds(limits: Limits) -> dict[str, Bounds]:

@@ -85,6 +85,11 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
         return "" if self.name == _NO_NAME else self.name
 
     @property
+    def closes_ms(self) -> int:
+        """When entries close, in milliseconds since 1970, UTC; 0: after the first draw."""
+        return round(1000 * self.entries_close.timestamp()) if self.entries_close else 0
+
+    @property
     def asked(self) -> str:
         """The court that teams ask where they play: the first one on the office's machine."""
         here = (name for name, court in self.courts.items() if not court.elsewhere)

@@ -189,6 +189,13 @@ class Shift(DeskRequest, frozen=True, kw_only=True, tag="shift"):
     reason: _Text = ""
 
 
+class Unshift(DeskRequest, frozen=True, kw_only=True, tag="unshift"):
+    """Take the newest shift back."""
+
+    shift: _Name
+    """Its id, as the page shows it: whoever asks twice takes one shift back."""
+
+
 class Announce(DeskRequest, frozen=True, kw_only=True, tag="announce"):
     """Show a line on all pages; "" takes it away."""
 
@@ -271,6 +278,7 @@ OfStaff = (
     | PauseContest
     | ResumeContest
     | Shift
+    | Unshift
     | Announce
     | Staff
     | Tokens
@@ -413,6 +421,14 @@ class DayState(msgspec.Struct, frozen=True, kw_only=True):
     reason: str
 
 
+class ShiftState(msgspec.Struct, frozen=True, kw_only=True):
+    """A shift that can be taken back."""
+
+    shift: str
+    """Its id."""
+    by_ms: int
+
+
 class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     """What the organiser's page shows in addition to the sheet of the contest."""
 
@@ -430,12 +446,16 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     slots: tuple[Slot, ...]
     """By court, and by time."""
     day: DayState
+    shift: ShiftState | None
+    """The newest shift, while it still changes something; None: there is none."""
     announced: str
     """The line to all; "": there is none."""
     undrawable: Undrawable | None
     """The newest stage, if nobody has played in it; None: its draw stays."""
     published: str
     """Path of the published contest below the address of the pages; "": it is not published."""
+    folder: str
+    """Where that is on the disk of the office's machine; "": it is not published."""
     staff: tuple[str, ...]
     """Who has a link with a name."""
     me: str

@@ -67,7 +67,7 @@ test("a final that waits for another match is among the next games once its team
   const place = { pairing: "cup:w2.1", stage: "cup", court: "east", at_ms: 60_000 };
   const known = { ...place, fixture: { code: "x" }, who: [team("Eels"), team("Ants")] };
   const unknown = { ...known, who: [team("Eels"), { code: "who.winner", values: {} }] };
-  const sheet = { running: [], coming: [], later: [known] };
+  const sheet = { stages: [], running: [], coming: [], later: [known] };
   const [next] = g.nextGames(sheet, 4);
   assert.deepEqual([next.teams, next.court, next.at_ms], [["Eels", "Ants"], "east", 60_000]);
   assert.deepEqual(g.nextGames({ ...sheet, later: [unknown] }, 4), []);
@@ -133,7 +133,7 @@ test("a drawn game is half a game for each, so two of them are a tie", () => {
 test("the next game of a team is the one after the call that was played", () => {
   const one = { pairing: "cup:w1.1", game: 1, teams: ["Ants", "Bees"], court: "east" };
   const two = { pairing: "cup:w2.1", game: 1, teams: ["Cats", "Ants"], court: "west", at_ms: 5 };
-  const sheet = { running: [{ ...one, id: "c1" }], coming: [two], later: [] };
+  const sheet = { stages: [], running: [{ ...one, id: "c1" }], coming: [two], later: [] };
   assert.equal(g.nextGameOf(sheet, "Ants", "c1").at_ms, 5);
   assert.equal(g.nextGameOf(sheet, "Bees", "c1"), null);
   assert.equal(g.nextGameOf(sheet, "Bees", "c0").court, "east");
@@ -217,7 +217,17 @@ test("slides show every row of a table once, and brackets in parts that can be r
     }
   }
   assert.equal(slides(finals)[0].is, "podium");
-  const courts = Array.from({ length: 6 }, (_, number) => ({ court: `court-${number + 6}` }));
+  const before = { ...groups, stages: [], running: [], coming: [], ratings: [] };
+  const many = Array.from({ length: 16 }, (_, at) => ({ name: `team ${at}`, withdrawn: at === 3 }));
+  assert.deepEqual(
+    slides({ ...before, teams: many }).map(({ is, teams }) => [is, teams.length]),
+    [["entered", 15]],
+  );
+  assert.deepEqual(slides({ ...before, teams: [] }), [{ is: "entered", teams: [] }]);
+  assert.equal(slides({ ...before, teams: [...many, ...many] }).length, 2);
+  const courts = Array.from({ length: 6 }, (_, number) => ({
+    ...{ court: `court-${number + 6}`, pairing: `x:a1.${number}`, teams: ["A", "B"] },
+  }));
   const now = slides({ ...groups, running: courts.toReversed() }).filter(({ is }) => is === "now");
   const games = now.map((slide) => slide.games.map(({ court }) => court));
   assert.deepEqual(
@@ -260,6 +270,42 @@ test("a projector shows the match that is played, and tables between matches", (
   assert.equal(at(60_000, "a", FINISHED), true);
   assert.equal(at(66_000, "b", PLAYING), false, "tables after a match, while others play");
   assert.equal(at(110_000, "b", PLAYING), true);
+});
+
+test("a projector that comes after the end shows no match of before", () => {
+  const turns = new Turns();
+  const at = (ms, phase, isOver) => turns.isPicture(ms, { court: "a", phase }, isOver);
+  assert.equal(at(0, Phase.PLAYING, true), false, "the director shows it later than it was");
+  assert.equal(at(1000, Phase.OFFICIAL, true), false);
+  assert.equal(at(2000, Phase.PLAYING, false), true, "a game is played again");
+  assert.equal(at(3000, Phase.OFFICIAL, true), true, "its result, which the page came in time for");
+});
+
+test("all pages name the teams of a match in one order, from game to game", () => {
+  const pairing = { id: "cup:w1.1" };
+  const open = { pairing, teams: ["Ants", "Bees"], games: [], next_seats: ["Bees", "Ants"] };
+  assert.deepEqual(c.seating(open), [1, 0]);
+  const game = { number: 1, teams: ["Bees", "Ants"], scores: [3, 1], outcome: "left" };
+  const later = { ...open, games: [game], next_seats: ["Ants", "Bees"] };
+  assert.deepEqual(c.seating(later), [1, 0]);
+  assert.deepEqual(c.seating({ ...later, games: [game, { ...game, number: 2 }] }), [1, 0]);
+  assert.deepEqual(c.seating({ ...open, next_seats: null }), [0, 1]);
+  const sheet = { stages: [{ matches: [later] }], coming: [], later: [] };
+  const call = { id: "c1", pairing: "cup:w1.1", game: 2, teams: ["Ants", "Bees"], court: "east" };
+  const [next] = g.nextGames({ ...sheet, running: [call] }, 1);
+  assert.deepEqual([next.teams, next.swapped], [["Bees", "Ants"], true]);
+  assert.deepEqual(c.named(sheet, "cup:w1.1", ["Bees", "Ants"]).swapped, false);
+  assert.deepEqual(c.named(sheet, "cup:w9.9", ["Bees", "Ants"]).teams, ["Bees", "Ants"]);
+});
+
+test("a place that a level match decided says by what", () => {
+  const rows = [
+    { team: "Ants", decided_by: "" },
+    { team: "Bees", decided_by: "" },
+    { team: "Cats", decided_by: "" },
+    { team: "Dogs", decided_by: "seed" },
+  ];
+  assert.deepEqual(c.levelPlaces({ rows }), [{ above: "Cats", below: "Dogs", tie: "seed" }]);
 });
 
 test("a name that is too long for its box is cut by its width", () => {

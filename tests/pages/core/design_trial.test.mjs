@@ -12,6 +12,7 @@ import { paceOf, verdict, wayOf } from "../../../client/web/src/core/design/pred
 import { lowestM, Rest, source, trialSource } from "../../../client/web/src/core/design/sources.ts";
 import * as t from "../../../client/web/src/core/design/trial.ts";
 import { ForwardKinematics } from "../../../client/web/src/core/fk.ts";
+import { hull } from "../../../client/web/src/core/hull.ts";
 import { chanceOf } from "./design_sample.mjs";
 
 const SCRIPT = fileURLToPath(new URL("design_replies.py", import.meta.url));
@@ -150,7 +151,7 @@ test("a convex hull has the right corners", () => {
     ],
     [[[0.5, 0.5], ...square, [1, 0.5]], square],
   ];
-  for (const [points, corners] of cases) assert.deepEqual(t.hull(points), corners);
+  for (const [points, corners] of cases) assert.deepEqual(hull(points), corners);
 });
 
 each("a robot at rest is level and touches the floor", ({ robot, trial }) => {

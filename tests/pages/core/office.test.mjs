@@ -7,11 +7,13 @@ import { places } from "../../../client/web/src/core/contest/places.ts";
 import { meetAgain } from "../../../client/web/src/core/draw.ts";
 import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
 import {
+  canDecide,
   clockOf,
   columns,
   dropped,
   momentOf,
   teamsOfNext,
+  wholeDay,
 } from "../../../client/web/src/core/timetable.ts";
 
 const slot = (pairing, court, at_ms, more = {}) => ({
@@ -57,6 +59,40 @@ test("what changes nothing, and what has begun, is not moved", () => {
   assert.equal(dropped(second, "north", null), null);
   assert.equal(dropped(second, "north", second), null);
   assert.equal(dropped({ ...first, begun: true }, "south", null), null);
+});
+
+test("a match can be decided once both its teams are known", () => {
+  assert.equal(canDecide(first), true);
+  assert.equal(canDecide({ teams: ["", ""] }), false);
+});
+
+test("the day of a court has what it played, also at its end, and what it will play", () => {
+  const game = (number, court, began_ms) => ({
+    ...{ number, teams: ["A", "B"], scores: [number, 0], outcome: "left", court, began_ms },
+  });
+  const matches = [
+    { pairing: { id: "s:a2.1" }, games: [game(1, "north", 9), game(2, "north", 7)] },
+    { pairing: { id: "s:a2.2" }, games: [{ ...game(1), court: undefined, began_ms: undefined }] },
+    { pairing: { id: "s:a2.3" } },
+  ];
+  const courts = [{ court: "north", here: true }];
+  const sheet = { stages: [{ matches }] };
+  const told = wholeDay({ courts, slots: [second] }, sheet).map(({ court, played, slots }) => [
+    court,
+    played.map(({ pairing, game, at_ms, scores }) => [pairing, game, at_ms, scores[0]]),
+    slots.length,
+  ]);
+  assert.deepEqual(told, [
+    [
+      "north",
+      [
+        ["s:a2.1", 2, 7, 2],
+        ["s:a2.1", 1, 9, 1],
+      ],
+      1,
+    ],
+    ["", [["s:a2.2", 1, 0, 1]], 0],
+  ]);
 });
 
 test("a time of day is today's, or tomorrow's if today's was over half a day ago", () => {

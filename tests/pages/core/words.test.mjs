@@ -9,6 +9,7 @@ import { said, setWords, t } from "../../../client/web/src/i18n/index.ts";
 import {
   clock,
   clockTicks,
+  endOf,
   eventClock,
   hint,
   markerName,
@@ -29,6 +30,12 @@ test("an event has the time that the clock showed, which counts down", () => {
   assert.equal(eventClock({ clock_ticks: 3120 }, sheet), "1:57.6");
   assert.equal(clock(clockTicks({ clock_ticks: 3120 }, sheet)), "1:58");
   assert.equal(eventClock({ clock_ticks: 9000 }, sheet), "0:00.0");
+});
+
+test("a pause is told to end when it is over, not in the minute before", () => {
+  const at = (minutes, seconds) => new Date(2027, 2, 20, 21, minutes, seconds).getTime();
+  assert.equal(endOf(at(25, 0)), "21:25");
+  assert.equal(endOf(at(24, 10)), "21:25");
 });
 
 test("events have different times also where the referee gave more time than was played", () => {

@@ -4,20 +4,40 @@ import ssl
 import threading
 import urllib.error
 import urllib.request
+from http.client import HTTPResponse
 from pathlib import Path
-from typing import Self
+from typing import Self, cast
+
+import msgspec
 
 from lacoc_shared.command.replacing import write
+from lacoc_shared.contest.file import picture_path
 
 _EVERY_S = 2.0
 _WAIT_S = 10.0
 _MOST_BYTES = 16 << 20
+_PICTURE_BYTES = 256 << 10
+"""Longest picture of a team that is copied; they are some ten kilobytes long."""
+_GONE = 404
+
+
+class _TeamOfSheet(msgspec.Struct, frozen=True):
+    files: str = ""
+    picture: bool = False
+
+
+class _TeamsOfSheet(msgspec.Struct, frozen=True):
+    """The part of a sheet that names pictures."""
+
+    teams: tuple[_TeamOfSheet, ...] = ()
 
 
 class SheetMirror:
     """Copies the newest sheet of a contest from its pages into a file; a context manager.
 
-    While the pages do not answer, the file stays as it was.
+    The pictures of teams that the sheet names are copied first, to where `picture_path` has them:
+    each once, because a picture never changes under its hash. While the pages do not answer, all
+    stays as it was.
 
     Args:
         pages: address of the pages.
@@ -26,10 +46,12 @@ class SheetMirror:
     """
 
     def __init__(self, pages: str, authority: str, path: Path) -> None:
-        self._address = f"{pages}/contest.json"
+        self._pages = pages
         self._context = ssl.create_default_context(cadata=authority) if authority else None
         self._path = path
         self._tag = ""
+        self._missing: dict[str, Path] = {}
+        """Where pictures of teams go that are not here yet, by the hash of the team's files."""
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mirror", daemon=True)
 
@@ -42,16 +64,49 @@ class SheetMirror:
 
     def _run(self) -> None:
         while True:
-            self._copy()
+            self._copy_sheet()
+            self._copy_pictures()
             if self._ended.wait(_EVERY_S):
                 return
 
-    def _copy(self) -> None:
-        asked = urllib.request.Request(self._address, headers={"If-None-Match": self._tag})
+    def _copy_sheet(self) -> None:
         try:
-            with urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context) as answer:
+            with self._get("contest.json", self._tag) as answer:
                 data = answer.read(_MOST_BYTES)
-                self._tag = answer.headers.get("ETag", "")
+                tag = answer.headers.get("ETag", "")
+            self._missing = self._pictures_of(data)
+            self._copy_pictures()
             write(self._path, data)
+            self._tag = tag
         except (OSError, ValueError):  # also 304: what is here is the newest
             return
+
+    def _copy_pictures(self) -> None:
+        """Copy the pictures that are missing; those that can't be got now stay so."""
+        for files, path in [*self._missing.items()]:
+            try:
+                with self._get(f"pictures/{files}.webp") as answer:
+                    data = answer.read(_PICTURE_BYTES + 1)
+                if len(data) <= _PICTURE_BYTES:
+                    path.parent.mkdir(parents=True, exist_ok=True)
+                    write(path, data)
+            except urllib.error.HTTPError as error:
+                if error.code != _GONE:
+                    return
+            except (OSError, ValueError):
+                return
+            del self._missing[files]
+
+    def _pictures_of(self, sheet: bytes) -> dict[str, Path]:
+        try:
+            teams = msgspec.json.decode(sheet, type=_TeamsOfSheet).teams
+        except msgspec.MsgspecError:  # no sheet of this version
+            return {}
+        paths = {team.files: picture_path(self._path, team.files) for team in teams if team.picture}
+        return {files: path for files, path in paths.items() if path and not path.exists()}
+
+    def _get(self, name: str, tag: str = "") -> HTTPResponse:
+        """Open an answer of the pages; with a tag only if they have something newer."""
+        asked = urllib.request.Request(f"{self._pages}/{name}", headers={"If-None-Match": tag})
+        found = urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context)
+        return cast("HTTPResponse", found)

@@ -51,11 +51,7 @@ class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
     """The team whose link is wanted; "": all teams and referees."""
 
 
-class AddressAsk(Ask, frozen=True, kw_only=True, tag="address"):
-    """Ask for the address of the pages, as other machines can open it."""
-
-
-Asked = DeskAsk | LinkAsk | LinksAsk | AddressAsk | Ping
+Asked = DeskAsk | LinkAsk | LinksAsk | Ping
 """Every request of these pages."""
 
 _asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
@@ -117,8 +113,6 @@ class DeskPage:
                 self._answers.later(asked.id, self._passed_on(bytes(asked.request)))
             case LinkAsk():
                 self._answers.later(asked.id, self._link(asked.token))
-            case AddressAsk():
-                self._answers.reply(asked.id, {"address": self._make.address})
             case LinksAsk():
                 self._answers.later(asked.id, self._links(asked.secret, asked.team))
         return True

@@ -2,9 +2,12 @@
 
 from collections.abc import Sequence
 
-from starlette.routing import BaseRoute, WebSocketRoute
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
+from lacoc_client.web.gateway.cached import json_response
 from lacoc_client.web.gateway.guesses import Guesses
 from lacoc_client.web.office.desk import DeskLine
 from lacoc_client.web.office.desk_page import DeskPage
@@ -35,12 +38,15 @@ class DeskSite:
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """The route of the pages' requests."""
+        """The routes of the pages' requests, and of the address at which teams enter."""
 
         async def page(websocket: WebSocket) -> None:
             await DeskPage(websocket, self._line, self._guesses, self._hand_ins, self._make).serve()
 
-        return [WebSocketRoute("/office/ws", page)]
+        def enter(request: Request) -> Response:
+            return json_response(request, {"pages": self._make.address})
+
+        return [WebSocketRoute("/office/ws", page), Route("/enter.json", enter)]
 
     async def close(self) -> None:
         """Close the connection to the desk."""

@@ -294,7 +294,7 @@ def robot_with(asked: requests.SetRobotAsk) -> FileContent:
     file = asked.robot or SentFile(*find_robot(WORKSHOPS_ROBOT))
     text = read_file(f"{PurePath(file.name).stem}.toml", file.data).robot
     assert text is not None  # a .toml is a robot file
-    return FileContent(robot=edit_robot(text, asked.entry, asked.value))
+    return FileContent(robot=edit_robot(text, asked.entry, asked.value, asked.leg))
 
 
 def parsed(asked: requests.ParseAsk) -> Any:

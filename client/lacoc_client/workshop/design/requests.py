@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import msgspec
 
 from lacoc_client.web.gateway.wire import Ask, Ping, Unreadable, do_of, too_long
-from lacoc_client.workshop.design.saving.robot_edit import RobotEntry
+from lacoc_client.workshop.design.saving.robot_edit import AnyEntry
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import LESSON_STEPS, By
 from lacoc_client.workshop.phases.facts import FootWay, Pace, Way
@@ -95,7 +95,9 @@ class SetRobotAsk(Ask, frozen=True, kw_only=True, tag="set_robot"):
 
     robot: SentFile | None = None
     """None: the workshop's robot is the start."""
-    entry: RobotEntry
+    entry: AnyEntry
+    leg: Annotated[int, msgspec.Meta(ge=0, le=99)] = 0
+    """Which leg, for a number of one leg."""
     value: float
 
 

@@ -163,6 +163,12 @@ export interface Shift {
   reason?: string;
 }
 
+export interface Unshift {
+  do: "unshift";
+  secret?: string;
+  shift: string;
+}
+
 export interface Announce {
   do: "announce";
   secret?: string;
@@ -252,6 +258,11 @@ export interface Undrawable {
   title: Phrase;
 }
 
+export interface ShiftState {
+  shift: string;
+  by_ms: number;
+}
+
 export interface DayState {
   paused: boolean;
   until_ms: number;
@@ -268,9 +279,11 @@ export interface OfficeView {
   courts: CourtRow[];
   slots: Slot[];
   day: DayState;
+  shift: ShiftState | null;
   announced: string;
   undrawable: Undrawable | null;
   published: string;
+  folder: string;
   staff: string[];
   me: string;
 }
@@ -340,4 +353,4 @@ export interface CourtScore {
   scores: number[];
 }
 
-export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | SeePicture | Rule | Move | PauseContest | ResumeContest | Shift | Announce | Staff | Tokens;
+export type AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | Overview | Approve | Decline | NewCode | CloseEntries | Draw | Undraw | Substitute | TakeOut | SeePicture | Rule | Move | PauseContest | ResumeContest | Shift | Unshift | Announce | Staff | Tokens;

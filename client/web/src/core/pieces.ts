@@ -28,8 +28,8 @@ export interface Shows {
 
 type Packed = [start: Uint8Array[], then: [ms: number, message: Uint8Array][]];
 
-/** A piece is asked for so long before it is shown: it was whole at least this long before. */
-const AHEAD_MS = 700;
+/** A piece is asked for so long before it is shown: it was whole a full second before. */
+const AHEAD_MS = 950;
 /** Not all pages of a crowd at the same moment. */
 const SPREAD_MS = 200;
 const AGAIN_MS = 500;

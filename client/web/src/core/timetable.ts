@@ -1,5 +1,6 @@
 /** The organiser's timetable: the matches of each court, and what a drop asks for. Pure. */
 
+import type { ContestSheet } from "./contest/sheet";
 import type { Move, OfficeView, Slot } from "./desk.gen";
 
 /** A court with its matches: the one that is at the court, then the others in the order of time. */
@@ -25,6 +26,51 @@ export function columns(view: OfficeView): Column[] {
 /** Who plays in the first of some games to come; "" if nobody knows both teams. */
 export function teamsOfNext([next]: readonly Slot[]): string {
   return next?.teams.every(Boolean) ? next.teams.join(" – ") : "";
+}
+
+/** A game that has its result, as a paper lists it. */
+export interface PlayedGame {
+  pairing: string;
+  game: number;
+  /** Who sat left and right. */
+  teams: readonly [string, string];
+  scores: readonly [number, number];
+  /** When its court was given it; 0: nobody knows. */
+  at_ms: number;
+}
+
+/** A court with what it has played and what it will play, in the order of time. */
+export interface CourtDay {
+  /** "": games that no court has played. */
+  court: string;
+  played: PlayedGame[];
+  slots: Slot[];
+}
+
+/** The whole day of each court: the games of the sheet that are over, then the timetable. */
+export function wholeDay(view: OfficeView, sheet: ContestSheet): CourtDay[] {
+  const played = new Map<string, PlayedGame[]>();
+  for (const { matches } of sheet.stages) {
+    for (const { pairing, games = [] } of matches) {
+      for (const { number, teams, scores, court = "", began_ms = 0 } of games) {
+        const there = played.get(court) ?? [];
+        there.push({ pairing: pairing.id, game: number, teams, scores, at_ms: began_ms });
+        played.set(court, there);
+      }
+    }
+  }
+  const day = columns(view).map(({ court, slots }) => ({ court, slots }));
+  const gone = [...played.keys()].filter((court) => !day.some((one) => one.court === court));
+  return [...day, ...gone.map((court) => ({ court, slots: [] }))].map(({ court, slots }) => ({
+    court,
+    played: (played.get(court) ?? []).toSorted((one, other) => one.at_ms - other.at_ms),
+    slots,
+  }));
+}
+
+/** Whether a decision about a match is possible: both its teams are known. */
+export function canDecide({ teams }: Pick<Slot, "teams">): boolean {
+  return teams.every(Boolean);
 }
 
 /** Whether a match can be moved: its game has not begun. */

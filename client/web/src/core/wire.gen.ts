@@ -406,9 +406,18 @@ export interface Result {
   model: string;
 }
 
+export interface LegShape {
+  label: string;
+  position_mm: [number, number, number];
+  outward_deg: number;
+  lengths_mm: [number, number, number];
+  range_deg: [number, number];
+}
+
 export interface RobotReply {
   name: string;
   legs: string[];
+  shapes: LegShape[];
   ranges_deg: ([number, number])[];
   start_deg: number[];
   start_z_m: number;

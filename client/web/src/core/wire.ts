@@ -376,7 +376,7 @@ type ClassRequest =
   | "stop_play";
 
 /** What the pages of an organiser and of teams ask for. */
-type DeskRequest = "desk" | "link" | "links" | "address";
+type DeskRequest = "desk" | "link" | "links";
 
 /** A file on its way to the court. */
 export interface SentFile {

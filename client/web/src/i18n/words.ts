@@ -143,6 +143,24 @@ export function timeOf(timeMs: number): string {
   return new Date(timeMs).toLocaleTimeString(language.value, options);
 }
 
+const MINUTE_MS = 60_000;
+
+/** The end of a pause as a time of day: the first full minute in which it is over. */
+export function endOf(timeMs: number): string {
+  return timeOf(Math.ceil(timeMs / MINUTE_MS) * MINUTE_MS);
+}
+
+/** A moment of this week, such as Sat 16:05. */
+export function dayTime(timeMs: number): string {
+  const options = {
+    weekday: "short",
+    hour: "2-digit",
+    minute: "2-digit",
+    hourCycle: "h23",
+  } as const;
+  return new Date(timeMs).toLocaleString(language.value, options);
+}
+
 /** A day with its time, such as 25 Nov 2026, 16:05. */
 export function dateTime(time: number | string): string {
   const options = { dateStyle: "medium", timeStyle: "short" } as const;

@@ -12,6 +12,7 @@ import {
 } from "../core/contest/sheet";
 import { said, t } from "../i18n";
 import { NoticeBanner } from "../ui/banner";
+import { useIsBefore } from "../ui/moment";
 import { Big } from "./contest/big";
 import { BracketView } from "./contest/bracket";
 import { Decisions } from "./contest/decisions";
@@ -33,6 +34,7 @@ export default function Contest() {
   useEffect(() => feed.start(), []);
   const sheet = feed.sheet.value;
   const trouble = feed.trouble.value;
+  useIsBefore(sheet?.day.until_ms ?? 0); // then expected times are no longer "not before"
   return (
     <>
       {trouble && sheet && (

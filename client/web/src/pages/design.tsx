@@ -2,6 +2,7 @@
 
 import { signal, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
+import { hasGait } from "../core/design/gait_link";
 import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
 import { Dropping, useDrop } from "../ui/drop";
@@ -17,6 +18,7 @@ import { ConflictDialog, TroubleDialog } from "./design/files/conflict";
 import { FilesDialog, takeFiles } from "./design/files/dialog";
 import { Head } from "./design/head/head";
 import { LegPicture } from "./design/robot/legs";
+import { ShareDialog } from "./design/share/dialog";
 import { PeopleHere } from "./design/sharing/people_here";
 import { Proposals } from "./design/sharing/proposals";
 import { Side, type Tab } from "./design/side";
@@ -40,7 +42,7 @@ export default function Design() {
   const studio = useMemo(() => new Studio(), []);
   const { sheet, trials, showing, coach, files, robot, gateway, membership, people, group } =
     studio;
-  const open = useSignal<"" | "files" | "settings">("");
+  const open = useSignal<"" | "files" | "settings" | "share">("");
   const tab = useSignal<Tab>("trials");
   window.__studio = studio;
   const close = () => {
@@ -52,6 +54,7 @@ export default function Design() {
   );
   useKeys(studio);
   useDrop(dragging, (taken) => void takeFiles(files, taken));
+  useLinks(studio);
   useLeaving(studio);
   const name = membership.name.value || files.file.value.name || t("design.unnamed");
   useEffect(() => {
@@ -96,7 +99,13 @@ export default function Design() {
         <Keys sheet={sheet} onChoose={(key) => trials.press(key)} />
         <LegPicture robot={robot.robot.value} sheet={sheet} />
       </div>
-      <Stage picture={studio.picture} robot={robot.robot} sheet={sheet} showing={showing} />
+      <Stage
+        picture={studio.picture}
+        robot={robot.robot}
+        sheet={sheet}
+        showing={showing}
+        onDrawn={studio.shots.drawn}
+      />
       <section class="sheet" aria-label={t("design.grid")}>
         <PeopleHere people={people} group={studio.group} sheet={sheet} />
         <Proposals group={studio.group} sheet={sheet} />
@@ -108,7 +117,13 @@ export default function Design() {
         <Strip sheet={sheet} />
       </section>
       <Bars sheet={sheet} showing={showing} />
-      <Side studio={studio} tab={tab} />
+      <Side
+        studio={studio}
+        tab={tab}
+        onShare={() => {
+          open.value = "share";
+        }}
+      />
       {open.value === "files" && (
         <FilesDialog
           files={files}
@@ -121,6 +136,7 @@ export default function Design() {
           onClose={close}
         />
       )}
+      {open.value === "share" && <ShareDialog studio={studio} onClose={close} />}
       {settings}
       <Forgotten membership={membership} />
       <ConflictDialog files={files} />
@@ -142,8 +158,29 @@ function Waiting({ studio }: { studio: Studio }) {
     (studio.present.value === false && noStudio) ||
     (waitsFor && said(waitsFor));
   if (text) return <Banner>{text}</Banner>;
-  const offered = studio.sheet.table.value && studio.handed.offered.value;
-  return offered ? <Offer handed={studio.handed} offered={offered} /> : null;
+  return studio.sheet.table.value && <Offered studio={studio} />;
+}
+
+/** A gait that the teacher or a friend offers. */
+function Offered({ studio: { handed, friend } }: { studio: Studio }) {
+  const [table, gait] = [handed.offered.value, friend.offered.value];
+  if (gait) {
+    return (
+      <Offer
+        text={t("design.friend", { name: gait.name })}
+        onTake={() => void friend.take(gait)}
+        onLater={() => friend.putOff()}
+      />
+    );
+  }
+  if (!table) return null;
+  return (
+    <Offer
+      text={t("design.handed", { title: table.title })}
+      onTake={() => handed.take(table)}
+      onLater={() => handed.putOff(table)}
+    />
+  );
 }
 
 function keyRows(): readonly KeyRow[] {
@@ -179,6 +216,27 @@ function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
   }, [sheet, files, trials, membership]);
+}
+
+/** A link with a gait is offered when the page opens with it, and when it is pasted anywhere. */
+function useLinks({ friend }: Studio): void {
+  useEffect(() => {
+    const paste = (event: ClipboardEvent) => {
+      const text = event.clipboardData?.getData("text/plain") ?? "";
+      if (!hasGait(text)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      void friend.offer(text);
+    };
+    const look = () => friend.lookAtAddress();
+    look();
+    addEventListener("paste", paste, { capture: true });
+    addEventListener("hashchange", look);
+    return () => {
+      removeEventListener("paste", paste, { capture: true });
+      removeEventListener("hashchange", look);
+    };
+  }, [friend]);
 }
 
 /** Tell the gateway all before the page goes, and ask before a table is lost. */

@@ -4,6 +4,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
+import { useIsBefore } from "../ui/moment";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
 import { Reasons } from "./contest/reasons";
@@ -56,6 +57,7 @@ export default function Office() {
   useEffect(() => {
     document.title = `${t("office.title")} – ${name ?? "LACOC"}`;
   });
+  useIsBefore(view?.day.until_ms ?? 0); // then nothing is held any more
   const trouble = organiser.trouble.value;
   const waits = trouble ? said(trouble) : waitsForGateway(organiser.desk.connection.state.value);
   if (over?.is === "paper") return <OfficePapers organiser={organiser} paper={over.paper} />;

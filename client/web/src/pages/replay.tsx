@@ -13,6 +13,7 @@ import { type MessageName, t } from "../i18n";
 import { BEATS_PER_S, logClock, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { Board } from "../ui/board";
+import { copy } from "../ui/copy";
 import { Dropping, useDrop } from "../ui/drop";
 import { Icon, IconButton } from "../ui/icons";
 import { KeyHelp, type KeyRow } from "../ui/key_help";
@@ -395,11 +396,7 @@ function share(player: Player, server: string | null): void {
   player.pause();
   const time = (Math.floor(player.recording.beat.value) / BEATS_PER_S).toFixed(2);
   history.replaceState(null, "", `?file=${encodeURIComponent(server)}&t=${time}`);
-  // Without a secure address there is no clipboard: the address bar has it all the same.
-  navigator.clipboard?.writeText(location.href).then(
-    () => toast(t("replay.shared"), "yes"),
-    () => undefined,
-  );
+  void copy(location.href);
 }
 
 function shortcutsOf(player: Player): Record<string, () => void> {

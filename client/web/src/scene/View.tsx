@@ -4,6 +4,7 @@ import "@preact/signals"; // redraws a component when a signal that it read chan
 import type { ReadonlySignal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Quality } from "../core/settings";
+import type { Annotations } from "./annotations";
 import type { CameraName } from "./cameras";
 import type { FloorMarks } from "./marks";
 import type { Hit } from "./picking";
@@ -13,11 +14,13 @@ import { type Inset, type Options, type Source, Viewer, type ViewHook } from "./
 import type { Worth } from "./worths";
 import "./view.css";
 
+export type { Annotations, Placed, Reaching } from "./annotations";
 export type { CameraName } from "./cameras";
 export { CAMERAS } from "./cameras";
 export type { FloorMarks } from "./marks";
 export type { Hit } from "./picking";
 export { Shutter } from "./shutter";
+export type { Placing } from "./tags";
 export type { Inset, Source } from "./viewer";
 
 interface Props {
@@ -45,6 +48,10 @@ interface Props {
   ghost?: Source["sample"] | null;
   /** Marks on the floor, asked for with each picture. */
   marks?: () => FloorMarks | null;
+  /** What the page writes over the picture. */
+  annotations?: Annotations | null;
+  /** Called with the canvas after each picture: later the browser has taken it away. */
+  onDrawn?: (canvas: HTMLCanvasElement) => void;
   /** The reader's own robot. */
   own?: OwnSeat | null;
   /** What markers would bring the reader's robot now. */
@@ -113,6 +120,8 @@ function optionsOf(props: Props): Options {
     lit: props.lit ?? NONE,
     ghost: props.ghost ?? null,
     marks: props.marks ?? null,
+    annotations: props.annotations ?? null,
+    onDrawn: props.onDrawn ?? null,
     own: props.own ?? null,
     worth: props.worth ?? null,
     shutter: props.shutter ?? null,

@@ -3,6 +3,7 @@
 import { pickJoint } from "../core/design/parts";
 import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
+import type { Annotations, Reaching } from "./annotations";
 import { type Action, AutoCamera } from "./autocamera";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
 import { Labels } from "./labels";
@@ -45,6 +46,10 @@ export interface Options {
   ghost: Source["sample"] | null;
   /** Marks on the floor, now. */
   marks: (() => FloorMarks | null) | null;
+  /** What the page writes over the picture. */
+  annotations: Annotations | null;
+  /** Called with the canvas while it has the picture. */
+  onDrawn: ((canvas: HTMLCanvasElement) => void) | null;
   own: OwnSeat | null;
   worth: Worth | null;
   /** Says when to draw; null: whenever the browser shows a picture. Can't change later. */
@@ -377,7 +382,8 @@ export class Viewer implements Exposed {
       const near = camera === "robot" ? { lit, marks: marks?.() ?? null } : null;
       if (drawn) this.map.draw(model, this.plan, ring, near);
     } else if (this.stage) {
-      this.axes = viewOf(this.shot(model, nowMs));
+      const seen = viewOf(this.shot(model, nowMs));
+      this.axes = (this.options.annotations?.isHeld && this.axes) || seen;
       const { lit, marks } = this.options;
       const ghost = this.ghostAt(model, nowMs);
       const extras = { lit, ghost, marks: marks?.() ?? null };
@@ -396,6 +402,8 @@ export class Viewer implements Exposed {
     this.tags.draw(named, place, spots);
     // The map has them in its drawing.
     this.labels.draw(this.map ? null : named, place);
+    if (drawn && this.canvas) this.options.onDrawn?.(this.canvas);
+    if (drawn) this.options.annotations?.draw(place, () => this.reach());
   }
 
   /** The robots of the other trial now; null without one, and where it belongs to another scene. */
@@ -488,6 +496,26 @@ export class Viewer implements Exposed {
     const at = project(this.axes, width / height, x, y, z);
     if (at.depth < 0.1) return null;
     return { x: ((at.u + 1) / 2) * width, y: ((1 - at.v) / 2) * height, far: at.depth };
+  }
+
+  /** The way back from the picture to the world, with the camera as it is now. */
+  private reach(): Reaching | null {
+    const { plan, axes, size } = this;
+    if (this.map) {
+      return (
+        plan && ((at, z) => [(at.x - plan.x) / plan.scale, (plan.y - at.y) / plan.scale - z, z])
+      );
+    }
+    if (!axes) return null;
+    const { width, height } = size;
+    return ({ x, y, far }) => {
+      const ray = rayAt(axes, width / height, (2 * x) / width - 1, 1 - (2 * y) / height);
+      return [0, 1, 2].map((axis) => axes.eye[axis]! + far * ray[axis]!) as [
+        number,
+        number,
+        number,
+      ];
+    };
   }
 
   // Pointing

@@ -6,7 +6,7 @@ import type { SocketState } from "../core/connection";
 import type { Court } from "../core/court";
 import { type Notice, Phase } from "../core/wire";
 import { said, t } from "../i18n";
-import { timeOf } from "../i18n/words";
+import { endOf } from "../i18n/words";
 import { useIsBefore } from "./moment";
 import { tellHeight } from "./screen";
 
@@ -76,7 +76,7 @@ function noticeParts({ text, paused, until_ms, reason }: Notice, nowMs: number):
   const day = paused
     ? t("notice.paused")
     : held
-      ? t("notice.until", { time: timeOf(until_ms) })
+      ? t("notice.until", { time: endOf(until_ms) })
       : "";
   return [text, day && day + why].filter(Boolean);
 }

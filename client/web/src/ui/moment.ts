@@ -9,7 +9,7 @@ const LONGEST_MS = 0x7fffffff;
 /** Whether a moment is still to come; the component is drawn again when it comes. */
 export function useIsBefore(momentMs: number): boolean {
   const now = useSignal(0);
-  void now.value;
+  const looked = now.value;
   useEffect(() => {
     const leftMs = momentMs - Date.now();
     if (leftMs <= 0) return;
@@ -20,6 +20,7 @@ export function useIsBefore(momentMs: number): boolean {
       Math.min(leftMs, LONGEST_MS),
     );
     return () => clearTimeout(timer);
-  }, [momentMs, now]);
+    // A timer can end a little before its time, and then the moment is still to come.
+  }, [momentMs, looked, now]);
   return momentMs > Date.now();
 }

@@ -35,6 +35,7 @@ for command in (
     steering.pause,
     steering.resume,
     steering.shift,
+    steering.unshift,
     steering.announce,
     steering.substitute,
     steering.staff,

@@ -119,7 +119,7 @@ def draw(
     Until you draw it, results before it can still be corrected. The order of the teams follows from
     the ranking before, or from a lot: everybody who knows the lot can draw again.
     """
-    from lacoc_server.contest.acts import organiser
+    from lacoc_server.contest.acts import deciding, organiser
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
@@ -142,6 +142,8 @@ def draw(
             shown = replace(shown, how="hand", reason=reason, entries=teams)
         stage = title(now, shown.stage)
         effect = [say("contest.to-draw", stage=stage, teams=shown.entries)]
+        if not shown.how:
+            effect += deciding.seeds_moved(now, shown)
         plan = now.planned[0]
         if again := meets_again(now, plan, FORMATS[plan.format], shown.entries):
             effect.append(say("contest.meet-again", pairs=[" – ".join(pair) for pair in again]))

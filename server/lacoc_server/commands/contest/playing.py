@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -296,6 +297,10 @@ def _show(sheet: "ContestSheet") -> None:
             screen.show(shown)
             if any(row.shares for row in table.rows):
                 screen.show(say("contest.by-the-draw"))
+            for above, row in pairwise(table.rows):
+                if row.decided_by and "points" not in table.tie_breaks:  # a bracket
+                    first, second, tie = above.team, row.team, row.decided_by
+                    screen.show(say("standing.level", above=first, below=second, tie=tie))
 
 
 def _deciding(table: "Table") -> list[str]:

@@ -100,6 +100,17 @@ def shift(
     _steer(contest, by, shifted)
 
 
+def unshift(contest: ContestArgument = FILE, by: By = "") -> None:
+    """Take the newest 'shift' back: all is as if it had never been."""
+
+    def unshifted(now: "Contest") -> "AnyFact":
+        from lacoc_server.contest.acts.steering import unshifting
+
+        return unshifting(now)
+
+    _steer(contest, by, unshifted)
+
+
 def announce(
     text: Annotated[str, typer.Argument(metavar="TEXT", help="The line; '' takes it away.")],
     contest: ContestArgument = FILE,

@@ -8,6 +8,7 @@ import msgspec
 from lacoc_server.contest.league.contest import Contest, changes, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
+    Drawn,
     NoShow,
     Outcome,
     Replaced,
@@ -20,6 +21,8 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.standings import DRAW
 from lacoc_server.contest.league.timetable.foreseen import foreseen
+from lacoc_server.contest.league.timetable.schedule import due, waits_for_organiser
+from lacoc_server.contest.league.timetable.seeding import moved_apart
 from lacoc_server.contest.league.timetable.whereabouts import may_come
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.mistakes import UserError
@@ -45,7 +48,7 @@ class WantedDecision(NamedTuple):
 
 
 def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
-    """Say what further facts would change: teams, matches, ranks, and that later stages stay.
+    """Say what further facts would change: teams, matches, ranks, stages that end, the next draw.
 
     Args:
         facts: the facts of a contest, in their order.
@@ -68,7 +71,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
             say(
                 "decide.match",
                 match=named(then if after else was, match.pairing.id),
-                teams=[team or "?" for team in match.teams],
+                teams=[team or "?" for team in match.seated],
                 state=match.state,
                 winner=match.winner or None,
             )
@@ -85,7 +88,40 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     changed = {stage for stage, *_ in found.ranks}
     drawn = (view.name for view in then.stages if view.plan.after in changed)
     lines += (say("decide.drawn", stage=title(then, stage)) for stage in drawn)
+    lines += _follows(was, then)
     return (*lines,) or (say("decide.nothing"),)
+
+
+def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
+    """Say which stages end with a decision, and what is drawn then, or waits for the organiser."""
+    ended = {view.name for view in was.stages if view.over}
+    for view in then.stages:
+        if view.over and view.name not in ended:
+            yield say("decide.ends", stage=title(then, view.name))
+    drawable = {view.name for view in was.stages if view.may_draw}
+    for view in then.stages:
+        if view.may_draw:  # then no stage is drawn yet
+            if view.name not in drawable:
+                number = len(view.stage.drawn) + 1
+                yield say("decide.draws-round", stage=title(then, view.name), round=number)
+            return
+    draw = due(then, FORMATS)
+    if not isinstance(draw, Drawn) or (not drawable and draw == due(was, FORMATS)):
+        return
+    stage = title(then, draw.stage)
+    if waits_for_organiser(then, FORMATS) is not None:
+        yield say("decide.waits-for-draw", stage=stage, teams=draw.entries)
+    else:
+        yield say("decide.draws", stage=stage, teams=draw.entries)
+    yield from seeds_moved(then, draw)
+
+
+def seeds_moved(contest: Contest, draw: Drawn) -> Iterator[Phrase]:
+    """Say which teams of the next draw have another seed than by rank, and why."""
+    plan = contest.planned[0]
+    how = FORMATS[plan.format]
+    for team, why in moved_apart(contest, plan, how, draw.entries).items():
+        yield say("contest.seed-moved", team=team, why=why)
 
 
 def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
@@ -126,7 +162,7 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
     if not wanted.reason.strip():
         raise UserError(say("decide.needs-reason"))
     match = match_of(contest, wanted.pairing)
-    first, second = match.teams
+    first, second = match.seated
     if not first or not second:
         raise UserError(say("decide.no-teams", pairing=wanted.pairing))
     about = {"pairing": wanted.pairing, "reason": wanted.reason}

@@ -1,4 +1,4 @@
-"""Steers the day: moves matches, pauses, shifts, takes draws back, lets substitutes in; tells all.
+"""Steers the day: moves matches, pauses, shifts, takes back, lets substitutes in; tells all.
 
 Each function returns the facts to append, so that it can first be shown what they would change.
 """
@@ -16,6 +16,7 @@ from lacoc_server.contest.league.facts import (
     Shifted,
     Substituted,
     Undrawn,
+    Unshifted,
     new,
     stage_of,
 )
@@ -100,6 +101,22 @@ def shifting(by_ms: int, reason: str) -> Shifted:
     return new(Shifted, by_ms=by_ms, reason=reason)
 
 
+def unshifting(contest: Contest, shift: str = "") -> Unshifted:
+    """Take the newest shift back.
+
+    Args:
+        contest: the contest.
+        shift: id of its fact, so that whoever asks twice takes one back; "": whichever it is.
+
+    Raises:
+        UserError: if there is none, or it is another one.
+    """
+    newest = contest.shifted
+    if newest is None or shift not in ("", newest.id):
+        raise UserError(say("day.not-shifted"))
+    return new(Unshifted, shift=newest.id)
+
+
 def announcing(text: str) -> Announced:
     """Show a line on all pages; "" takes it away."""
     return new(Announced, text=" ".join(text.split()))
@@ -181,6 +198,9 @@ def done(contest: Contest, fact: AnyFact) -> Phrase:
             return say("day.goes-on")
         case Shifted():
             return say("day.shifted", minutes=round(fact.by_ms / MINUTE_MS))
+        case Unshifted():
+            by_ms = contest.shifted.by_ms if contest.shifted is not None else 0
+            return say("day.unshifted", minutes=round(by_ms / MINUTE_MS))
         case Announced():
             return say("day.announced") if fact.text else say("day.announced-nothing")
         case Substituted():

@@ -1,7 +1,5 @@
 """What the desk works on: the facts of a contest, the applications, and the teams' tokens."""
 
-from datetime import datetime
-
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.contacts import Contacts
 from lacoc_server.contest.kept.event_code import EventCode
@@ -75,7 +73,7 @@ class Book:
         return EventInfo(
             name=plan.name,
             open=not self.contest.closed,
-            closes_ms=milliseconds(plan.entries_close),
+            closes_ms=plan.closes_ms,
             replays=plan.replays,
             announced=said.text if (said := self.contest.announced) is not None else "",
         )
@@ -96,8 +94,3 @@ class Book:
             self.refused[team] = mistakes
         while len(self.refused) > _REFUSED_KEPT:
             del self.refused[next(iter(self.refused))]
-
-
-def milliseconds(when: datetime | None) -> int:
-    """Return a time in milliseconds since 1970, UTC; 0 for None."""
-    return 0 if when is None else round(1000 * when.timestamp())

@@ -47,6 +47,7 @@ from lacoc_shared.messages.desk import (
     TeamPicture,
     Tokens,
     Undraw,
+    Unshift,
 )
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import say
@@ -155,7 +156,7 @@ class Desk:
                 return organising.remove_picture(book, asked.team)
             case Rule():
                 return organising.rule(book, asked)
-            case Move() | PauseContest() | ResumeContest() | Shift() | Announce():
+            case Move() | PauseContest() | ResumeContest() | Shift() | Unshift() | Announce():
                 return organising.steer(book, asked, time.time_ns() // 1_000_000)
             case Staff():
                 if by:
@@ -172,9 +173,10 @@ class Desk:
         """
         with self._one:
             facts = self._book.facts
+        folder = self._book.where.published
         with self._publishing:
-            publish(self._book.where, facts, self._book.where.published)
-        return Said(said=(say("desk.published", folder=self._book.where.published.name),))
+            publish(self._book.where, facts, folder)
+        return Said(said=(say("desk.published", folder=str(folder)),))
 
     def _apply(self, asked: Apply) -> Answer:
         with self._one:

@@ -25,6 +25,7 @@ from lacoc_shared.messages.desk import (
     TakeOut,
     TokenList,
     Undraw,
+    Unshift,
 )
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, render, say
@@ -166,9 +167,11 @@ def substitute(book: Book, asked: Substitute) -> Effect:
 
 
 def steer(
-    book: Book, asked: Move | PauseContest | ResumeContest | Shift | Announce, now_ms: int
+    book: Book,
+    asked: Move | PauseContest | ResumeContest | Shift | Unshift | Announce,
+    now_ms: int,
 ) -> Said:
-    """Move a match, pause, go on, shift or tell all; errors as in `acts.steering`."""
+    """Move a match, pause, go on, shift or unshift, tell all; errors as in `acts.steering`."""
 
     def act(contest: Contest) -> AnyFact:
         match asked:
@@ -182,6 +185,8 @@ def steer(
                 return steering.resuming(contest, now_ms)
             case Shift():
                 return steering.shifting(asked.by_ms, asked.reason)
+            case Unshift():
+                return steering.unshifting(contest, asked.shift)
             case Announce():
                 return steering.announcing(asked.text)
 

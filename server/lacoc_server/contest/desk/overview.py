@@ -31,6 +31,7 @@ from lacoc_shared.messages.desk import (
     DayState,
     MatchMove,
     OfficeView,
+    ShiftState,
     Slot,
     TeamRow,
     ToDraw,
@@ -53,6 +54,7 @@ def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
         UserError: if the facts can't be read.
     """
     contest = book.contest
+    is_published = book.where.published.is_dir()
     made = OfficeView(
         version="",
         event=book.event,
@@ -68,14 +70,25 @@ def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
         day=DayState(
             paused=contest.day.paused, until_ms=contest.day.until_ms, reason=contest.day.reason
         ),
+        shift=_shift(contest, known.pace.now_ms),
         announced=contest.announced.text if contest.announced is not None else "",
         undrawable=_undrawable(contest),
-        published=PUBLISHED if book.where.published.is_dir() else "",
+        published=PUBLISHED if is_published else "",
+        folder=str(book.where.published) if is_published else "",
         staff=book.secrets.staff_names,
         me=by,
     )
     version = codec.message_hash(codec.encode(made)).hex()
     return msgspec.structs.replace(made, version=version)
+
+
+def _shift(contest: Contest, now_ms: int) -> ShiftState | None:
+    """Return the newest shift, while games wait for its end or for a time that it made later."""
+    shift = contest.shifted
+    if shift is None:
+        return None
+    times = (shift.at_ms + shift.by_ms, *(move.not_before_ms for move in contest.moves))
+    return ShiftState(shift=shift.id, by_ms=shift.by_ms) if max(times) > now_ms else None
 
 
 def _undrawable(contest: Contest) -> Undrawable | None:

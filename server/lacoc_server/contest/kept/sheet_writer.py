@@ -71,8 +71,9 @@ class SheetWriter:
         """
         assert self._contest is not None
         begun_s = time.monotonic()
-        made = sheets.sheet(self._where.contest.name, self._contest, self._expected)
-        public = shown(made, self._where.contest.replays)
+        file = self._where.contest
+        made = sheets.sheet(file.name, self._contest, self._expected, file.closes_ms)
+        public = shown(made, file.replays)
         try:
             write(self._where.sheet, sheets.encode(public))
         except OSError as error:

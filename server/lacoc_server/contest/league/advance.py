@@ -1,10 +1,12 @@
-"""Why each team of a stage is in it: its place in the stage before, and what that hung on; pure."""
+"""Why each team of a stage is in it, and has its seed: places before, ties, pairs apart; pure."""
 
 from collections.abc import Iterator
 
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.facts import Planned, Substituted
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import Standing, Table
+from lacoc_server.contest.league.timetable.seeding import by_rank, moved_apart
 from lacoc_shared.words import Phrase, say
 
 _ACROSS = ("points", "difference", "scored")
@@ -12,7 +14,7 @@ _ACROSS = ("points", "difference", "scored")
 
 
 def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[Phrase, ...]:
-    """Say of each team of a stage why it goes on into it.
+    """Say of each team of a stage why it goes on into it, and why its seed is not its rank.
 
     Args:
         contest: the contest.
@@ -20,18 +22,25 @@ def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[
         entries: its teams by their seeding.
 
     Returns:
-        A reason for each team; none if the stage follows no stage that is drawn.
+        A reason for each team; none if the stage follows no stage that is drawn, and its teams have
+        the order in which they entered.
     """
     before = next((view for view in contest.stages if view.name == plan.after), None)
+    how = FORMATS.get(plan.format)
+    moved = moved_apart(contest, plan, how, entries) if how is not None else {}
     if before is None:
-        return ()
+        entered = [team for team in by_rank(contest, plan) if team in entries]
+        return tuple(
+            say("advance.entered", number=entered.index(team) + 1, moved=moved.get(team))
+            for team in (entries if moved else ())
+        )
     tables = {row.team: table for table in before.tables for row in table.rows}
     gone = {team.name for team in contest.teams if team.gone}
     instead = {
         fact.substitute: fact.team for fact in contest.decisions if isinstance(fact, Substituted)
     }
     return tuple(
-        _reason(before, tables[team], team, entries, gone)
+        _reason(before, tables[team], team, entries, gone, moved.get(team))
         if team in tables
         else say("advance.other", team=instead.get(team))
         for team in entries
@@ -45,13 +54,24 @@ def _placed(table: Table) -> Iterator[tuple[int, Standing]]:
 
 
 def _reason(
-    before: StageView, table: Table, team: str, entries: tuple[str, ...], gone: set[str]
+    before: StageView,
+    table: Table,
+    team: str,
+    entries: tuple[str, ...],
+    gone: set[str],
+    moved: Phrase | None,
 ) -> Phrase:
-    """Say why a team goes on: its place, and what put it before whoever is just behind it."""
+    """Say why a team goes on: its place, and what put it before whoever is just behind it.
+
+    Of the last one of those that are tied, what put it behind the one before.
+    """
     at = next(at for at, row in enumerate(table.rows) if row.team == team)
     row, *behind = table.rows[at:]
+    above = table.rows[at - 1] if at else None
     counts = "points" in table.tie_breaks
-    is_tied = counts and behind and behind[0].points == row.points and not behind[0].out
+    is_tied = bool(behind) and _is_tied(table, row, behind[0])
+    if is_tied or above is None or not _is_tied(table, above, row):
+        above = None
     other = _beaten(before, table, team, entries)
     left = [one.team for one in table.rows[:at] if one.team in gone or one.out]
     return say(
@@ -61,10 +81,20 @@ def _reason(
         points=row.points if counts else None,
         below=behind[0].team if is_tied else None,
         tie=behind[0].decided_by if is_tied else None,
+        above=above.team if above else None,
+        under=row.decided_by if above else None,
         other=other.team if other else None,
         by=_by(row, other) if other else None,
         gone=left or None,
+        moved=moved,
     )
+
+
+def _is_tied(table: Table, row: Standing, behind: Standing) -> bool:
+    """Return whether only a tie-break puts a team before the next one."""
+    if behind.out or not behind.decided_by:
+        return False
+    return "points" not in table.tie_breaks or row.points == behind.points
 
 
 def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) -> Standing | None:

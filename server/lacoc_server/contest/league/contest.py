@@ -22,6 +22,7 @@ from lacoc_server.contest.league.facts import (
     Resumed,
     Shifted,
     Undrawn,
+    Unshifted,
     decisions,
     ordered,
     stage_of,
@@ -136,6 +137,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     decisions: tuple[OfDecision, ...]
     """What people decided, in the order in which they did."""
     day: Day
+    shifted: Shifted | None
+    """The newest shift that was not taken back; None: there is none."""
     announced: Announced | None
     """The line to all; None: there is none."""
     ended_ms: dict[str, tuple[str, int]]
@@ -232,7 +235,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
     if line is not None and not _computed(known[: known.index(line)], formats).over:
         line = None
     day = Day(paused=False, until_ms=0, reason="")
-    return msgspec.structs.replace(contest, day=day, announced=line)
+    return msgspec.structs.replace(contest, day=day, shifted=None, announced=line)
 
 
 def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contest:
@@ -244,6 +247,8 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
         if isinstance(fact, OfMatch):
             by_pairing.setdefault(fact.pairing, []).append(fact)
     drawn, planned = drawn_stages(known, teams, formats, unused)
+    shifts = _shifts(known, unused)
+    steering = [fact for fact in known if not isinstance(fact, Shifted) or fact.id in shifts]
     stages = [
         _view(plan, stage, formats[plan.format], teams, by_pairing, is_last=number == len(drawn))
         for number, (plan, stage) in enumerate(drawn, 1)
@@ -265,9 +270,10 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
             if isinstance(fact, Undrawn) and fact.id not in unused and fact.stage in coming
         ),
         running=_running(known),
-        moves=_moves(known),
+        moves=_moves(steering),
         decisions=decisions(known),
-        day=_day(known),
+        day=_day(steering),
+        shifted=next(reversed(shifts.values()), None),
         announced=_announced(known),
         ended_ms=_ended(known),
         stages_ended_ms=_stages_ended(known),
@@ -395,6 +401,17 @@ def _running(facts: Sequence[AnyFact]) -> tuple[Called, ...]:
                 if (call.pairing, call.game) != (fact.pairing, fact.game)
             }
     return tuple(running[court] for court in sorted(running))
+
+
+def _shifts(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Shifted]:
+    """Find the shifts that were not taken back, by their ids and in their order."""
+    shifts: dict[str, Shifted] = {}
+    for fact in facts:
+        if isinstance(fact, Shifted):
+            shifts[fact.id] = fact
+        elif isinstance(fact, Unshifted) and shifts.pop(fact.shift, None) is None:
+            unused[fact.id] = say("league.no-shift")
+    return shifts
 
 
 def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:

@@ -285,6 +285,13 @@ class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
     reason: str = ""
 
 
+class Unshifted(Fact, frozen=True, kw_only=True, tag="unshifted"):
+    """A shift is taken back: all is as if it had never been."""
+
+    shift: Name
+    """Id of the fact that is taken back."""
+
+
 class Announced(Fact, frozen=True, kw_only=True, tag="announced"):
     """A line to all, until the next one."""
 
@@ -316,7 +323,7 @@ OfDecision = (
 OfTeam = Entered | Closed | Withdrawn | Disqualified | Substituted | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Drawn | Undrawn | RoundDrawn
-OfDay = Paused | Resumed | Shifted | Announced
+OfDay = Paused | Resumed | Shifted | Unshifted | Announced
 AnyFact = OfTeam | OfMatch | OfStage | OfDay | TakenOver
 
 

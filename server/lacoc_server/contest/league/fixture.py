@@ -47,9 +47,9 @@ def fixture(
 
 def standing(match: ContestMatch) -> Phrase:
     """Say how a match stands in games won, a drawn one half: "Ants 1½ : ½ Bees"."""
-    first, second = match.teams
+    first, second = match.seated
     drawn = sum(not game.winner for game in match.games)
-    halves = [2 * sum(game.winner == team for game in match.games) + drawn for team in match.teams]
+    halves = [2 * sum(game.winner == team for game in match.games) + drawn for team in match.seated]
     one, other = map(_halves, halves)
     return say("fixture.standing", left=first or "?", right=second or "?", won=one, lost=other)
 

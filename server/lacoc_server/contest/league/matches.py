@@ -6,6 +6,7 @@ from typing import Literal
 import msgspec
 
 from lacoc_server.contest.league.facts import (
+    Called,
     NoShow,
     OfMatch,
     Outcome,
@@ -38,6 +39,11 @@ class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     scores: tuple[int, int]
     outcome: Outcome
     record: str = ""
+    """File name of the record of what was played, also where a decision gave another result."""
+    court: str = ""
+    """Where it was played; "": nobody knows, as of games without a network."""
+    began_ms: int = 0
+    """When that court was given it, in milliseconds since 1970, UTC; 0: nobody knows."""
     fact: str
     """Id of the fact that says so."""
 
@@ -68,6 +74,11 @@ class ContestMatch(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
     def decided(self) -> bool:
         """Whether nothing is left to play."""
         return self.state in ("decided", "off")
+
+    @property
+    def seated(self) -> tuple[Team, Team]:
+        """The teams in the order in which people read them: who sits left in game 1 is first."""
+        return (self.games[0].teams if self.games else self.next_seats) or self.teams
 
     @property
     def scores(self) -> tuple[int, int]:
@@ -203,6 +214,9 @@ def counting(
         The games by number, whether the match is void, and the teams that did not appear.
     """
     games: dict[int, CountedGame] = {}
+    called: dict[int, Called] = {}
+    played: dict[int, tuple[Played, Called | None]] = {}
+    """By number: what was played, perhaps without a result that counts, and its call."""
     is_void = False
     absent: set[str] = set()
     for fact in facts:
@@ -214,12 +228,17 @@ def counting(
             is_void = True
         elif isinstance(fact, Replay):
             games.pop(fact.game, None)
+            played.pop(fact.game, None)
             is_void = False
             absent.clear()
+        elif isinstance(fact, Called):
+            called[fact.game] = fact
         elif isinstance(fact, Replaced):
-            games[fact.game] = _game(fact)
-        elif isinstance(fact, Played) and fact.outcome != "void":
-            games.setdefault(fact.game, _game(fact))
+            games[fact.game] = _game(fact, *played.get(fact.game, (None, None)))
+        elif isinstance(fact, Played) and fact.game not in games:
+            played[fact.game] = (fact, called.get(fact.game))
+            if fact.outcome != "void":
+                games[fact.game] = _game(fact, *played[fact.game])
     return games, is_void, absent
 
 
@@ -228,13 +247,16 @@ def fact_teams(fact: OfMatch) -> tuple[str, ...]:
     return getattr(fact, "teams", ())
 
 
-def _game(fact: Played | Replaced) -> CountedGame:
+def _game(fact: Played | Replaced, played: Played | None, call: Called | None) -> CountedGame:
+    """Make a game that counts: the result of a fact, and where and when it was played."""
     return CountedGame(
         number=fact.game,
         teams=fact.teams,
         scores=fact.scores,
         outcome=fact.outcome,
-        record=fact.record if isinstance(fact, Played) else "",
+        record=played.record if played is not None else "",
+        court=call.court if call is not None else "",
+        began_ms=call.at_ms if call is not None else 0,
         fact=fact.id,
     )
 

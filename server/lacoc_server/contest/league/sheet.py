@@ -22,7 +22,7 @@ from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.league.titles import titles
 from lacoc_shared.words import Phrase
 
-VERSION = 6
+VERSION = 7
 """Version of the layout of a sheet."""
 EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
 _UNKNOWN = ("", 0)
@@ -60,6 +60,11 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
 
     version: int = VERSION
     name: str
+    open: bool
+    """Whether teams can enter."""
+    closes_ms: int
+    """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them, or
+    nobody knows, as in a published sheet."""
     teams: tuple[Team, ...]
     """In the order in which they entered."""
     stages: tuple[StageView, ...]
@@ -110,7 +115,10 @@ def sheet_of(name: str, facts: Iterable[AnyFact], formats: Mapping[str, Format])
 
 
 def sheet(
-    name: str, contest: Contest, expected: Mapping[str, tuple[str, int]] = EXPECTED_NOTHING
+    name: str,
+    contest: Contest,
+    expected: Mapping[str, tuple[str, int]] = EXPECTED_NOTHING,
+    closes_ms: int = 0,
 ) -> ContestSheet:
     """Make the sheet of a computed contest.
 
@@ -119,6 +127,7 @@ def sheet(
         contest: the contest.
         expected: where and when open matches will probably begin, by pairing; it does not follow
             from the facts, so a sheet that somebody can check does without it.
+        closes_ms: when entries close; likewise.
     """
     games = [game for view in contest.stages for match in view.matches for game in match.games]
     rated = ratings(Rated(*game.teams, game.winner) for game in games)
@@ -127,6 +136,8 @@ def sheet(
     at_once = {match.pairing.id for match in ready}
     return ContestSheet(
         name=name,
+        open=not contest.closed,
+        closes_ms=closes_ms,
         teams=contest.teams,
         stages=contest.stages,
         titles=titles(contest),

@@ -47,8 +47,8 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     """Values of the tie-breaks in the order of the table's codes."""
     decided_by: str = ""
     """The code that put the team below the one above it; "seed": all codes left them equal, and the
-    order of the draw decided only who is listed first. "": it is the first of its table, or no code
-    was asked."""
+    order of the draw decided only who is listed first. In a bracket what decided the level match of
+    these two. "": it is the first of its table, or no code was asked."""
     shares: bool = False
     """True: all codes left it equal to another team, and they share their rank."""
     out: bool = False

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lacoc_server.contest.acts.organiser import prepare
-from lacoc_server.contest.desk.book import Book, milliseconds
+from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
 from lacoc_server.contest.kept import machine
@@ -133,7 +133,7 @@ def play_live(
             for name in filter(addresses.get, addresses)
         ]
         rest_ms = round(1000 * where.contest.least_rest_s)
-        draw_from_ms = (milliseconds(where.contest.entries_close) or None) if entering else 0
+        draw_from_ms = (where.contest.closes_ms or None) if entering else 0
         stage, open_matches = where.open_stage, None
         if stage is not None:
             open_matches = OpenMatches(stage, secrets.seat, tell)

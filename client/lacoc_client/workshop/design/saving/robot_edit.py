@@ -38,6 +38,9 @@ RobotEntry = Literal[
     "friction",
 ]
 """A number of a robot, by the name that the studio's facts give it."""
+LegEntry = Literal["leg_x_m", "leg_y_m", "leg_z_m", "leg_outward_deg"]
+"""A number of one leg: where it is fixed to the body, and where it points."""
+AnyEntry = Literal[RobotEntry, LegEntry]
 
 
 class _NumberPlace(NamedTuple):
@@ -49,7 +52,7 @@ class _NumberPlace(NamedTuple):
     """Place in the list; None: the entry is no list."""
 
 
-_PLACES: Mapping[str, _NumberPlace] = {
+_PLACES: Mapping[AnyEntry, _NumberPlace] = {
     "body_width_m": _NumberPlace("body", "size_m", 0),
     "body_length_m": _NumberPlace("body", "size_m", 1),
     "body_height_m": _NumberPlace("body", "size_m", 2),
@@ -72,19 +75,26 @@ _PLACES: Mapping[str, _NumberPlace] = {
     "damping": _NumberPlace("servo", "damping"),
     "armature": _NumberPlace("servo", "armature"),
     "friction": _NumberPlace("surface", "friction"),
+    "leg_x_m": _NumberPlace("leg", "position_m", 0),
+    "leg_y_m": _NumberPlace("leg", "position_m", 1),
+    "leg_z_m": _NumberPlace("leg", "position_m", 2),
+    "leg_outward_deg": _NumberPlace("leg", "outward_deg"),
 }
-assert _PLACES.keys() == set(get_args(RobotEntry))
+assert _PLACES.keys() == set(get_args(AnyEntry))
+_SHARE_DIGITS = 9
 
 
-def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
+def edit_robot(text: str, entry: AnyEntry, value: float, leg: int = 0) -> str:
     """Return the text of a robot file with one number changed.
 
-    A number in [link] is changed for all legs, also for a leg with a value of its own.
+    A number in [link] is changed for all legs, also for a leg with a value of its own. Where a leg
+    is fixed in shares of the body (`on_body`), the share is changed.
 
     Args:
         text: the robot file (TOML).
         entry: which number.
-        value: the number, in the file's unit. Whether a robot may have it is not checked here.
+        value: the number, in the unit of its name. Whether a robot may have it is not checked here.
+        leg: which leg, from 0; only for a `LegEntry`.
 
     Raises:
         UserError: if the text is no TOML, has no place for the number, or the number is not finite.
@@ -97,34 +107,50 @@ def edit_robot(text: str, entry: RobotEntry, value: float) -> str:
     except BadToml as error:
         raise UserError(error.phrase) from None
     try:
-        _set(wanted, place, value)
+        _set(wanted, place, value, leg)
         document = tomlkit.parse(text)
-        _set(document, place, value)
+        _set(document, place, value, leg)
         edited = tomlkit.dumps(document)
         is_right = tomllib.loads(edited) == wanted
-    except (TOMLKitError, tomllib.TOMLDecodeError, LookupError, TypeError, ValueError):
+    except (TOMLKitError, ArithmeticError, LookupError, TypeError, ValueError):
         is_right = False
     if not is_right:
         raise UserError(say("design.no-place", entry=_shown(place)))
     return edited
 
 
-def _set(robot: Any, place: _NumberPlace, value: float) -> None:
+def _set(robot: Any, place: _NumberPlace, value: float, leg: int) -> None:
     """Put a number into its place in a parsed robot file.
 
     A number of the table [link] is also put into each leg that has an entry of the same name.
     """
+    if place.table == "leg":
+        _set_leg(robot, robot["leg"][leg], place, value)
+        return
     if place.table not in robot:
         robot[place.table] = {}
     tables = [robot[place.table]]
     if place.table == "link":
         tables += [leg for leg in robot.get("leg", ()) if place.name in leg]
     for table in tables:
-        if place.at is None:
-            table[place.name] = _like(table.get(place.name), value)
-        else:
-            numbers = table[place.name]
-            numbers[place.at] = _like(numbers[place.at], value)
+        _put(table, place.name, place.at, value)
+
+
+def _set_leg(robot: Any, leg: Any, place: _NumberPlace, value: float) -> None:
+    """Put a number into its place in one leg."""
+    name, at = place.name, place.at
+    if at is not None and name not in leg:
+        name = "on_body"
+        value = round(2 * value / robot["body"]["size_m"][at], _SHARE_DIGITS)
+    _put(leg, name, at, value)
+
+
+def _put(table: Any, name: str, at: int | None, value: float) -> None:
+    if at is None:
+        table[name] = _like(table.get(name), value)
+    else:
+        numbers = table[name]
+        numbers[at] = _like(numbers[at], value)
 
 
 def _like(old: Any, value: float) -> Any:

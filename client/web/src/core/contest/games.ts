@@ -5,16 +5,17 @@ import {
   type ContestSheet,
   isKnockout,
   type Later,
+  type Named,
+  named,
   running,
   type StageView,
   type Table,
 } from "./sheet";
 
 /** A game that is on a court, or one of the next whose teams are known. */
-export interface NextGame {
+export interface NextGame extends Named {
   pairing: string;
   game: number;
-  teams: [string, string];
   /** The court that it was given to, or will probably be; "" if nobody knows. */
   court: string;
   /** The id of the call that gave it to the court; "": it has none yet. */
@@ -37,7 +38,7 @@ export function nextGames(sheet: ContestSheet, most: number): NextGame[] {
   return games.slice(0, most).map(({ pairing, game, teams, court, call, at_ms }) => ({
     pairing,
     game,
-    teams,
+    ...named(sheet, pairing, teams),
     court,
     call,
     at_ms,

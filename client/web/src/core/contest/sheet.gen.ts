@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 6;
+export const VERSION = 7;
 
 export interface Team {
   name: string;
@@ -105,6 +105,8 @@ export interface CountedGame {
   scores: [number, number];
   outcome: "left" | "right" | "draw" | "void";
   record?: string;
+  court?: string;
+  began_ms?: number;
   fact: string;
 }
 
@@ -212,6 +214,8 @@ export interface Announced {
 export interface ContestSheet {
   version: number;
   name: string;
+  open: boolean;
+  closes_ms: number;
   teams: Team[];
   stages: StageView[];
   titles: Record<string, Phrase>;

@@ -143,12 +143,32 @@ export function byId(view: StageView): Map<string, ContestMatch> {
   return new Map(view.matches.map((match) => [match.pairing.id, match]));
 }
 
-/** The places of a match, left seat first: as in its only game, or in the first one to come. */
+/** The places of a match in the order in which all pages name them: left in game 1 comes first. */
 export function seating(match: ContestMatch): readonly [0 | 1, 0 | 1] {
-  const games = match.games ?? [];
-  const seats = games.length === 1 && isDecided(match) ? games[0]!.teams : match.next_seats;
-  const swapped = games.length < 2 && seats && seats[0] === match.teams[1];
-  return swapped ? [1, 0] : [0, 1];
+  const seats = match.games?.[0]?.teams ?? match.next_seats;
+  return seats && seats[0] === match.teams[1] ? [1, 0] : [0, 1];
+}
+
+/** The teams of a game as its match names them. */
+export interface Named {
+  teams: [string, string];
+  /** Whether the first of them sits right in this game. */
+  swapped: boolean;
+}
+
+/**
+ * Name the teams of a game in the order of its match, from game to game.
+ *
+ * @param seats Who sits left and right in this game.
+ */
+export function named(
+  sheet: ContestSheet,
+  pairing: string,
+  [left, right]: readonly [string, string],
+): Named {
+  const match = found(sheet, pairing)?.match;
+  const swapped = Boolean(match) && match!.teams[seating(match!)[0]] === right;
+  return { teams: swapped ? [right, left] : [left, right], swapped };
 }
 
 /** Whether a match counts games won, not the points of its only game. */
@@ -245,6 +265,14 @@ export function found(sheet: ContestSheet, pairing: string): Played | null {
     if (match) return { view, match };
   }
   return null;
+}
+
+/** Places of a bracket that a level match decided: who is before whom, and by which tie-break. */
+export function levelPlaces(table: Table): { above: string; below: string; tie: string }[] {
+  return table.rows.flatMap(({ team, decided_by }, at) => {
+    const above = table.rows[at - 1]?.team;
+    return above && decided_by ? [{ above, below: team, tie: decided_by }] : [];
+  });
 }
 
 /** Tie-breaks that a table shows in columns of their own: the others are columns anyway. */

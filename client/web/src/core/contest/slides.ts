@@ -13,6 +13,7 @@ import {
   type StageView,
   stateOf,
   type Table,
+  type Team,
 } from "./sheet";
 
 /** A table, or some of its rows. */
@@ -22,6 +23,7 @@ export interface TablePart {
 }
 
 export type Slide =
+  | { is: "entered"; teams: readonly Team[] }
   | { is: "now"; games: NextGame[] }
   | { is: "podium" }
   | { is: "tables"; view: StageView; parts: TablePart[] }
@@ -34,18 +36,30 @@ const BRACKET_ROWS = 4;
 const BRACKET_COLUMNS = 3;
 /** So many games fit a slide. */
 const GAMES = 4;
+/** So many teams fit a slide before the draw. */
+const TEAMS = 15;
 /** Two tables as small as this fit below each other. */
 const SMALL_ROWS = 3;
+
+const FIRST = { waiting: enteredSlides, running: nowSlides, over: endSlides };
 
 /** The slides of a contest: what is played, then the stages that matter now, then the ratings. */
 export function slides(sheet: ContestSheet): Slide[] {
   const matter = sheet.stages.filter((view) => !isOver(view) || view === sheet.stages.at(-1));
-  const first: Slide[] = stateOf(sheet) === "over" ? endSlides(sheet) : nowSlides(sheet);
   const found = [
-    ...first,
+    ...FIRST[stateOf(sheet)](sheet),
     ...matter.flatMap((view) => (isKnockout(view) ? bracketSlides(view) : tableSlides(view))),
   ];
   return sheet.ratings.length ? [...found, { is: "ratings" }] : found;
+}
+
+/** Who is in before the draw; also while nobody is. */
+function enteredSlides({ teams }: ContestSheet): Slide[] {
+  const here = teams.filter(({ withdrawn, disqualified }) => !withdrawn && !disqualified);
+  return Array.from({ length: Math.max(1, Math.ceil(here.length / TEAMS)) }, (_, index) => ({
+    is: "entered",
+    teams: here.slice(index * TEAMS, (index + 1) * TEAMS),
+  }));
 }
 
 /** The games on courts and the next ones; more than a slide's only while courts have them. */

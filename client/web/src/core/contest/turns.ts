@@ -31,14 +31,20 @@ export class Turns {
   /** Since when the result on air is official; null: none is. */
   private doneMs: number | null = null;
   private breakEndsMs = 0;
+  /** Whether the page came before the contest was over. */
+  private cameInTime = false;
 
   /**
    * Whether the picture fills the screen now.
    *
    * @param nowMs The time.
    * @param live What is on air; null: no live picture.
+   * @param isOver Whether the contest is over: whoever comes then sees who has won, and no match of
+   *   before that courts and director still show.
    */
-  isPicture(nowMs: number, live: OnAir | null): boolean {
+  isPicture(nowMs: number, live: OnAir | null, isOver = false): boolean {
+    this.cameInTime ||= !isOver;
+    if (!this.cameInTime) return false;
     const held = nowMs - this.lastMs < GRACE_MS ? this.last : null;
     const shown = live ?? held;
     if (live) {

@@ -1,5 +1,6 @@
 /** Reads a trial's measurements, tick by tick; a tick is 20 ms. */
 
+import { type Flat, hull } from "../hull";
 import { ROOT_FLOATS, type Sentence, type TrialReply } from "../wire";
 import { LEVELS } from "./table";
 
@@ -33,15 +34,13 @@ export interface Run {
   readonly to: number;
 }
 
-export type Point = readonly [number, number];
-
 /** The feet that carry the robot at a tick, in the plane of the floor [m, world]. */
 export interface Support {
   /** The legs whose feet are down, and where each foot stands. */
-  readonly feet: readonly { leg: number; at: Point }[];
+  readonly feet: readonly { leg: number; at: Flat }[];
   /** Corners of the feet's convex hull, counter-clockwise. */
-  readonly corners: readonly Point[];
-  readonly centre: Point;
+  readonly corners: readonly Flat[];
+  readonly centre: Flat;
   /** Null while no foot is down. */
   readonly marginM: number | null;
 }
@@ -121,7 +120,7 @@ export function floorMarks(trial: Trial, tick: number, way: Float32Array) {
 }
 
 /** The path of the body seen from above: a point for each tick [m, world]. */
-export function pathOf(trial: Trial): Point[] {
+export function pathOf(trial: Trial): Flat[] {
   const width = trial.poses.length / Math.max(1, trial.ticks);
   return Array.from({ length: trial.ticks }, (_, tick) => [
     trial.poses[tick * width]!,
@@ -140,28 +139,6 @@ export function legOf({ leg }: Sentence): number | null {
   return leg < 0 ? null : leg;
 }
 
-/** The corners of the convex hull, counter-clockwise; one or two if there are no more. */
-export function hull(points: readonly Point[]): Point[] {
-  const ordered = points
-    .toSorted((one, other) => one[0] - other[0] || one[1] - other[1])
-    .filter(([x, y], index, all) => x !== all[index - 1]?.[0] || y !== all[index - 1]?.[1]);
-  if (ordered.length < 3) return ordered;
-  return [ordered, ordered.toReversed()].flatMap((way) => {
-    const half: Point[] = [];
-    for (const point of way) {
-      while (half.length > 1 && leftOf(half.at(-2)!, half.at(-1)!, point) <= 0) half.pop();
-      half.push(point);
-    }
-    return half.slice(0, -1);
-  });
-}
-
-/** Twice the area of a triangle; positive if the point is left of the line. */
-function leftOf(start: Point, end: Point, point: Point): number {
-  const [x, y] = [end[0] - start[0], end[1] - start[1]];
-  return x * (point[1] - start[1]) - y * (point[0] - start[0]);
-}
-
 function runsOf(from: number, to: number, is: (tick: number) => boolean): Run[] {
   const runs: Run[] = [];
   let begin = -1;
@@ -175,7 +152,7 @@ function runsOf(from: number, to: number, is: (tick: number) => boolean): Run[] 
   return runs;
 }
 
-function pointOf(numbers: Float32Array, index: number): Point {
+function pointOf(numbers: Float32Array, index: number): Flat {
   return [numbers[2 * index]!, numbers[2 * index + 1]!];
 }
 

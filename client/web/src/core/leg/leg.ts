@@ -5,20 +5,12 @@
  * The body frame has +x right, +y forward and +z up.
  */
 
+import type { LegShape } from "../wire";
+
 export type Three = readonly [number, number, number];
 
-export interface Leg {
-  /** The leg's name in tables, such as "R,F". */
-  label: string;
-  /** The root hinge in the body frame. */
-  position_mm: Three;
-  /** Direction of the leg at Root 0: 0 = right, 90 = forward, 180 = left. */
-  outward_deg: number;
-  /** L0, L1 and L2, from hinge to hinge; the last one to the foot. */
-  lengths_mm: Three;
-  /** Lowest and highest angle of each of the three joints. */
-  range_deg: readonly [number, number];
-}
+/** Lengths in millimetres, angles in degrees. */
+export type Leg = Readonly<LegShape>;
 
 /** A robot as its file describes it. */
 export interface SampleRobot {

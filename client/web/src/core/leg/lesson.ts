@@ -1,6 +1,7 @@
 /** The steps of the lesson of one leg, and what is asked in each before it is shown (workshop 3-1). */
 
 import { joint, LEVELS, legAndLevel } from "../design/table";
+import type { Flat } from "../hull";
 import type { Phrase } from "../phrase";
 import {
   bent,
@@ -13,7 +14,7 @@ import {
   spots,
   type Three,
 } from "./leg";
-import { type Flat, margin } from "./stance";
+import { margin } from "./stance";
 
 export type StepName = "joints" | "knee" | "foot" | "swing" | "back" | "reach" | "stand" | "table";
 

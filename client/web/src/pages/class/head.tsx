@@ -2,8 +2,8 @@
 
 import { pagesUrl, short } from "../../core/address";
 import { said, t } from "../../i18n";
+import { copy } from "../../ui/copy";
 import { Icon, IconButton } from "../../ui/icons";
-import { toast } from "../../ui/toasts";
 import type { Teacher } from "./teacher";
 
 interface Props {
@@ -157,27 +157,4 @@ function Counts({ teacher }: { teacher: Teacher }) {
       )}
     </p>
   );
-}
-
-/** Copy a text; without https, browsers do so only from a field. */
-async function copy(text: string): Promise<void> {
-  try {
-    if (navigator.clipboard) await navigator.clipboard.writeText(text);
-    else copyFromField(text);
-    toast(t("class.copied", { text }), "yes");
-  } catch {
-    toast(t("class.notCopied"), "no");
-  }
-}
-
-function copyFromField(text: string): void {
-  const field = document.createElement("textarea");
-  const focused = document.activeElement;
-  field.value = text;
-  document.body.append(field);
-  field.select();
-  const isDone = document.execCommand("copy");
-  field.remove();
-  if (focused instanceof HTMLElement) focused.focus();
-  if (!isDone) throw new Error("copy");
 }

@@ -3,12 +3,14 @@
 import { effect, type Signal, signal, useSignal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
-import { ownPage } from "../../core/address";
+import { ownPage, short } from "../../core/address";
 import type { NextGame } from "../../core/contest/games";
 import { podium } from "../../core/contest/places";
-import type { ContestSheet } from "../../core/contest/sheet";
+import { type ContestSheet, type Team, teamsOf } from "../../core/contest/sheet";
 import { type Slide, slides } from "../../core/contest/slides";
+import { pagesForAll } from "../../core/served";
 import { said, t } from "../../i18n";
+import { dayTime } from "../../i18n/words";
 import { KeyHelp, type KeyRow } from "../../ui/key_help";
 import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
@@ -25,6 +27,8 @@ import { expected, gameTitle, stageHeading, stageTitle, winnersTitle } from "./w
 
 const SLIDE_MS = 12_000;
 const RATINGS_MOST = 9;
+/** So few teams before the draw can be larger. */
+const FEW_TEAMS = 6;
 /** Tables with so few rows can be larger. */
 const FEW = 5;
 
@@ -97,6 +101,8 @@ function Slides({ sheet }: { sheet: ContestSheet }) {
 
 function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   switch (slide.is) {
+    case "entered":
+      return <Entered sheet={sheet} teams={slide.teams} />;
     case "now":
       return <Next sheet={sheet} games={slide.games} />;
     case "podium":
@@ -137,6 +143,40 @@ function Shown({ sheet, slide }: { sheet: ContestSheet; slide: Slide }) {
   );
 }
 
+/** Before the draw: who is in, how others enter, and when it begins. */
+function Entered({ sheet, teams }: { sheet: ContestSheet; teams: readonly Team[] }) {
+  const { open, closes_ms } = sheet;
+  const pages = useSignal("");
+  useEffect(() => {
+    if (open) {
+      void pagesForAll().then((found) => {
+        pages.value = found;
+      });
+    }
+  }, [open, pages]);
+  const begins = !open ? "closed" : closes_ms ? "at" : "open";
+  return (
+    <>
+      <PauseLine sheet={sheet} />
+      <h2>{t("contest.hasEntered", { count: teamsOf(sheet).here })}</h2>
+      <ul class="entered" data-few={teams.length <= FEW_TEAMS || undefined}>
+        {teams.map(({ name }) => (
+          <li key={name}>
+            <TeamPicture sheet={sheet} team={name} />
+            <b class="team">{name}</b>
+          </li>
+        ))}
+      </ul>
+      {open && pages.value && (
+        <p>{t("contest.enterAt", { address: `${short(pages.value)}/enter` })}</p>
+      )}
+      <p class="muted">
+        {t(`contest.begins.${begins}`, { time: closes_ms ? dayTime(closes_ms) : "" })}
+      </p>
+    </>
+  );
+}
+
 /** The games on courts and those that come next: who, what, where and about when. */
 function Next({ sheet, games }: { sheet: ContestSheet; games: readonly NextGame[] }) {
   useEffect(() => (ownPage ? undefined : live.start()), []);
@@ -167,12 +207,12 @@ function Next({ sheet, games }: { sheet: ContestSheet; games: readonly NextGame[
 }
 
 /** How a game stands that a court has. */
-function OnCourt({ game: { court, call } }: { game: NextGame }) {
+function OnCourt({ game: { court, call, swapped } }: { game: NextGame }) {
   const score = live.of(call);
   return (
     <>
       {t("contest.court", { court })} ·{" "}
-      <LiveScore score={score} otherwise={said({ code: "when.moment" })} />
+      <LiveScore score={score} swapped={swapped} otherwise={said({ code: "when.moment" })} />
     </>
   );
 }

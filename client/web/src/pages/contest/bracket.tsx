@@ -12,6 +12,7 @@ import {
   origin,
   type StageView,
   score,
+  seating,
   written,
 } from "../../core/contest/sheet";
 import { replayAddress } from "../../core/record_files";
@@ -20,12 +21,15 @@ import { big, chosenTeam, matchId, teamAddress } from "./parts";
 import { courtOf, matchTitle, numberTitle, roundTitle, shortOrigin } from "./words";
 
 const BOX = { width: 216, height: 56 };
-const STEP = { x: BOX.width + 44, y: BOX.height + 14 };
 const HEAD = 34;
 const PAD = 4;
 /** Height of a note below a box: its line, with the parts of letters below that. */
 const NOTE = 16;
+/** From box to box: lines go between columns, notes between rows. */
+const STEP = { x: BOX.width + 44, y: BOX.height + NOTE + 6 };
 const NAME_EM = 11;
+/** A bold name has room for so much less text. */
+const BOLD = 0.82;
 const FROM_EM = 14.5;
 const POINTS_WIDTH = 34;
 
@@ -77,7 +81,8 @@ function Way({ line: { from, to, place } }: { line: Line }) {
   const x1 = PAD + from.column * STEP.x + BOX.width;
   const y1 = HEAD + from.row * STEP.y;
   const x2 = PAD + to.column * STEP.x;
-  const y2 = HEAD + to.row * STEP.y + (place ? 1 : -1) * (BOX.height / 4);
+  const isLower = seating(to.match)[1] === place;
+  const y2 = HEAD + to.row * STEP.y + (isLower ? 1 : -1) * (BOX.height / 4);
   const winner = from.match.winner;
   const chosen = winner && winner === chosenTeam.value;
   const middle = x2 - (STEP.x - BOX.width) / 2;
@@ -117,20 +122,20 @@ function MatchBox({ sheet, view, box }: BoxProps) {
         width={POINTS_WIDTH}
         height={BOX.height}
       />
-      {([0, 1] as const).map((place) => (
+      {seating(match).map((place, line) => (
         <text
           key={place}
           class="points"
           data-won={won(match, place) || undefined}
           x={BOX.width - POINTS_WIDTH / 2}
-          y={lineY(place)}
+          y={lineY(line)}
         >
           {written(points[place])}
         </text>
       ))}
     </>
   );
-  const [one, other] = match.teams.map((team) => team ?? t("contest.open"));
+  const [one, other] = seating(match).map((place) => match.teams[place] ?? t("contest.open"));
   const versus = { left: one!, right: other! };
   return (
     <g class="box" data-state={court ? "running" : match.state} transform={`translate(${x} ${y})`}>
@@ -140,8 +145,15 @@ function MatchBox({ sheet, view, box }: BoxProps) {
       <text class="number" x="11" y={BOX.height / 2 + 4}>
         {numberTitle(view, match)}
       </text>
-      {([0, 1] as const).map((place) => (
-        <PlaceLine key={place} sheet={sheet} view={view} match={match} place={place} />
+      {seating(match).map((place, line) => (
+        <PlaceLine
+          key={place}
+          sheet={sheet}
+          view={view}
+          match={match}
+          place={place}
+          y={lineY(line)}
+        />
       ))}
       {scores && (
         <Link
@@ -167,12 +179,13 @@ interface LineProps {
   view: StageView;
   match: ContestMatch;
   place: 0 | 1;
+  /** Where its line stands in the box. */
+  y: number;
 }
 
 /** The team of a place, or where it will come from. */
-function PlaceLine({ sheet, view, match, place }: LineProps) {
+function PlaceLine({ sheet, view, match, place, y }: LineProps) {
   const team = match.teams[place];
-  const y = lineY(place);
   if (team === null) {
     const source = origin(match.pairing.sources[place], byId(view));
     return (
@@ -192,7 +205,7 @@ function PlaceLine({ sheet, view, match, place }: LineProps) {
         x="24"
         y={y}
       >
-        {fit(team, NAME_EM)}
+        {fit(team, won(match, place) ? NAME_EM * BOLD : NAME_EM)}
       </text>
     </Link>
   );
@@ -218,6 +231,7 @@ function won(match: ContestMatch, place: 0 | 1): boolean {
   return isDecided(match) && !!match.winner && match.winner === match.teams[place];
 }
 
-function lineY(place: 0 | 1): number {
-  return BOX.height * (place ? 0.75 : 0.25) + 5;
+/** Where the first or the second line of a box stands. */
+function lineY(line: number): number {
+  return BOX.height * (line ? 0.75 : 0.25) + 5;
 }

@@ -4,7 +4,7 @@ import { useEffect } from "preact/hooks";
 import { ownPage } from "../../core/address";
 import { teamsOfLater } from "../../core/contest/games";
 import { LiveScores } from "../../core/contest/live";
-import { type ContestSheet, found, running, score, written } from "../../core/contest/sheet";
+import { type ContestSheet, found, named, running, score, written } from "../../core/contest/sheet";
 import type { CourtScore } from "../../core/desk.gen";
 import { Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -34,26 +34,28 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
           </p>
         )}
         <ul class="courts">
-          {running(sheet).map(({ id, pairing, game, teams, court }) => (
-            <li key={court} class="court card">
-              <div class="where">
-                <b>{t("contest.court", { court })}</b>
-                {!ownPage && (
-                  <a
-                    href={`watch?court=${encodeURIComponent(court)}`}
-                    aria-label={t("contest.watchCourt", { court })}
-                  >
-                    {t("contest.watch")}
-                  </a>
-                )}
-              </div>
-              <Sides teams={teams} stands={stands(sheet, pairing, teams)} />
-              <p class="live-score">
-                <LiveScore score={live.of(id)} />
-              </p>
-              <p class="muted">{gameTitle(sheet, pairing, game)}</p>
-            </li>
-          ))}
+          {running(sheet)
+            .map((call) => ({ ...call, ...named(sheet, call.pairing, call.teams) }))
+            .map(({ id, pairing, game, teams, swapped, court }) => (
+              <li key={court} class="court card">
+                <div class="where">
+                  <b>{t("contest.court", { court })}</b>
+                  {!ownPage && (
+                    <a
+                      href={`watch?court=${encodeURIComponent(court)}`}
+                      aria-label={t("contest.watchCourt", { court })}
+                    >
+                      {t("contest.watch")}
+                    </a>
+                  )}
+                </div>
+                <Sides teams={teams} stands={stands(sheet, pairing, teams)} />
+                <p class="live-score">
+                  <LiveScore score={live.of(id)} swapped={swapped} />
+                </p>
+                <p class="muted">{gameTitle(sheet, pairing, game)}</p>
+              </li>
+            ))}
         </ul>
       </div>
       <div>
@@ -61,7 +63,8 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
         {!coming.length && <p class="muted">{t("contest.noneComing")}</p>}
         <ol class="coming">
           {coming.slice(0, COMING_MOST).map((one) => {
-            const teams = "who" in one ? teamsOfLater(one) : one.teams;
+            const teams =
+              "who" in one ? teamsOfLater(one) : named(sheet, one.pairing, one.teams).teams;
             return (
               <li key={one.pairing}>
                 {teams && <Sides teams={teams} />}
@@ -82,19 +85,21 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
 
 interface LiveProps {
   score: CourtScore | null;
+  /** Whether the team that is named first sits right. */
+  swapped?: boolean;
   /** Shown before the game begins. */
   otherwise?: string;
 }
 
 /** The points and the clock of the game that a court plays. */
-export function LiveScore({ score: now, otherwise = "" }: LiveProps) {
+export function LiveScore({ score: now, swapped = false, otherwise = "" }: LiveProps) {
   if (!now || now.phase < Phase.PLAYING) return <>{otherwise}</>;
-  const [left = 0, right = 0] = now.scores;
+  const [one = 0, other = 0] = swapped ? now.scores.toReversed() : now.scores;
   const shown_s = now.duration_s ? now.duration_s - now.clock_s : now.clock_s;
   return (
     <>
       <b>
-        {left} : {right}
+        {one} : {other}
       </b>{" "}
       <span>{clock(shown_s * BEATS_PER_S)}</span>
     </>
@@ -107,7 +112,7 @@ interface SidesProps {
   stands?: readonly [number, number] | null;
 }
 
-/** Two teams, the left one first. */
+/** Two teams, in the order of their match. */
 function Sides({ teams: [left, right], stands = null }: SidesProps) {
   return (
     <p class="sides">
@@ -118,7 +123,7 @@ function Sides({ teams: [left, right], stands = null }: SidesProps) {
   );
 }
 
-/** The score of a running game's match, the left team first; null before its first result. */
+/** The score of a running game's match, in the order of its teams; null before its first result. */
 function stands(
   sheet: ContestSheet,
   pairing: string,

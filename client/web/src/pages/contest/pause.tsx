@@ -2,7 +2,7 @@
 
 import { type ContestSheet, isHeld } from "../../core/contest/sheet";
 import { said, t } from "../../i18n";
-import { timeOf } from "../../i18n/words";
+import { endOf } from "../../i18n/words";
 import { useIsBefore } from "../../ui/moment";
 import { whoTitle } from "./words";
 
@@ -14,7 +14,7 @@ export function PauseLine({ sheet }: { sheet: ContestSheet }) {
   if (!pause || !isOn) return null;
   const paused = isHeld(sheet, Date.now());
   const what = paused ? "contest.pause" : "contest.break";
-  const time = timeOf(until_ms);
+  const time = endOf(until_ms);
   return (
     <p class="pause" role="status">
       <b>{until_ms ? t(`${what}.until`, { time }) : t("contest.pause.open")}</b>{" "}

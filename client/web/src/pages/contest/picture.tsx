@@ -3,6 +3,8 @@
 import { effect, type Signal, signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { followColours } from "../../core/colours";
+import { eventFeed } from "../../core/contest/feed";
+import { stateOf } from "../../core/contest/sheet";
 import { Turns } from "../../core/contest/turns";
 import { Court } from "../../core/court";
 import { inPieces } from "../../core/pieces";
@@ -45,7 +47,9 @@ export function Picture({ shown }: { shown: Signal<boolean> }) {
       const phase = court.frame.peek()?.phase;
       const on = court.programme.peek()?.court ?? "";
       const live = court.live.peek() && phase !== undefined ? { court: on, phase } : null;
-      shown.value = turns.isPicture(performance.now(), live);
+      const sheet = eventFeed.sheet.peek();
+      const isOver = sheet !== null && stateOf(sheet) === "over";
+      shown.value = turns.isPicture(performance.now(), live, isOver);
     }, LOOK_MS);
     return () => clearInterval(timer);
   }, [shown]);

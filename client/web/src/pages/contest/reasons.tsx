@@ -1,4 +1,7 @@
-/** Who goes on into a stage, and why: places before, tie rules, a lot, the organiser's hand. */
+/**
+ * Who goes on into a stage, and why: places before, tie rules, pairs kept apart, a lot, the
+ * organiser's hand.
+ */
 
 import { type ContestSheet, isOver, type StageView } from "../../core/contest/sheet";
 import { said, t } from "../../i18n";
@@ -8,7 +11,7 @@ interface Props {
   view: StageView;
 }
 
-/** Nothing for a stage that follows none. */
+/** Nothing for a stage whose teams have the order in which they entered. */
 export function Reasons({ sheet, view }: Props) {
   const { name, entries } = view.stage;
   const reasons = sheet.reasons[name] ?? [];
@@ -16,7 +19,7 @@ export function Reasons({ sheet, view }: Props) {
   if (!reasons.length) return null;
   return (
     <details class="reasons" open={!isOver(view)}>
-      <summary>{t("contest.reasons")}</summary>
+      <summary>{t(view.plan.after ? "contest.reasons" : "contest.reasons.first")}</summary>
       {drawn && (
         <p>
           {said(drawn.what)}

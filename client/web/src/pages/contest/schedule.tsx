@@ -70,12 +70,14 @@ interface RowProps extends Props {
   label?: string | undefined;
 }
 
-/** A match: who sits left, the score, who sits right, and its games. */
+/** A match: its teams with the score between them, and its games. */
 export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
   const [one, other] = seating(match);
   const points = score(match, view);
   const how = howEnded(match);
   const games = match.games ?? [];
+  // Points of a game stand in the order in which the row names the teams.
+  const shown: ContestMatch = { ...match, teams: [match.teams[one], match.teams[other]] };
   const many = countsGames(match, view) && games.length > 0;
   const court = courtOf(sheet.running, match);
   const when = isDecided(match) || court ? "" : expectedOf(sheet, match.pairing.id);
@@ -94,7 +96,7 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
       <Place sheet={sheet} match={match} place={one} />
       <span class="score">
         {points && many && `${written(points[one])} : ${written(points[other])}`}
-        {points && !many && <Single match={match} swapped={one === 1} />}
+        {points && !many && <GameScore match={shown} game={games[0]!} />}
         {!points && "–"}
       </span>
       <Place sheet={sheet} match={match} place={other} />
@@ -106,20 +108,13 @@ export function MatchRow({ sheet, view, match, id = false, label }: RowProps) {
         {many && (
           <span class="games">
             {games.map((game) => (
-              <GameScore key={game.number} match={match} game={game} />
+              <GameScore key={game.number} match={shown} game={game} />
             ))}
           </span>
         )}
       </span>
     </li>
   );
-}
-
-/** The score of a match that is one game. */
-function Single({ match, swapped }: { match: ContestMatch; swapped: boolean }) {
-  const game = match.games![0]!;
-  const teams = swapped ? match.teams.toReversed() : match.teams;
-  return <GameScore match={{ ...match, teams: teams as ContestMatch["teams"] }} game={game} />;
 }
 
 interface PlaceProps {

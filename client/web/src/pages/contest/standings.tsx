@@ -3,11 +3,12 @@
 import {
   isKnockout,
   isStillIn,
+  levelPlaces,
   type StageView,
   type Table,
   tieColumns,
 } from "../../core/contest/sheet";
-import { isMessage, t } from "../../i18n";
+import { isMessage, said, t } from "../../i18n";
 import { chosenTeam, TeamLink } from "./parts";
 import { groupTitle, signed } from "./words";
 
@@ -42,6 +43,12 @@ export function Standings({ view, table, rows, brief = false }: Props) {
   const counts = bracket ? BRACKET_COUNTS : brief ? BRIEF_COUNTS : COUNTS;
   const ties = bracket || brief ? [] : tieColumns(table);
   const title = groupTitle(view, table.section);
+  const notes = [
+    ...(rows.some(({ shares }) => shares) ? [`= ${t("contest.shares")}`] : []),
+    ...(bracket ? levelPlaces(table) : []).map((values) =>
+      said({ code: "standing.level", values }),
+    ),
+  ];
   return (
     <table class="standings">
       <caption>{title || t("contest.table")}</caption>
@@ -93,13 +100,15 @@ export function Standings({ view, table, rows, brief = false }: Props) {
           );
         })}
       </tbody>
-      {!brief && rows.some(({ shares }) => shares) && (
+      {!brief && notes.length > 0 && (
         <tfoot>
-          <tr>
-            <td colSpan={4 + counts.length + ties.length} class="muted">
-              = {t("contest.shares")}
-            </td>
-          </tr>
+          {notes.map((note) => (
+            <tr key={note}>
+              <td colSpan={4 + counts.length + ties.length} class="muted">
+                {note}
+              </td>
+            </tr>
+          ))}
         </tfoot>
       )}
     </table>

@@ -17,9 +17,10 @@ export type Tab = (typeof TABS)[number];
 interface Props {
   studio: Studio;
   tab: Signal<Tab>;
+  onShare: () => void;
 }
 
-export function Side({ studio, tab }: Props) {
+export function Side({ studio, tab, onShare }: Props) {
   const { sheet, trials, showing, robot } = studio;
   const can = studio.can.value;
   const tabs = TABS.filter(
@@ -30,7 +31,7 @@ export function Side({ studio, tab }: Props) {
   );
   return (
     <aside class="side">
-      <Result sheet={sheet} trials={trials} showing={showing} />
+      <Result sheet={sheet} trials={trials} showing={showing} onShare={onShare} />
       <div class="tabs" role="tablist" aria-label={t("design.more.title")}>
         {tabs.map((name, index) => (
           <button

@@ -19,6 +19,8 @@ import { Gateway } from "./gateway";
 import { hasEarned, Learning } from "./learning/learning";
 import { Numbers } from "./robot/numbers";
 import { RobotInUse } from "./robot/robot";
+import { Friend } from "./share/friend";
+import { Shots } from "./share/shots";
 import { Group } from "./sharing/group";
 import { People } from "./sharing/people";
 import { Sharing } from "./sharing/sharing";
@@ -89,6 +91,8 @@ export class Studio {
   readonly numbers = new Numbers(this.robot, this.files);
   readonly court = new Court(this.gateway, this.sheet, this.robot);
   readonly handed = new Handed(this.membership, this.files);
+  readonly shots = new Shots();
+  readonly friend = new Friend(this.gateway, this.sheet, this.robot, this.files, this.trials);
 
   /** What the picture shows. */
   readonly picture = source(

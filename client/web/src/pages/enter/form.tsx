@@ -5,8 +5,8 @@ import { useEffect, useRef } from "preact/hooks";
 import { type EventInfo, type OwnEntry, TEAM_NAME_MAX } from "../../core/desk";
 import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
+import { dayTime } from "../../i18n/words";
 import { Mistakes } from "../../ui/mistakes";
-import { dayTime } from "../office/head";
 import type { Entrant } from "./entrant";
 import { Files } from "./files";
 

@@ -1,9 +1,9 @@
 /** Pictures from above: one foot that swings, and the whole robot with its joints and feet. */
 
 import { joint, LEVELS } from "../../core/design/table";
+import { hull } from "../../core/hull";
 import { bodyWay, cos, points, type SampleRobot, sin, type Three } from "../../core/leg/leg";
 import { feetOf } from "../../core/leg/lesson";
-import { hull } from "../../core/leg/stance";
 import { t } from "../../i18n";
 import { Arc, Label, Line, mm, RightAngle, textSize } from "./svg";
 

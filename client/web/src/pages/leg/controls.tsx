@@ -1,9 +1,9 @@
 /** What is turned and pressed in the lesson. */
 
-import { joint, LEVELS } from "../../core/design/table";
-import type { Leg, Unreached } from "../../core/leg/leg";
+import { LEVELS } from "../../core/design/table";
 import { t } from "../../i18n";
 import { hasKeyboard } from "../../ui/screen";
+import { whyNot } from "../../ui/unreached";
 import type { Lesson } from "./lesson";
 import { mm } from "./svg";
 
@@ -75,17 +75,8 @@ export function Pairs({ lesson }: { lesson: Lesson }) {
         </button>
       ))}
       <p class="unreached" role="status">
-        {unreached && whyNot(unreached, lesson.leg.value, legs)}
+        {unreached && whyNot(unreached, lesson.leg.value, 0, legs)}
       </p>
     </div>
   );
-}
-
-function whyNot(unreached: Unreached, leg: Leg, legs: number): string {
-  if (unreached.why !== "range")
-    return t(`leg.unreached.${unreached.why}`, { mm: unreached.by_mm });
-  const { level, angle_deg } = unreached;
-  const [low, high] = leg.range_deg;
-  const values = { joint: joint(0, level, legs), level: LEVELS[level], angle: angle_deg };
-  return t("leg.unreached.range", { ...values, low, high });
 }

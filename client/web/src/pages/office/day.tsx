@@ -13,7 +13,7 @@ import { Effects, Reason } from "./dialogs";
 import type { Organiser } from "./organiser";
 
 const MINUTE_MS = 60_000;
-const LATER_MIN = [5, 10, 15, 20, 30, 45, 60];
+const LATER_MIN = { usual: 15, most: 1440 };
 
 interface Props {
   organiser: Organiser;
@@ -21,7 +21,7 @@ interface Props {
 }
 
 export function DayBar({ organiser, view }: Props) {
-  const { day, announced, undrawable } = view;
+  const { day, shift, announced, undrawable } = view;
   const held = noticeText({ text: "", ...day }, Date.now());
   const sheet = organiser.feed.sheet.value;
   const goesOn = view.drawn && !(sheet && stateOf(sheet) === "over");
@@ -49,6 +49,15 @@ export function DayBar({ organiser, view }: Props) {
         {goesOn && (
           <button class="button" type="button" onClick={over("later")}>
             {t("office.day.later")}
+          </button>
+        )}
+        {shift && (
+          <button
+            class="button"
+            type="button"
+            onClick={() => void organiser.do({ do: "unshift", shift: shift.shift })}
+          >
+            {t("office.day.later.back", { minutes: Math.round(shift.by_ms / MINUTE_MS) })}
           </button>
         )}
         <button class="button" type="button" onClick={over("line")}>
@@ -82,6 +91,7 @@ export function DayBar({ organiser, view }: Props) {
         </p>
       )}
       {announced && <p>{t("office.day.announced", { text: announced })}</p>}
+      {view.folder && <p class="muted folder">{t("office.day.folder", { folder: view.folder })}</p>}
       {view.me && <p class="muted">{t("office.day.me", { name: view.me })}</p>}
     </section>
   );
@@ -124,7 +134,7 @@ export function PauseDialog({ organiser }: { organiser: Organiser }) {
 
 /** All that is to come is later. */
 export function LaterDialog({ organiser }: { organiser: Organiser }) {
-  const minutes = useSignal(15);
+  const minutes = useSignal(LATER_MIN.usual);
   const reason = useSignal("");
   return (
     <Dialog title={t("office.day.later")} onClose={() => organiser.close()}>
@@ -140,18 +150,18 @@ export function LaterDialog({ organiser }: { organiser: Organiser }) {
         <p>{t("office.day.later.text")}</p>
         <label class="field">
           <span>{t("office.day.minutes")}</span>
-          <select
+          <input
+            type="number"
+            inputMode="numeric"
+            min={1}
+            max={LATER_MIN.most}
+            step={1}
+            required
             value={minutes.value}
-            onChange={(event) => {
-              minutes.value = Number(event.currentTarget.value);
+            onInput={(event) => {
+              minutes.value = event.currentTarget.valueAsNumber || 0;
             }}
-          >
-            {LATER_MIN.map((one) => (
-              <option key={one} value={one}>
-                {one}
-              </option>
-            ))}
-          </select>
+          />
         </label>
         <Reason reason={reason} optional />
         <button class="button strong" type="submit">

@@ -6,8 +6,8 @@ import type { Effect, TeamPicture } from "../../core/desk";
 import { toBase64 } from "../../core/files";
 import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
+import { copy } from "../../ui/copy";
 import { Dialog } from "../../ui/dialog";
-import { toast } from "../../ui/toasts";
 import type { Organiser } from "./organiser";
 
 interface Props {
@@ -18,14 +18,7 @@ interface Props {
 /** Copies a link, so that it can be sent. */
 export function CopyButton({ link }: { link: string }) {
   return (
-    <button
-      class="button"
-      type="button"
-      onClick={() => {
-        void navigator.clipboard?.writeText(link);
-        toast(t("office.copied"), "yes");
-      }}
-    >
+    <button class="button" type="button" onClick={() => void copy(link)}>
       {t("office.copy")}
     </button>
   );

@@ -3,7 +3,8 @@
 import { short } from "../../core/address";
 import { stateOf } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
-import { language, said, t } from "../../i18n";
+import { said, t } from "../../i18n";
+import { dayTime } from "../../i18n/words";
 import { IconButton } from "../../ui/icons";
 import { type Organiser, PAPERS, type Paper } from "./organiser";
 
@@ -106,15 +107,4 @@ export function Head({ organiser, view, onSettings }: Props) {
       </div>
     </header>
   );
-}
-
-/** A moment in words, in the reader's language and time zone. */
-export function dayTime(timeMs: number): string {
-  const options = {
-    weekday: "short",
-    hour: "2-digit",
-    minute: "2-digit",
-    hourCycle: "h23",
-  } as const;
-  return new Date(timeMs).toLocaleString(language.value, options);
 }

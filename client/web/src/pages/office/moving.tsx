@@ -20,6 +20,7 @@ export function MoveDialog({ organiser, view, pairing }: Props) {
   const before = useSignal(slot?.moved?.before ?? "");
   const clock = useSignal(clockOf(slot?.moved?.not_before_ms ?? 0));
   if (!slot) return null;
+  const sheet = organiser.feed.sheet.value;
   const others = view.slots.filter((one) => !one.running && one.pairing !== pairing);
   return (
     <Dialog title={t("office.move.title")} onClose={() => organiser.close()}>
@@ -38,7 +39,7 @@ export function MoveDialog({ organiser, view, pairing }: Props) {
         }}
       >
         <p>
-          <b>{versusOf(slot)}</b> <span class="muted">{said(slot.fixture)}</span>
+          <b>{versusOf(slot, sheet)}</b> <span class="muted">{said(slot.fixture)}</span>
         </p>
         <label class="field">
           <span>{t("office.move.court")}</span>
@@ -67,7 +68,7 @@ export function MoveDialog({ organiser, view, pairing }: Props) {
             <option value="">{t("office.move.usual")}</option>
             {others.map((one) => (
               <option key={one.pairing} value={one.pairing}>
-                {said(one.fixture)}: {versusOf(one)}
+                {said(one.fixture)}: {versusOf(one, sheet)}
               </option>
             ))}
           </select>

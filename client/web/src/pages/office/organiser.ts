@@ -15,6 +15,7 @@ import {
   type TeamRow,
 } from "../../core/desk";
 import type { Phrase } from "../../core/phrase";
+import { pagesForAll } from "../../core/served";
 import { said, sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 
@@ -117,8 +118,7 @@ export class Organiser {
   }
 
   private async getPages(): Promise<void> {
-    const { address } = await this.desk.connection.ask<{ address: string }>("address");
-    this.pages.value = address;
+    this.pages.value = (await pagesForAll()) || this.pages.peek();
   }
 
   private again(afterMs: number): void {

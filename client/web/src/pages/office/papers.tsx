@@ -6,13 +6,13 @@ import { places } from "../../core/contest/places";
 import type { ContestSheet } from "../../core/contest/sheet";
 import type { OfficeView } from "../../core/desk";
 import { pictureUrl } from "../../core/picture";
-import { columns } from "../../core/timetable";
+import { wholeDay } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { seatName, timeOf } from "../../i18n/words";
 import { Certificate, Papers } from "../../ui/papers";
 import { Schedule } from "../contest/schedule";
 import { Tables } from "../contest/standings";
-import { placeTitle, stageTitle } from "../contest/words";
+import { gameTitle, placeTitle, stageTitle } from "../contest/words";
 import type { Organiser, Paper } from "./organiser";
 
 interface Props {
@@ -28,7 +28,7 @@ export function OfficePapers({ organiser, paper }: Props) {
   }, [organiser, paper]);
   return (
     <Papers paper={paper} hint={t("office.paper.hint")} onBack={() => organiser.close()}>
-      {view && paper === "schedule" && <Times view={view} />}
+      {view && sheet && paper === "schedule" && <Times view={view} sheet={sheet} />}
       {view && paper === "links" && <Links organiser={organiser} view={view} />}
       {sheet && paper === "results" && <Results sheet={sheet} />}
       {sheet && paper === "certificates" && <Certificates sheet={sheet} />}
@@ -36,29 +36,40 @@ export function OfficePapers({ organiser, paper }: Props) {
   );
 }
 
-/** When and where each match is played. */
-function Times({ view }: { view: OfficeView }) {
+/** When and where each game was played, with its result, and each match will be. */
+function Times({ view, sheet }: { view: OfficeView; sheet: ContestSheet }) {
   return (
     <section class="sheet-of-paper">
       <h1>{view.event.name}</h1>
-      <p>{t("office.paper.estimate")}</p>
-      {columns(view).map(({ court, slots }) => (
+      {view.slots.length > 0 && <p>{t("office.paper.estimate")}</p>}
+      {wholeDay(view, sheet).map(({ court, played, slots }) => (
         <table key={court}>
-          <caption>{t("contest.court", { court })}</caption>
+          <caption>{court ? t("contest.court", { court }) : t("office.paper.noCourt")}</caption>
           <thead>
             <tr>
               <th scope="col">{t("office.time")}</th>
               <th scope="col">{t("office.left")}</th>
               <th scope="col">{t("office.right")}</th>
+              <th scope="col">{t("office.result")}</th>
               <th scope="col">{t("office.match")}</th>
             </tr>
           </thead>
           <tbody>
+            {played.map(({ pairing, game, at_ms, teams, scores }) => (
+              <tr key={`${pairing}/${game}`}>
+                <td class="number">{at_ms > 0 && timeOf(at_ms)}</td>
+                <th scope="row">{teams[0]}</th>
+                <th scope="row">{teams[1]}</th>
+                <td class="number">{scores.join(" : ")}</td>
+                <td>{gameTitle(sheet, pairing, game)}</td>
+              </tr>
+            ))}
             {slots.map(({ pairing, at_ms, teams, who, fixture }) => (
               <tr key={pairing}>
-                <td>{timeOf(at_ms)}</td>
+                <td class="number">{timeOf(at_ms)}</td>
                 <th scope="row">{who ? said(who[0]) : teams[0]}</th>
                 <th scope="row">{who ? said(who[1]) : teams[1]}</th>
+                <td />
                 <td>{said(fixture)}</td>
               </tr>
             ))}

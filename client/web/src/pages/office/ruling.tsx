@@ -11,6 +11,8 @@ import {
   isMatch,
   type StageView,
   score,
+  seating,
+  written,
 } from "../../core/contest/sheet";
 import type { Effect, OfficeView, Rule } from "../../core/desk";
 import { t } from "../../i18n";
@@ -64,7 +66,7 @@ export function Rulings({ organiser }: Props) {
             <button
               class="button quiet small"
               type="button"
-              aria-label={t("office.decideOf", { versus: match.teams.join(" – ") })}
+              aria-label={t("office.decideOf", { versus: versus(match) })}
               onClick={() => {
                 organiser.over.value = { is: "rule", pairing: match.pairing.id };
               }}
@@ -81,6 +83,13 @@ export function Rulings({ organiser }: Props) {
   );
 }
 
+/** The teams of a match in its order. */
+function versus(match: ContestMatch): string {
+  return seating(match)
+    .map((place) => match.teams[place])
+    .join(" – ");
+}
+
 interface LineProps {
   sheet: ContestSheet;
   view: StageView;
@@ -90,11 +99,14 @@ interface LineProps {
 function Line({ sheet, view, match }: LineProps) {
   const points = score(match, view);
   const how = howEnded(match);
+  const [one, other] = seating(match);
   return (
     <span class="line">
-      <Side match={match} place={0} />{" "}
-      <span class="score">{points ? points.join(" : ") : "–"}</span>{" "}
-      <Side match={match} place={1} />{" "}
+      <Side match={match} place={one} />{" "}
+      <span class="score">
+        {points ? `${written(points[one])} : ${written(points[other])}` : "–"}
+      </span>{" "}
+      <Side match={match} place={other} />{" "}
       <span class="muted">
         {matchTitle(sheet, match.pairing.id)}
         {how && ` · ${t(`contest.how.${how}`)}`}
@@ -149,7 +161,9 @@ export function RuleDialog({ organiser, pairing, view }: DialogProps) {
   }, [organiser, isWhole, kind.value, game.value, team.value, first.value, second.value]);
   if (!sheet || !there) return null;
   const { match } = there;
-  const teams = match.teams.map((one) => one ?? "");
+  const order = seating(match);
+  const fields = [first, second];
+  const teams = order.map((place) => match.teams[place] ?? "");
   const numbers = gamesOf(match);
   const present = pointsOf(match, game.value);
   return (
@@ -201,14 +215,14 @@ export function RuleDialog({ organiser, pairing, view }: DialogProps) {
         )}
         {isScore && (
           <div class="points">
-            {[first, second].map((points, place) => (
+            {order.map((place, at) => (
               <label key={place} class="field">
-                <span>{t("office.pointsOf", { team: teams[place]! })}</span>
+                <span>{t("office.pointsOf", { team: teams[at]! })}</span>
                 <input
                   inputMode="numeric"
-                  value={points.value}
+                  value={fields[place]!.value}
                   onInput={(event) => {
-                    points.value = event.currentTarget.value.trim();
+                    fields[place]!.value = event.currentTarget.value.trim();
                   }}
                 />
               </label>
@@ -218,7 +232,7 @@ export function RuleDialog({ organiser, pairing, view }: DialogProps) {
                 {t("office.pointsNow", {
                   first: teams[0]!,
                   second: teams[1]!,
-                  points: present.join(" : "),
+                  points: order.map((place) => present[place]).join(" : "),
                 })}
               </p>
             )}

@@ -1,9 +1,9 @@
 /** The timetable, a column for each court. A match can be dragged, or moved with its button. */
 
 import { type Signal, useSignal } from "@preact/signals";
-import { isHeld } from "../../core/contest/sheet";
+import { type ContestSheet, isHeld, named } from "../../core/contest/sheet";
 import type { OfficeView, Slot } from "../../core/desk";
-import { type Column, canMove, columns, dropped } from "../../core/timetable";
+import { type Column, canDecide, canMove, columns, dropped } from "../../core/timetable";
 import { said, t } from "../../i18n";
 import { timeOf } from "../../i18n/words";
 import type { Organiser } from "./organiser";
@@ -120,15 +120,19 @@ function CourtColumn({ organiser, column, dragged }: ColumnProps) {
   );
 }
 
-/** Who plays, as far as that is known. */
-export function versusOf({ teams, who }: Slot): string {
-  return who ? who.map(said).join(" – ") : teams.join(" – ");
+/** Who plays, as far as that is known, in the order of the match. */
+export function versusOf({ pairing, teams, who }: Slot, sheet: ContestSheet | null): string {
+  if (who) return who.map(said).join(" – ");
+  return (sheet ? named(sheet, pairing, teams).teams : teams).join(" – ");
 }
 
 function Card({ organiser, slot }: { organiser: Organiser; slot: Slot }) {
   const view = organiser.view.value;
   const held = view !== null && isHeld(view, Date.now());
-  const versus = versusOf(slot);
+  const versus = versusOf(slot, organiser.feed.sheet.value);
+  const over = (is: "move" | "rule") => () => {
+    organiser.over.value = { is, pairing: slot.pairing };
+  };
   return (
     <>
       <span class="time" title={held ? t("office.notBefore.text") : undefined}>
@@ -149,18 +153,28 @@ function Card({ organiser, slot }: { organiser: Organiser; slot: Slot }) {
         </small>
       ))}
       {slot.held && <small class="warning">{said(slot.held)}</small>}
-      {canMove(slot) && (
-        <button
-          class="button quiet small"
-          type="button"
-          aria-label={t("office.moveOf", { versus })}
-          onClick={() => {
-            organiser.over.value = { is: "move", pairing: slot.pairing };
-          }}
-        >
-          {t("office.move")}
-        </button>
-      )}
+      <span class="acts">
+        {canDecide(slot) && (
+          <button
+            class="button quiet small"
+            type="button"
+            aria-label={t("office.decideOf", { versus })}
+            onClick={over("rule")}
+          >
+            {t("office.decide")}
+          </button>
+        )}
+        {canMove(slot) && (
+          <button
+            class="button quiet small"
+            type="button"
+            aria-label={t("office.moveOf", { versus })}
+            onClick={over("move")}
+          >
+            {t("office.move")}
+          </button>
+        )}
+      </span>
     </>
   );
 }

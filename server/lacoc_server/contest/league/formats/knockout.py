@@ -1,6 +1,6 @@
 """Single and double knockout, as tables of sources."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -11,6 +11,8 @@ from lacoc_server.contest.league.standings import Standing, Table, counted, stan
 
 ORDER = ("seed",)
 """What orders teams that went out in the same round; they share the rank."""
+_LEVEL = ("difference", "seed")
+"""What decided a match that was level in games; tie-breaks have the same codes."""
 
 
 class Knockout(DrawnAtOnce):
@@ -41,6 +43,7 @@ class Knockout(DrawnAtOnce):
         places = _places(matches.values())
         rows = standings(stage.entries, counted(matches.values()), ORDER, last).rows
         rows = tuple(sorted(rows, key=lambda row: (row.out, places.get(row.team, 0))))
+        decided = {(match.winner, match.loser): match.how for match in _last(matches.values())}
         ranked: list[Standing] = []
         for number, row in enumerate(rows, 1):
             before = ranked[-1] if ranked else None
@@ -49,8 +52,17 @@ class Knockout(DrawnAtOnce):
                 before.out,
             )
             rank = before.rank if before is not None and tied else number
-            ranked.append(msgspec.structs.replace(row, rank=rank, shares=False))
+            how = decided.get((before.team, row.team), "") if before is not None else ""
+            code = how if how in _LEVEL else ""
+            ranked.append(msgspec.structs.replace(row, rank=rank, shares=False, decided_by=code))
         return (Table(section="", tie_breaks=ORDER, rows=tuple(ranked)),)
+
+
+def _last(matches: Iterable[ContestMatch]) -> Iterator[ContestMatch]:
+    """Yield the decided matches whose two teams end in two places next to each other."""
+    for match in matches:
+        if match.pairing.winner_place and match.state == "decided":
+            yield match
 
 
 def _places(matches: Collection[ContestMatch]) -> dict[str, int]:

@@ -128,7 +128,7 @@ def _who(
         else say("who.seed", seed=int(team))
         for team, source in zip(match.teams, match.pairing.sources, strict=True)
     )
-    return first, second
+    return (first, second) if match.seated == match.teams else (second, first)
 
 
 def _from(whole: Contest, view: StageView, source: AnySource) -> Phrase:

@@ -8,7 +8,7 @@ from lacoc_server.contest.league.contest import Contest, StageView, next_round
 from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new, stage_of
 from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.matches import ContestMatch
-from lacoc_server.contest.league.timetable.seeding import kept_apart
+from lacoc_server.contest.league.timetable.seeding import by_rank, kept_apart
 
 
 class Assignment(msgspec.Struct, frozen=True, kw_only=True):
@@ -201,10 +201,8 @@ def _next_stage(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:
     """Return the teams of a stage by seeding; None: they are not known yet."""
-    before = {view.name: view for view in contest.stages}
-    if any(not view.over for view in before.values()):
+    if any(not view.over for view in contest.stages):
         return None
-    here = [team.name for team in contest.teams if not team.gone]
-    seeding = before[plan.after].ranking if plan.after in before else here
-    left = [team for team in seeding if team in here]
+    here = {team.name for team in contest.teams if not team.gone}
+    left = [team for team in by_rank(contest, plan) if team in here]
     return tuple(left[: plan.teams or None])

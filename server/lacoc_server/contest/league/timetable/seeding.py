@@ -1,14 +1,45 @@
 """Who meets first in a stage that is to be drawn, and an order in which fewer meet again; pure."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import NamedTuple
 
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import set_apart
 from lacoc_server.contest.league.facts import Planned
 from lacoc_server.contest.league.formats.format import Format, Stage
 from lacoc_server.contest.league.pairing import Entrant
+from lacoc_shared.words import Phrase, say
 
 Pairs = tuple[tuple[str, str], ...]
+
+
+class _Apart(NamedTuple):
+    """What keeps teams of a stage apart."""
+
+    meet: tuple[tuple[int, int], ...]
+    """Places in the seeding, from 0, whose teams surely meet."""
+    clubs: frozenset[tuple[str, str]]
+    """Each team that has a club, with the club."""
+    met: frozenset[frozenset[str]]
+    """Pairs that have met."""
+
+    def clash(self, order: tuple[str, ...]) -> Pairs:
+        """Return the pairs of an order that should not meet first, and do."""
+        pairs = ((order[one], order[other]) for one, other in self.meet)
+        return tuple(_clashing(pairs, dict(self.clubs), self.met))
+
+
+def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
+    """Return the teams of which a stage takes its own, in the order of its seeding.
+
+    It is the ranking of the stage that it follows, or the order in which teams entered. Teams that
+    have left can be among them.
+    """
+    before = {view.name: view for view in contest.stages}
+    if plan.after in before:
+        return before[plan.after].ranking
+    return tuple(team.name for team in contest.teams)
 
 
 def first_meetings(plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
@@ -53,17 +84,54 @@ def kept_apart(
     These are teams of one club (`apart`), and teams that have met before (`met_apart`). The order
     changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
     """
-    club_of = {team.name: team.club for team in contest.teams if team.club and plan.apart}
-    met = met_before(contest, plan) if plan.met_apart else frozenset()
+    return _set_apart(_apart(contest, plan, how, len(order)), order)
 
-    def clash(order: tuple[str, ...]) -> Pairs:
-        return tuple(_clashing(first_meetings(plan, how, order), club_of, met))
 
-    return set_apart(order, clash)
+def moved_apart(
+    contest: Contest, plan: Planned, how: Format, entries: tuple[str, ...]
+) -> dict[str, Phrase]:
+    """Say of each team with another seed than by rank for which pairs it changed its place.
+
+    These are its own; of a team that only made room, all of them.
+    Nothing is said where the plan does not give this order: a lot or the organiser made it, or
+    the ranking was corrected since.
+
+    Args:
+        contest: the contest.
+        plan: the plan of the stage.
+        how: its format.
+        entries: its teams by their seeding.
+    """
+    ranked = tuple(team for team in by_rank(contest, plan) if team in entries)
+    if ranked == entries or kept_apart(contest, plan, how, ranked) != entries:
+        return {}
+    clash = _apart(contest, plan, how, len(entries)).clash
+    still = {frozenset(pair) for pair in clash(entries)}
+    avoided = dict.fromkeys(pair for pair in clash(ranked) if frozenset(pair) not in still)
+    found: dict[str, Phrase] = {}
+    for seed, team in enumerate(entries, 1):
+        instead = ranked.index(team) + 1
+        if seed != instead:
+            own = [pair for pair in avoided if team in pair]
+            pairs = [" – ".join(pair) for pair in own or avoided]
+            found[team] = say("advance.moved", seed=seed, instead=instead, pairs=pairs)
+    return found
+
+
+def _apart(contest: Contest, plan: Planned, how: Format, teams: int) -> _Apart:
+    numbers = tuple(map(str, range(teams)))
+    meet = tuple((int(one), int(other)) for one, other in first_meetings(plan, how, numbers))
+    clubs = frozenset((one.name, one.club) for one in contest.teams if one.club and plan.apart)
+    return _Apart(meet, clubs, met_before(contest, plan) if plan.met_apart else frozenset())
+
+
+@lru_cache(maxsize=16)  # each sheet asks again, and with many teams it takes seconds
+def _set_apart(kept: _Apart, order: tuple[str, ...]) -> tuple[str, ...]:
+    return set_apart(order, kept.clash)
 
 
 def _clashing(
-    pairs: Pairs, club_of: Mapping[str, str], met: frozenset[frozenset[str]]
+    pairs: Iterable[tuple[str, str]], club_of: Mapping[str, str], met: frozenset[frozenset[str]]
 ) -> Iterator[tuple[str, str]]:
     """Yield each pair once for each reason why it should not meet."""
     for one, other in pairs:

@@ -1,19 +1,24 @@
-/** Offers the table that the teacher handed out. */
+/** Offers a gait that would take the place of the own one. */
 
-import type { HandedTable } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { Banner } from "../../../ui/banner";
-import type { Handed } from "./handed";
 
-export function Offer({ handed, offered }: { handed: Handed; offered: HandedTable }) {
+interface Props {
+  /** What is offered, as a sentence. */
+  text: string;
+  onTake: () => void;
+  onLater: () => void;
+}
+
+export function Offer({ text, onTake, onLater }: Props) {
   return (
     <Banner calm>
-      <span>{t("design.handed", { title: offered.title })}</span>
+      <span>{text}</span>
       <span class="offer">
-        <button class="button strong" type="button" onClick={() => handed.take(offered)}>
+        <button class="button strong" type="button" onClick={onTake}>
           {t("design.handed.take")}
         </button>
-        <button class="button" type="button" onClick={() => handed.putOff(offered)}>
+        <button class="button" type="button" onClick={onLater}>
           {t("design.handed.later")}
         </button>
       </span>

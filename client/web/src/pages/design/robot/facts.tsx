@@ -8,7 +8,7 @@ import type { Files } from "../files/files";
 import { Field } from "./field";
 import type { Numbers } from "./numbers";
 import type { RobotInUse } from "./robot";
-import { limitText, NUMBERS, pairOf, textOf, unitOf } from "./units";
+import { limitText, NUMBERS, OF_A_LEG, pairOf, textOf, unitOf } from "./units";
 
 interface Props {
   robot: RobotInUse;
@@ -60,7 +60,48 @@ export function Robot({ robot, numbers, files, can }: Props) {
           ))}
         </tbody>
       </table>
+      <LegPlaces robot={reply} numbers={numbers} />
     </section>
+  );
+}
+
+/** Where each leg is fixed to the body, and where it points. */
+function LegPlaces({ robot, numbers }: { robot: RobotReply; numbers: Numbers }) {
+  return (
+    <>
+      <h3>{t("design.legPlaces")}</h3>
+      <p class="muted">{t("design.legPlacesHint")}</p>
+      <table class="facts leg-places">
+        <thead>
+          <tr>
+            <th scope="col">{t("design.legPlaces.leg")}</th>
+            {OF_A_LEG.map((entry) => (
+              <th key={entry} scope="col">
+                {t(`design.fact.${entry}`)} <small>{unitOf(entry).shown}</small>
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {robot.shapes.map(({ label }, leg) => (
+            <tr key={label}>
+              <th scope="row">{label}</th>
+              {OF_A_LEG.map((entry) => (
+                <td key={entry}>
+                  <Field
+                    numbers={numbers}
+                    number={{ entry, leg }}
+                    label={`${label}, ${t(`design.fact.${entry}`)}`}
+                    shown={textOf(pairOf(robot, { entry, leg })[0], unitOf(entry))}
+                    robot={robot}
+                  />
+                </td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </>
   );
 }
 
@@ -73,7 +114,8 @@ interface FactProps {
 
 function Fact({ robot, name, numbers }: FactProps) {
   const unit = unitOf(name);
-  const [low, high] = pairOf(robot, name);
+  const number = { entry: name, leg: null };
+  const [low, high] = pairOf(robot, number);
   const limits = robot.limits[name] as [number | null, number | null] | undefined;
   const isOut =
     limits &&
@@ -88,7 +130,7 @@ function Fact({ robot, name, numbers }: FactProps) {
       </th>
       <td>
         {numbers ? (
-          <Field numbers={numbers} name={name} label={label} shown={shown} robot={robot} />
+          <Field numbers={numbers} number={number} label={label} shown={shown} robot={robot} />
         ) : (
           shown
         )}

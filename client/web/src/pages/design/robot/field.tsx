@@ -5,27 +5,27 @@ import { useId, useRef } from "preact/hooks";
 import { numberOf } from "../../../core/design/table";
 import type { RobotReply } from "../../../core/wire";
 import type { Numbers } from "./numbers";
-import { pairOf, textOf, unitOf } from "./units";
+import { pairOf, type RobotNumber, textOf, unitOf } from "./units";
 
 interface Props {
   numbers: Numbers;
   robot: RobotReply;
-  name: string;
+  number: RobotNumber;
   label: string;
   /** The number as it is; where legs differ, the lowest and the highest. */
   shown: string;
 }
 
-export function Field({ numbers, robot, name, label, shown }: Props) {
+export function Field({ numbers, robot, number, label, shown }: Props) {
   const typed = useSignal<string | null>(null);
   const wrong = useSignal("");
   /** Counts the visits to the field: all steps of one visit are one step to undo. */
   const visit = useRef(0);
   const note = useId();
-  const unit = unitOf(name);
+  const unit = unitOf(number.entry);
 
   const put = async (text: string) => {
-    const why = await numbers.set(name, text, `${name} ${visit.current}`);
+    const why = await numbers.set(number, text, `${number.entry} ${number.leg} ${visit.current}`);
     if (typed.peek() !== text) return; // somebody typed on
     wrong.value = why ?? "";
     if (why === null) typed.value = null;
@@ -38,7 +38,8 @@ export function Field({ numbers, robot, name, label, shown }: Props) {
     wrong.value = "";
   };
   const step = (sign: number) => {
-    const from = numberOf(typed.peek() ?? "") ?? pairOf(robot, name)[sign > 0 ? 1 : 0] * unit.times;
+    const from =
+      numberOf(typed.peek() ?? "") ?? pairOf(robot, number)[sign > 0 ? 1 : 0] * unit.times;
     const text = textOf((from + sign * unit.step) / unit.times, unit);
     wrong.value = "";
     typed.value = text;

@@ -3,9 +3,13 @@
 import { computed, signal } from "@preact/signals";
 import type { RobotReply, SentFile } from "../../../core/wire";
 import type { Gateway } from "../gateway";
+import type { RobotNumber } from "./units";
 
 /** Name of the file that a change of the workshop's hexapod begins. */
 const NEW_FILE = "robot.toml";
+
+/** A number, and its value in the unit of its name. */
+export type Change = readonly [number: RobotNumber, value: number];
 
 /** A robot that was read. */
 export interface ReadRobot {
@@ -52,16 +56,12 @@ export class RobotInUse {
     return { name: text === null ? "" : name, text, reply, isEdited: false };
   }
 
-  /**
-   * The robot with other numbers; rejects with `Refused` if no robot may have them.
-   *
-   * @param numbers Their values by name, in the units of the names.
-   */
-  async changed(used: ReadRobot, numbers: Record<string, number>): Promise<ReadRobot> {
+  /** The robot with other numbers; rejects with `Refused` if no robot may have them. */
+  async changed(used: ReadRobot, changes: readonly Change[]): Promise<ReadRobot> {
     const name = used.name || NEW_FILE;
     let { text } = used;
-    for (const [entry, value] of Object.entries(numbers)) {
-      const fields = { robot: fileOf({ name, text }), entry, value };
+    for (const [{ entry, leg }, value] of changes) {
+      const fields = { robot: fileOf({ name, text }), entry, leg: leg ?? 0, value };
       text = (await this.gateway.ask<{ robot: string }>("set_robot", fields)).robot;
     }
     return { ...(await this.read(name, text)), isEdited: true };

@@ -33,6 +33,17 @@ export const NUMBERS: readonly (readonly [name: string, isFree: boolean])[] = [
   ["friction", true],
 ];
 
+/** Where a leg is fixed to the body and where it points: its own numbers. */
+export const OF_A_LEG = ["leg_x_m", "leg_y_m", "leg_z_m", "leg_outward_deg"] as const;
+
+/** A number of the robot, or of one leg of it. */
+export interface RobotNumber {
+  /** Its name, as requests have it. */
+  entry: string;
+  /** From 0; null: it is of the whole robot. */
+  leg: number | null;
+}
+
 /** How a number is shown and stepped. */
 export interface Unit {
   /** The end of the number's name. */
@@ -63,8 +74,12 @@ export function unitOf(name: string): Unit {
 }
 
 /** The lowest and highest value of a number in all legs. */
-export function pairOf(robot: RobotReply, name: string): [number, number] {
-  const value = robot.facts[name];
+export function pairOf(robot: RobotReply, { entry, leg }: RobotNumber): [number, number] {
+  const shape = leg === null ? undefined : robot.shapes[leg];
+  const axis = OF_A_LEG.indexOf(entry as (typeof OF_A_LEG)[number]);
+  const value = shape
+    ? (shape.position_mm[axis] ?? 1000 * shape.outward_deg) / 1000
+    : robot.facts[entry];
   return (Array.isArray(value) ? value : [value, value]) as [number, number];
 }
 

@@ -17,9 +17,10 @@ interface ResultProps {
   sheet: Sheet;
   trials: Trials;
   showing: Showing;
+  onShare: () => void;
 }
 
-export function Result({ sheet, trials, showing }: ResultProps) {
+export function Result({ sheet, trials, showing, onShare }: ResultProps) {
   const tried = showing.shown.value;
   const other = showing.other.value;
   const before = other ?? trials.beforeShown();
@@ -31,6 +32,9 @@ export function Result({ sheet, trials, showing }: ResultProps) {
       <header>
         <h2>{tried.name || t("design.trialOf", { number: tried.number, key: tried.key })}</h2>
         {isOld && <span class="badge old">{t("design.oldTable")}</span>}
+        <button class="button quiet small" type="button" onClick={onShare}>
+          {t("design.share")}
+        </button>
       </header>
       <Verdicts tried={tried} />
       <dl class="tiles">

@@ -14,6 +14,8 @@ import { qualityOfAddress } from "../../watch/flags";
 import { rowName } from "../names";
 import type { Sheet } from "../table/sheet";
 import type { Tried } from "../trials/tried";
+import { Feet } from "./feet";
+import { FeetLayer } from "./feet_layer";
 import type { Showing } from "./showing";
 import "./stage.css";
 
@@ -25,10 +27,12 @@ interface Props {
   robot: ReadonlySignal<RobotReply | null>;
   sheet: Sheet;
   showing: Showing;
+  /** Called with the canvas after each picture. */
+  onDrawn: (canvas: HTMLCanvasElement) => void;
 }
 
 /** The robot, in the posture of the active row or in the shown trial. */
-export function Stage({ picture, robot, sheet, showing }: Props) {
+export function Stage({ picture, robot, sheet, showing, onDrawn }: Props) {
   const lit = useComputed(() => {
     const scene = picture.scene.value;
     const legs = robot.value?.legs.length ?? 0;
@@ -46,6 +50,7 @@ export function Stage({ picture, robot, sheet, showing }: Props) {
   const other = showing.other.value;
   const ghost = useMemo(() => (other ? ghostOf(showing, other) : null), [showing, other]);
   const marks = useMemo(() => marksOf(showing), [showing]);
+  const feet = useMemo(() => new Feet(sheet, robot), [sheet, robot]);
   return (
     <section class="stage" aria-label={t("design.view")}>
       <View
@@ -56,12 +61,15 @@ export function Stage({ picture, robot, sheet, showing }: Props) {
         lit={lit}
         ghost={isWatching ? ghost : null}
         marks={marks}
+        annotations={isWatching ? null : feet}
+        onDrawn={onDrawn}
         onJoint={(joint) => sheet.point(joint === null ? [] : [joint])}
         onPick={({ joint }) => {
           if (joint !== undefined) sheet.selectBeside(sheet.active.peek().row, joint);
         }}
         label={t("design.view")}
       />
+      {!isWatching && <FeetLayer feet={feet} />}
       {!sheet.table.value && <p class="loading">{t("design.loading")}</p>}
       <p class="shows">
         <ShownName sheet={sheet} showing={showing} />
