@@ -448,8 +448,11 @@ def test_a_referee_sees_what_comes_and_what_a_result_changes(room: Room) -> None
     assert isinstance(plan, CourtPlan)
     assert plan.changes[0].code == "decide.match"
     assert dict(plan.changes[0].values)["winner"] == right
+    assert "decide.rank" not in [one.code for one in plan.changes], "the stage is not over"
     ranks = {
-        one.values["team"]: one.values["after"] for one in plan.changes if one.code == "decide.rank"
+        one.values["team"]: one.values["after"]
+        for one in plan.changes
+        if one.code == "decide.rank-so-far"
     }
     assert ranks.get(right, 1) == 1  # it may have been first before
     assert left in ranks

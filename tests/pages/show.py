@@ -90,6 +90,42 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
     ]
 
 
+def covered(page: Page, by: str, what: str) -> list[str]:
+    """Return the texts of visible elements `what` that an element `by` covers, if only in part."""
+    found: list[str] = page.evaluate(
+        """([by, what]) => {
+          const boxes = (selector) => [...document.querySelectorAll(selector)]
+            .filter((one) => one.checkVisibility({ visibilityProperty: true }))
+            .map((one) => [one, one.getBoundingClientRect()])
+            .filter(([, box]) => box.width && box.height);
+          const covers = boxes(by);
+          return boxes(what)
+            .filter(([one, box]) => covers.some(([cover, other]) => !cover.contains(one)
+              && box.left < other.right - 1 && other.left < box.right - 1
+              && box.top < other.bottom - 1 && other.top < box.bottom - 1))
+            .map(([one]) => one.textContent);
+        }""",
+        [by, what],
+    )
+    return found
+
+
+def broken_names(page: Page) -> list[str]:
+    """Return the words of teams' names that are broken inside."""
+    found: list[str] = page.evaluate(
+        """() => [...document.querySelectorAll(".team-name")].flatMap((one) => {
+          const text = one.firstChild;
+          return [...text.data.matchAll(/[^\\s-]+/g)].filter(({ 0: word, index }) => {
+            const range = document.createRange();
+            range.setStart(text, index);
+            range.setEnd(text, index + word.length);
+            return new Set([...range.getClientRects()].map(({ top }) => top)).size > 1;
+          }).map(([word]) => word);
+        })"""
+    )
+    return found
+
+
 def playing(venue: Venue) -> PageClient:
     """Bring a match of two teams into play, and return the referee's page."""
     venue.contestant("left", "Ants")

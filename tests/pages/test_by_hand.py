@@ -3,7 +3,7 @@
 import pytest
 from contestant import Contestant, Sit
 from playwright.sync_api import expect
-from show import violations
+from show import broken_names, covered, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_shared.seat import Phase
@@ -17,6 +17,8 @@ performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(".js
   .map(({ encodedBodySize }) => encodedBodySize)
 """
 PHONE = {"width": 390, "height": 844}
+LONG = "Pneumonoultramicroscopic"
+"""The longest name of a team, in one word."""
 BIG = ".big:not(.fresh) .act:not([aria-disabled=true])"
 """The referee's button for the next decision."""
 _MOST_TABS = 80
@@ -123,7 +125,7 @@ def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
     """A contestant and a referee play and judge a match with fingers, each on a phone."""
     page = opened(venue, sit, viewport=PHONE, has_touch=True, is_mobile=True)
     page.find("#join-name").tap()
-    page.page.keyboard.type("Ants")  # the keyboard that a phone shows
+    page.page.keyboard.type(LONG)  # the keyboard that a phone shows
     page.find("button[type=submit]").tap()
     page.stands("seated")
     # What one has to know stands below the field: nothing hides one's own robot.
@@ -141,20 +143,30 @@ def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
     judge.page.keyboard.type("Kim")
     judge.find(".enter button[type=submit]").tap()
     judge.find(BIG).tap()
+    judge.is_toasted("Play begins in 3 seconds.")
+    assert covered(judge.page, ".toast", "button, .clock, .phase, .score-bug") == []
     page.phase(Phase.PLAYING)
     page.find('.key[data-key="2"]').tap()
     page.key_stands(2)
+    page.find(".leave").tap()
+    page.sees(".leaving", "Leave the match?")
+    page.find(".leaving button").last.tap()
     page.phase(Phase.FINISHED)
     judge.find(BIG).tap()
     judge.find("dialog button[type=submit]").tap()
     page.phase(Phase.OFFICIAL)
-    page.sees(".result", "Ants")
-    for shown in (page, judge):
-        assert violations(shown.page) == []
+    # The result has the place of the keys: there is room to scroll, and it covers nothing.
+    page.sees(".rail > .result h1", "draw")
+    page.misses(".stage .result")
+    assert page.find(".pad").is_hidden()
     watcher = sit(venue.url, viewport=PHONE, has_touch=True, is_mobile=True)
     watcher.open("/watch")
-    watcher.sees(".result", "Ants")
-    assert violations(watcher.page) == []
+    watcher.sees(".result", LONG)
+    for shown in (page, judge, watcher):
+        assert violations(shown.page) == []
+        assert shown.find("kbd:visible").count() == 0, "fingers have no keyboard"
+        assert broken_names(shown.page) == []
+        expect(shown.find(f".team-name[title='{LONG}']").first).to_be_visible()
     watcher.open("/")
     watcher.sees("h1")
     assert violations(watcher.page) == []

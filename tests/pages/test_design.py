@@ -587,6 +587,7 @@ def test_a_phone_in_japanese_tries_and_compares(
     expect(page.find(".trials > li")).to_have_count(2)
     page.page.tap(".bar >> text=比べる")
     page.sees(".differences")
+    assert page.find("kbd:visible").count() == 0
     assert page.page.evaluate("document.scrollingElement.scrollWidth") == 390
     assert violations(page.page) == []
 

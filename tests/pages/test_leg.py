@@ -121,6 +121,7 @@ def test_a_foot_is_dragged_by_touch_on_a_phone(own: OwnPage, open_page: OpenPage
         expect(page.locator(".told h2")).to_contain_text(f"{step}.")
         assert page.evaluate("document.querySelector('.leg').scrollWidth") <= PHONE["width"]
         assert violations(page) == []
+        expect(page.get_by_text("矢印キー")).to_have_count(0)
         if step == 5:
             handle = page.locator(".handle")
             box = handle.bounding_box()

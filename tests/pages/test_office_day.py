@@ -7,7 +7,7 @@ import pytest
 from chromium import OpenPage
 from office_event import Event, running
 from playwright.sync_api import Page, expect
-from show import violations
+from show import covered, violations
 
 pytestmark = pytest.mark.slow
 
@@ -39,7 +39,10 @@ def say(page: Page, label: str, text: str) -> None:
 
 
 def nothing_is_covered(watch: Page, event: Event, open_page: OpenPage) -> None:
-    """A line to all covers no head of /referee, and the bar of /watch covers no rule."""
+    """A line to all covers no head of /referee and no button of /play.
+
+    The bar of /watch covers no rule.
+    """
     for size in (PHONE, {"width": 1280, "height": 800}):
         referee = open_page(viewport=size)
         referee.goto(f"{event.url}/referee")
@@ -47,6 +50,13 @@ def nothing_is_covered(watch: Page, event: Event, open_page: OpenPage) -> None:
         expect(referee.locator(".top h1")).to_be_visible()
         assert bottom(referee, ".banner") <= top(referee, ".top h1")
         referee.close()
+        player = open_page(viewport=size)
+        player.goto(f"{event.url}/play")
+        expect(player.locator(".banner")).to_contain_text("Lunch until one")
+        expect(player.get_by_role("button", name="Test my connection")).to_be_visible()
+        assert covered(player, ".banner", "main :is(button, a, input):not(.banner *)") == []
+        assert covered(player, ".entrance", ".corner button") == []
+        player.close()
     watch.set_viewport_size({"width": 1280, "height": 800})
     expect(watch.locator(".opening .rules")).to_be_visible()
     expect(watch.locator(".foot .cheers")).to_be_visible()

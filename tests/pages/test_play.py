@@ -405,6 +405,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
     page.press("7")
     page.is_toasted("[7] Your gait file has no such key")
+    assert hidden_discs(page) == []
     page.press("Tab")  # only level B is open: Tab leads out of the field, and keys still steer
     page.sees(".stage .badge:focus")
     page.press("ArrowLeft")
@@ -441,6 +442,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     badge = page.find(".badge").inner_text()
     page.press("Space")
     page.until(f"document.querySelector('.badge').innerText !== {json.dumps(badge)}")
+    page.sees(".foot .who b", "Ants (left)")
     page.misses(".leaving")  # the hint disappears by itself
     page.find("button.leave").click()
     page.press("2")  # after the click keys still work
@@ -468,6 +470,27 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     assert asked.value.type == "beforeunload"
     page.stands("seated")
     other.close()
+
+
+def hidden_discs(page: Contestant) -> list[int]:
+    """Return which discs of the field a message, a button or the score covers."""
+    page.until("window.__lacoc?.view?.screen(0, 0, 0)")
+    found: list[int] = page.page.evaluate(
+        """() => {
+          const over = ".told > *, .score-bug, .badge, .third, .brief, .toast";
+          const boxes = [...document.querySelectorAll(over)]
+            .filter((one) => one.checkVisibility())
+            .map((one) => one.getBoundingClientRect());
+          return [...Array(36).keys()].filter((at) => {
+            const [column, row] = [at % 6, Math.floor(at / 6)];
+            const [x, y] = __lacoc.view.screen(0.3 * column - 0.75, 0.3 * row - 0.75, 0);
+            return boxes.some(
+              (box) => box.left < x && x < box.right && box.top < y && y < box.bottom,
+            );
+          });
+        }"""
+    )
+    return found
 
 
 def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
@@ -525,6 +548,7 @@ def test_a_newcomer_is_told_what_matters(venue: Venue, sit: Sit) -> None:
     page.sees(".brief .own", "Your robot stands on the left")
     page.sees(".brief", "Walk straight from a disc of your own onto the next one")
     page.sees(".brief", "Press a key once: the robot goes on until you press another.")
+    assert hidden_discs(page) == []
     for digit, does in enumerate(("stand", "turn left", "forward", "turn right")):
         page.sees(f'.key[data-key="{digit}"] small', does)
     page.press("?")
@@ -561,7 +585,7 @@ def test_a_screen_reader_hears_the_time(venue: Venue, sit: Sit) -> None:
     other = playing(venue, page)
     page.sees_text(".heard", "10 seconds left")
     live = "[aria-live=polite], [role=log], [role=status]"
-    assert page.find(f".stage :is({live}):not(.countdown)").count() == 0
+    assert page.find(f".stage :is({live}):not(.countdown, .toasts)").count() == 0
     other.close()
 
 
@@ -740,6 +764,7 @@ def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
     for digit in (2, 1):
         page.find(f'.key[data-key="{digit}"]').tap()
         page.key_stands(digit)
+    assert hidden_discs(page) == []
     page.find(".badge").tap()
     page.sees(".badge", "View 2/3")
     assert page.page.evaluate("document.documentElement.scrollWidth") <= phone["width"]

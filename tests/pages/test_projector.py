@@ -2,7 +2,7 @@
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ import pytest
 from chromium import OpenPage
 from contest_sheets import sheets
 from lacoc_process import contest_run
+from PIL import Image
 from playwright.sync_api import Page, ViewportSize, expect
 from ports import free_port
 from stand import served
@@ -18,6 +19,7 @@ from stand import served
 from lacoc_client.web.gateway.published import write_pages
 from lacoc_server.contest.acts.organiser import enter
 from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import Announced
 from lacoc_server.contest.league.sheet import encode, sheet
 
@@ -65,6 +67,18 @@ def expected(contest: Contest) -> dict[str, tuple[str, int]]:
     }
 
 
+def pictured(teams: Sequence[Team], folder: Path) -> tuple[Team, ...]:
+    """Give every other team a picture in a published folder."""
+    given = []
+    for number, team in enumerate(teams):
+        files = f"files-{number}"
+        file = folder / "entries" / files / "picture.webp"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        Image.new("RGB", (192, 192), "teal").save(file)
+        given.append(msgspec.structs.replace(team, files=files, picture=number % 2 == 0))
+    return tuple(given)
+
+
 def fits(page: Page) -> None:
     """Check that a slide fits, and that everybody can read it."""
     found = page.evaluate(
@@ -86,6 +100,9 @@ def fits(page: Page) -> None:
         LEAST_SHARE,
     )
     assert found == {"over": [0, 0], "small": []}
+    pictures = page.locator(".podium li:not([data-rank='1']) .team-picture").all()
+    sizes = {(box["width"], box["height"]) for one in pictures if (box := one.bounding_box())}
+    assert len(sizes) < 2
     banner = page.locator(".banner")
     if banner.count():
         slide, line = page.locator(".slide").bounding_box(), banner.bounding_box()
@@ -122,7 +139,10 @@ def test_every_slide_can_be_read(
     locale: str,
     line: str,
 ) -> None:
-    """All slides fit both projectors in large letters, also with a line to all below them."""
+    """All slides fit both projectors in large letters, also with a line to all below them.
+
+    Every other team gave a picture: on the podium it is as large as the letter of one without.
+    """
     told = Announced(id="f0", number=0, at_ms=0, text=line) if line else None
     kinds: set[str] = set()
     write_pages(tmp_path)
@@ -130,7 +150,8 @@ def test_every_slide_can_be_read(
         page = open_page(viewport=size, locale=locale)
         page.clock.install()
         for number, (_, event) in enumerate(sheets()):
-            shown = msgspec.structs.replace(event.contest, announced=told)
+            teams = pictured(event.contest.teams, tmp_path)
+            shown = msgspec.structs.replace(event.contest, announced=told, teams=teams)
             made = sheet("Robot Cup 2027", shown, expected(event.contest))
             file = tmp_path / "contest.json"
             file.write_bytes(encode(made))

@@ -99,7 +99,9 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         opponents = [play_a_match(player) for _ in range(2)]
         assert len({*opponents}) == len(opponents)
         player.sees(".entrance[data-state=over]", "The contest is over: place")
-        player.sees(f".entrance a[href='contest#team={PERSON}']", "Your matches and their replays")
+        own = f".entrance .button.strong[href='contest#team={PERSON}']"
+        player.sees(own, "Your matches and their replays")
+        player.misses(".entrance a[href^=watch]")
         player.sees(".entrance a[href='rules/en']", "All rules")
         assert violations(player.page) == []
 

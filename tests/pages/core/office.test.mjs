@@ -12,6 +12,7 @@ import {
   columns,
   dropped,
   momentOf,
+  teamsOfNext,
   wholeDay,
 } from "../../../client/web/src/core/timetable.ts";
 
@@ -22,6 +23,12 @@ const slot = (pairing, court, at_ms, more = {}) => ({
 const first = slot("s:a1.1", "north", 10, { running: true });
 const second = slot("s:a1.2", "north", 20);
 const third = slot("s:a1.3", "south", 5);
+
+test("the next game is named by its teams, once both are known", () => {
+  assert.equal(teamsOfNext([second, third]), "A – B");
+  assert.equal(teamsOfNext([slot("s:f1.1", "north", 5, { teams: ["A", ""] }), second]), "");
+  assert.equal(teamsOfNext([]), "");
+});
 
 test("a column has what its court plays, and then what it will play", () => {
   const view = {

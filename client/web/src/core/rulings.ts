@@ -29,6 +29,16 @@ export function corrections(events: readonly Event[]): Event[] {
   });
 }
 
+/**
+ * Whether the referee can still have the match played again: it can be declared void, or followed by
+ * another one of the same teams. Where an office opens the matches, an official result stays.
+ *
+ * @param decisions Why each decision is not legal now; null if it is.
+ */
+export function canPlayAgain({ abort, next }: Record<string, unknown>): boolean {
+  return abort === null || next === null;
+}
+
 /** What halted the match: the decision or the fault before its newest halt; null: nothing says. */
 export function whyHalted(events: readonly Event[]): Event | null {
   const index = events.findLastIndex(({ data }) => data.after === "HALTED");

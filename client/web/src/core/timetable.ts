@@ -23,6 +23,11 @@ export function columns(view: OfficeView): Column[] {
   }));
 }
 
+/** Who plays in the first of some games to come; "" if nobody knows both teams. */
+export function teamsOfNext([next]: readonly Slot[]): string {
+  return next?.teams.every(Boolean) ? next.teams.join(" – ") : "";
+}
+
 /** A game that has its result, as a paper lists it. */
 export interface PlayedGame {
   pairing: string;

@@ -3,6 +3,7 @@
 import { effect, signal, useComputed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { amount, flag } from "../core/address";
+import { Between } from "../core/between";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { inPieces } from "../core/pieces";
@@ -14,8 +15,11 @@ import { isOver, waitsFor } from "../ui/banner";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Aside } from "./watch/aside";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
-import { EventCard, useBetween, useEvent, useResultIsRead } from "./watch/event";
+import { EventCard, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
+
+/** For so long a stream shows the result; then what comes next. */
+const READ_MS = 15_000;
 
 const court = new Court(
   USUAL_HZ,
@@ -26,6 +30,8 @@ const court = new Court(
 /** The director's second picture. */
 const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside", inPieces) : null;
 const replays = new Replays(court);
+const between = new Between(court, court);
+between.beginAfter(READ_MS);
 const style: Style = {
   camera: cameraOfAddress(),
   quality: qualityOfAddress() ?? "auto",
@@ -48,8 +54,6 @@ document.documentElement.classList.toggle("transparent", style.transparent);
 export default function Overlay() {
   const over = useComputed(() => isOver(court)).value;
   useEvent(court);
-  const isRead = useResultIsRead(court);
-  const between = (useBetween(court) && court.begun.value) || isRead;
   const stale = court.begun.value && !court.live.value && !over;
   useEffect(() => {
     document.title = "LACOC";
@@ -60,7 +64,7 @@ export default function Overlay() {
         match={court}
         style={style}
         scale={scale}
-        before={between && <EventCard court={court} />}
+        before={between.isOn.value && <EventCard court={court} />}
         belowScore={<OnAir court={court} />}
         inCentre={<LatestResults court={court} />}
         replays={replays}

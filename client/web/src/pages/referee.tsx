@@ -11,6 +11,7 @@ import { played } from "../i18n/words";
 import { LinkBanner } from "../ui/banner";
 import { KeyHelp, type KeyRow, showKeys } from "../ui/key_help";
 import { ScoreBug } from "../ui/score";
+import { hasKeyboard } from "../ui/screen";
 import { Settings } from "../ui/settings";
 import { Toasts, toast } from "../ui/toasts";
 import "./referee.css";
@@ -74,7 +75,6 @@ export default function Referee() {
         />
       )}
       <Reasons />
-      <Toasts />
     </main>
   );
 }
@@ -84,20 +84,25 @@ function TopBar({ onHelp, onSettings }: { onHelp: () => void; onSettings: () => 
   const sheet = court.sheet.value;
   return (
     <header class="top">
-      <h1>
-        {t("referee.title")}
-        <span class="muted">
-          {court.welcome.value?.contest && `${court.welcome.value.contest} · `}
-          {sheet && `${t("referee.court", { court: sheet.court })} · `}
-          {match > 0 && t("referee.match", { match })}
-          {sheet && ` · ${played(sheet)}`}
-        </span>
-      </h1>
+      <div class="title">
+        <h1>
+          {t("referee.title")}
+          <span class="muted">
+            {court.welcome.value?.contest && `${court.welcome.value.contest} · `}
+            {sheet && `${t("referee.court", { court: sheet.court })} · `}
+            {match > 0 && t("referee.match", { match })}
+            {sheet && ` · ${played(sheet)}`}
+          </span>
+        </h1>
+        <Toasts inPlace />
+      </div>
       <ScoreBug match={court} />
       <nav>
-        <button class="button quiet" type="button" onClick={onHelp}>
-          {t("keys.title")}
-        </button>
+        {hasKeyboard.value && (
+          <button class="button quiet" type="button" onClick={onHelp}>
+            {t("keys.title")}
+          </button>
+        )}
         <button class="button quiet" type="button" onClick={onSettings}>
           {t("settings.title")}
         </button>

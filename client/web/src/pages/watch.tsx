@@ -2,9 +2,9 @@
 
 import { computed, signal } from "@preact/signals";
 import { amount, flag, goToCourt, setting } from "../core/address";
+import { Between } from "../core/between";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
-import { part } from "../core/match";
 import { inPieces } from "../core/pieces";
 import { Replays } from "../core/replays";
 import { Rewind } from "../core/rewind";
@@ -21,9 +21,9 @@ import { KeyHelp } from "../ui/key_help";
 import { EventLog } from "../ui/log";
 import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
-import { ResultCard, useResult } from "../ui/result";
+import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
-import { isNarrow, tellHeight } from "../ui/screen";
+import { isNarrow, keepHeight, tellHeight } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
@@ -32,7 +32,7 @@ import { Aside } from "./watch/aside";
 import { Cameras, cameraKeys, cameraRows } from "./watch/cameras";
 import { Cheers, CheersSetting, Watching } from "./watch/cheers";
 import { Corner, CornerSettings, cornerKeys, cornerRows } from "./watch/corner";
-import { EventCard, useBetween, useEvent } from "./watch/event";
+import { EventCard, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import { NextOfTeams } from "./watch/next";
 import "./watch/frame.css";
@@ -54,11 +54,8 @@ const aside = court.directed ? new Court(USUAL_HZ, court.delayMs, "aside", inPie
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
-const number = part(court, (frame) => frame.match, null as number | null);
-/** The match that is shown, also where the director cuts from court to court. */
-const shownMatch = computed(() => `${court.programme.value?.court ?? ""}/${number.value}`);
-/** The match whose result card was closed. */
-const putAway = signal("");
+const between = new Between(court, shown);
+const footPx = signal(52);
 /** After the end of a match its last picture does not count as old. */
 const isStale = computed(() => court.begun.value && !court.live.value && !isOver(court));
 const title = computed(() => {
@@ -89,7 +86,11 @@ export default function Watch() {
     ? {}
     : isNarrow.value
       ? { top: opening ? 64 : 92, bottom: 8 }
-      : { top: opening ? 78 : 108, bottom: opening ? 272 : 66, right: beside ? 314 : 0 };
+      : {
+          top: opening ? 78 : 108,
+          bottom: opening ? 272 : footPx.value + 20,
+          right: beside ? 314 : 0,
+        };
   return (
     <main class="show watch">
       <div class={`scene${isStale.value ? " stale" : ""}`}>
@@ -117,10 +118,6 @@ export default function Watch() {
 }
 
 function Hud() {
-  const match = shownMatch.value;
-  const isOver = useResult(shown);
-  const between =
-    useBetween(court) || (isOver && putAway.value === match && !!court.welcome.value?.desk);
   return (
     <>
       <div class="top">
@@ -135,22 +132,20 @@ function Hud() {
       <Corner panel={panel} />
       <div class="middle-stage">
         <Countdown match={shown} />
-        {putAway.value !== match && (
+        {!between.isRead.value && (
           <ResultCard
             match={shown}
             withReplay
             isLast={!court.live.value}
             next={court.welcome.value?.desk ? <NextOfTeams court={court} /> : undefined}
-            onClose={() => {
-              putAway.value = match;
-            }}
+            onClose={() => between.begin()}
           />
         )}
         <LatestResults court={court} />
       </div>
       <div class="before">
         {court.begun.value &&
-          (between ? <EventCard court={court} /> : <OpeningCard match={shown} />)}
+          (between.isOn.value ? <EventCard court={court} /> : <OpeningCard match={shown} />)}
       </div>
       <div class="lower">
         <Introductions match={shown} />
@@ -169,8 +164,13 @@ function Hud() {
   );
 }
 
-/** What stands above the foot needs to know how high it is: cheers make it two rows. */
-const tellFoot = (foot: HTMLElement | null) => tellHeight("--foot", foot);
+/** What stands above the foot, as the field does, needs to know how high it is: cheers make it two rows. */
+const tellFoot = (foot: HTMLElement | null) => {
+  tellHeight("--foot", foot);
+  keepHeight(foot, (px) => {
+    footPx.value = px;
+  });
+};
 
 /** Which court and match this is; with several courts, the way to another one. */
 function Brand() {

@@ -11,6 +11,7 @@ import { type MessageName, said, t } from "../i18n";
 import { byRules, eventClock, logClock, markerName, team, winnerOf } from "../i18n/words";
 import { ReplayLink } from "./replay_link";
 import { SeatMark } from "./score";
+import { TeamName } from "./team_name";
 import "./result.css";
 
 const SHOWN = new Set<number>([Phase.FINISHED, Phase.OFFICIAL, Phase.VOID]);
@@ -89,7 +90,7 @@ export function ResultCard(props: Props) {
             >
               <span class="who">
                 <SeatMark sheet={sheet} index={index} />
-                <span class="name">{team(sheet, index)}</span>
+                <TeamName name={team(sheet, index)} />
               </span>
               <span class="points">{score}</span>
             </div>

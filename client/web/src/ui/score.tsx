@@ -6,6 +6,7 @@ import { type Match, part, phaseOf } from "../core/match";
 import { BEATS_PER_S, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
 import { t } from "../i18n";
 import { clock, clockTicks, hint, seatState, team } from "../i18n/words";
+import { TeamName } from "./team_name";
 
 const LAST_TICKS = 10 * BEATS_PER_S;
 
@@ -63,7 +64,7 @@ function Team({ match, index, points }: TeamProps) {
     >
       <SeatMark sheet={sheet} index={index} />
       <span class="name">
-        <span class="called">{team(sheet, index)}</span>
+        <TeamName name={team(sheet, index)} />
         {state && <span class="state">{state}</span>}
       </span>
       {points && <span class="points">{seat.score}</span>}

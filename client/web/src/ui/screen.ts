@@ -11,13 +11,25 @@ upright.addEventListener("change", () => {
   isNarrow.value = upright.matches;
 });
 
+const fine = matchMedia("(hover: hover) and (pointer: fine)");
+
+/** Where a mouse is, a keyboard is likely; fingers alone have none. */
+export const hasKeyboard = signal(fine.matches);
+fine.addEventListener("change", () => {
+  hasKeyboard.value = fine.matches;
+});
+
 /** Keep a CSS property of the page as high as an element: others make room for it. */
 export function tellHeight(property: `--${string}`, element: HTMLElement | null): void {
+  keepHeight(element, (px) => document.documentElement.style.setProperty(property, `${px}px`));
+}
+
+/** Tell how high an element is [px], now and whenever that changes. */
+export function keepHeight(element: HTMLElement | null, tell: (px: number) => void): void {
   if (!element) return;
   new ResizeObserver(([seen], observer) => {
     if (!element.isConnected) observer.disconnect();
-    const height = seen?.borderBoxSize[0]?.blockSize ?? element.offsetHeight;
-    document.documentElement.style.setProperty(property, `${Math.ceil(height)}px`);
+    tell(Math.ceil(seen?.borderBoxSize[0]?.blockSize ?? element.offsetHeight));
   }).observe(element);
 }
 

@@ -1,4 +1,4 @@
-/** The picture of a team of a contest; nothing if it gave none. */
+/** The picture of a team of a contest; nothing, or its first letter, if it gave none. */
 
 import { ownPage } from "../core/address";
 import type { ContestSheet } from "../core/contest/sheet";
@@ -8,12 +8,20 @@ interface Props {
   sheet: ContestSheet | null;
   /** The team's name. */
   team: string;
+  /** Where teams stand side by side, one without a picture has its first letter. */
+  withLetter?: boolean;
 }
 
 /** An ornament: the name stands beside it. */
-export function TeamPicture({ sheet, team }: Props) {
+export function TeamPicture({ sheet, team, withLetter = false }: Props) {
   const there = sheet?.teams.find(({ name }) => name === team);
-  if (!there?.picture) return null;
+  if (!there?.picture) {
+    return withLetter ? (
+      <i class="team-picture" aria-hidden="true">
+        {[...team][0]}
+      </i>
+    ) : null;
+  }
   const address = ownPage ? `entries/${there.files}/picture.webp` : `pictures/${there.files}.webp`;
   return (
     <img

@@ -10,7 +10,6 @@ import { SeatMark } from "./score";
 import "./thirds.css";
 
 const SHOWN_BEATS = 4.5 * BEATS_PER_S;
-const MOST = 3;
 
 /** The decisions that another part of the picture tells. */
 const TOLD_ELSEWHERE = new Set(["start", "resume", "official", "next", "ready", "declare"]);
@@ -18,6 +17,8 @@ const KINDS_TOLD = new Set(["restart", "silent", "fault"]);
 
 interface Props {
   match: Match;
+  /** At most so many at once. */
+  most?: number;
   /** Another part of the page tells a screen reader of events. */
   toldElsewhere?: boolean;
 }
@@ -26,7 +27,7 @@ interface Props {
  * The events of the last seconds. By beats, not by wall time: so it is right for a late comer,
  * with a delay, and at any place and speed of a recording.
  */
-export function Thirds({ match, toldElsewhere }: Props) {
+export function Thirds({ match, most = 3, toldElsewhere }: Props) {
   const shown = useMemo(
     () =>
       computed(() => {
@@ -38,11 +39,11 @@ export function Thirds({ match, toldElsewhere }: Props) {
           .slice(from)
           .filter((event) => event.beat <= beat && isTold(event) && isStillTrue(event, frame));
         return recent
-          .slice(-MOST)
+          .slice(-most)
           .map(({ number }) => number)
           .join(" ");
       }),
-    [match],
+    [match, most],
   );
   const numbers = shown.value ? shown.value.split(" ").map(Number) : [];
   const events = match.events.peek();

@@ -31,9 +31,14 @@ export function toast(text: string | (() => string), tone: Tone = "plain"): void
   }, SHOWN_MS);
 }
 
-export function Toasts() {
+interface Props {
+  /** Stands where the page put it and shows the newest only, not low over the page. */
+  inPlace?: boolean;
+}
+
+export function Toasts({ inPlace = false }: Props) {
   return (
-    <div class="toasts" role="status" aria-live="polite">
+    <div class={inPlace ? "toasts in-place" : "toasts"} role="status" aria-live="polite">
       {toasts.value.map(({ id, say, tone }) => (
         <div key={id} class={`toast ${tone}`}>
           {say()}

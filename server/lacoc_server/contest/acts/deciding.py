@@ -80,7 +80,11 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         if isinstance(fact, Replaced):
             lines += _meaning(then, fact)
     for stage, team, old, now in found.ranks:
-        lines.append(say("decide.rank", stage=title(then, stage), team=team, before=old, after=now))
+        name = title(then, stage)
+        if then.stage(stage).over:
+            lines.append(say("decide.rank", stage=name, team=team, before=old, after=now))
+        else:
+            lines.append(say("decide.rank-so-far", stage=name, team=team, before=old, after=now))
     changed = {stage for stage, *_ in found.ranks}
     drawn = (view.name for view in then.stages if view.plan.after in changed)
     lines += (say("decide.drawn", stage=title(then, stage)) for stage in drawn)

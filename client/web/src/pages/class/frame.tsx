@@ -3,6 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { t } from "../../i18n";
+import { Kbd } from "../../ui/kbd";
 import { toggleFullscreen } from "../../ui/screen";
 
 interface FrameProps {
@@ -65,7 +66,7 @@ export function Frame({ label, onClose, keys = {}, back, buttons, children }: Fr
       <div class="screen-acts">
         {buttons}
         <button class="button" type="button" onClick={onClose}>
-          {t("class.screen.close")}
+          {t("class.screen.close")} <Kbd>Esc</Kbd>
         </button>
       </div>
     </section>

@@ -1,7 +1,7 @@
 /** The contest on a projector: the match that is played; between matches tables, turned over by itself. */
 
 import { effect, type Signal, signal, useSignal } from "@preact/signals";
-import { type ComponentType, Fragment } from "preact";
+import type { ComponentType } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import { ownPage, short } from "../../core/address";
 import type { NextGame } from "../../core/contest/games";
@@ -14,6 +14,7 @@ import { dayTime } from "../../i18n/words";
 import { KeyHelp, type KeyRow } from "../../ui/key_help";
 import { toggleFullscreen } from "../../ui/screen";
 import { useShortcuts } from "../../ui/shortcuts";
+import { languageOf } from "../../ui/team_name";
 import { TeamPicture } from "../../ui/team_picture";
 import { BracketView } from "./bracket";
 import { Standing } from "./head";
@@ -220,6 +221,8 @@ function OnCourt({ game: { court, call, swapped } }: { game: NextGame }) {
 function Podium({ sheet }: { sheet: ContestSheet }) {
   const { steps, more } = podium(sheet);
   const winners = steps.find(({ rank }) => rank === 1)?.teams ?? [];
+  const pictured = sheet.teams.filter(({ picture }) => picture).map(({ name }) => name);
+  const withLetter = steps.some(({ teams }) => teams.some((team) => pictured.includes(team)));
   return (
     <div class="podium">
       <h2>{winnersTitle(winners)}</h2>
@@ -227,10 +230,10 @@ function Podium({ sheet }: { sheet: ContestSheet }) {
         {steps.map(({ rank, teams }) => (
           <li key={rank} data-rank={rank}>
             {teams.map((team) => (
-              <Fragment key={team}>
-                <TeamPicture sheet={sheet} team={team} />
-                <b>{team}</b>
-              </Fragment>
+              <p key={team} class="who">
+                <TeamPicture sheet={sheet} team={team} withLetter={withLetter} />
+                <b lang={languageOf(team)}>{team}</b>
+              </p>
             ))}
             <span>{rank}</span>
           </li>

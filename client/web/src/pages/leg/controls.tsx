@@ -2,6 +2,7 @@
 
 import { LEVELS } from "../../core/design/table";
 import { t } from "../../i18n";
+import { hasKeyboard } from "../../ui/screen";
 import { whyNot } from "../../ui/unreached";
 import type { Lesson } from "./lesson";
 import { mm } from "./svg";
@@ -59,7 +60,8 @@ export function Pairs({ lesson }: { lesson: Lesson }) {
   return (
     <div class="pairs">
       <p class="muted">
-        {t("leg.spot", { ...lesson.spot.value })} · {t("leg.back.keys")}
+        {t("leg.spot", { ...lesson.spot.value })}
+        {hasKeyboard.value && ` · ${t("leg.back.keys")}`}
       </p>
       {postures.map(([first, second], index) => (
         <button

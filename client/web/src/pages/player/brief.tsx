@@ -9,12 +9,17 @@ import { t } from "../../i18n";
 import { ruleOf, seatName } from "../../i18n/words";
 import { SeatMark } from "../../ui/score";
 
+/** Whether there is something to be told before play. */
+export function isBrief(phase: number): boolean {
+  return phase === Phase.LOBBY || phase === Phase.READY;
+}
+
 export function Brief({ court, player }: { court: Court; player: Player }) {
   const phase = useMemo(() => phaseOf(court), [court]).value;
   const sheet = court.sheet.value;
   const index = player.index.value;
   const seat = sheet?.seats[index];
-  if (!sheet || !seat || (phase !== Phase.LOBBY && phase !== Phase.READY)) return null;
+  if (!sheet || !seat || !isBrief(phase)) return null;
   const rule = ruleOf(sheet);
   const hasSequences = sheet.levels.includes(Level.LOCOMOTION);
   return (

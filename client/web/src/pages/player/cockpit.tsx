@@ -88,6 +88,9 @@ export function Cockpit({ alone }: { alone: boolean }) {
   const nextView = () => {
     view.value = VIEWS[(VIEWS.indexOf(view.peek()) + 1) % VIEWS.length]!;
   };
+  const openSettings = () => {
+    open.value = "settings";
+  };
   const openLinkTest = () => {
     open.value = "linktest";
   };
@@ -173,16 +176,22 @@ export function Cockpit({ alone }: { alone: boolean }) {
       if (isMatchOn()) leaving.show();
       else open.value = "leave";
     },
+    onSave: () => saveData(player),
   };
   return (
     <main class={`player${isIn ? "" : " outside"}`} data-standing={standing}>
       <LinkBanner court={court} />
       <Field
         {...{ court, player, alone, tryOut, view, hasFocus, hasInputMethod, field }}
+        urgent={
+          <>
+            <LeavingBar leaving={leaving} onStay={close} />
+            <Toasts inPlace />
+          </>
+        }
         onView={nextView}
-        onSave={() => saveData(player)}
+        onSave={controls.onSave}
       />
-      <LeavingBar leaving={leaving} onStay={close} />
       {isIn ? (
         <>
           {court.sheet.value && <h1 class="hidden-text">{played(court.sheet.value)}</h1>}
@@ -194,9 +203,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
             onFiles={() => {
               open.value = "files";
             }}
-            onSettings={() => {
-              open.value = "settings";
-            }}
+            onSettings={openSettings}
           />
         </>
       ) : (
@@ -208,13 +215,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
                 {t("linktest.test")}
               </button>
             )}
-            <button
-              class="button quiet small"
-              type="button"
-              onClick={() => {
-                open.value = "settings";
-              }}
-            >
+            <button class="button quiet small" type="button" onClick={openSettings}>
               {t("foot.settings")}
             </button>
           </div>
@@ -233,8 +234,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
           {ruleOf(court.sheet.value)} <RulesLink />
         </p>
       </KeyHelp>
-      {isIn && <Heard {...{ court, player, alone, tryOut }} />}
-      <Toasts />
+      {isIn ? <Heard {...{ court, player, alone, tryOut }} /> : <Toasts />}
     </main>
   );
 }

@@ -1,7 +1,7 @@
 /** The field and what lies over it. */
 
-import { type Signal, useComputed } from "@preact/signals";
-import type { Ref } from "preact";
+import { type Signal, useComputed, useSignal } from "@preact/signals";
+import type { ComponentChildren, Ref } from "preact";
 import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { phaseOf } from "../../core/match";
@@ -13,20 +13,21 @@ import { t } from "../../i18n";
 import { played } from "../../i18n/words";
 import { View } from "../../scene/View";
 import { Countdown } from "../../ui/opening";
-import { ResultCard } from "../../ui/result";
 import { ScoreBug } from "../../ui/score";
-import { useMedia } from "../../ui/screen";
+import { hasKeyboard, keepHeight, useMedia } from "../../ui/screen";
 import { Sound } from "../../ui/sound";
 import { Thirds } from "../../ui/thirds";
-import { Brief } from "./brief";
-import { nextStep, official } from "./steps";
+import { Brief, isBrief } from "./brief";
+import { Outcome } from "./outcome";
+import { nextStep } from "./steps";
 
 export const VIEWS = ["arena", "top", "chase"] as const;
 export type ViewName = (typeof VIEWS)[number];
 
-/** The arena is fitted between the score bug above and the badge below. */
-const INSET = { top: 118, bottom: 40 };
-const INSET_NARROW = { top: 112, bottom: 6 };
+/** Room for two lines of a message between the score and the arena [px]. */
+const MESSAGE_PX = 66;
+/** What the arena leaves free below it [px]: the line with the badge, and the card before play. */
+const BELOW = { line: 52, brief: 266, narrow: 6 };
 const NARROW = matchMedia("(max-width: 820px)");
 /** The field stands above the keys, and is too small for a card (player.css). */
 export const STACKED = matchMedia("(max-width: 520px), (max-width: 820px) and (min-height: 641px)");
@@ -42,17 +43,33 @@ interface Props {
   hasFocus: Signal<boolean>;
   hasInputMethod: Signal<boolean>;
   field: Ref<HTMLDivElement>;
+  /** What is more urgent than the next step, the most urgent first; it stands in its place. */
+  urgent: ComponentChildren;
   onView: () => void;
   onSave: () => void;
 }
 
 export function Field(props: Props) {
-  const { court, player, alone, tryOut, view, field, onView } = props;
+  const { court, player, alone, tryOut, view, field, urgent, onView, onSave } = props;
   const isNarrow = useMedia(NARROW);
   const isStacked = useMedia(STACKED);
   const standing = player.standing.value;
   const isIn = standing === "seated" || standing === "joining";
   const hasLevels = (court.sheet.value?.levels.length ?? 0) > 1;
+  const phase = useMemo(() => phaseOf(court), [court]).value;
+  const hasBrief = !alone && !isStacked && !tryOut?.standing.value && isBrief(phase);
+  const scorePx = useSignal(0);
+  const keepScore = useMemo(
+    () => (element: HTMLElement | null) =>
+      keepHeight(element, (px) => {
+        scorePx.value = px;
+      }),
+    [scorePx],
+  );
+  const inset = {
+    top: scorePx.value + MESSAGE_PX,
+    bottom: BELOW[isNarrow ? "narrow" : hasBrief ? "brief" : "line"],
+  };
   return (
     <div class="stage">
       {/* biome-ignore-start lint/a11y/noNoninteractiveTabindex: the field takes the game's keys */}
@@ -71,47 +88,38 @@ export function Field(props: Props) {
           labels={!alone}
           own={!alone && isIn ? { seat: player.index.value, name: t("tag.own") } : null}
           worth={player.gains.value?.points ?? null}
-          inset={isIn ? (isNarrow ? INSET_NARROW : INSET) : INSET_OUTSIDE}
+          inset={isIn ? inset : INSET_OUTSIDE}
           label={t("views.label")}
         />
       </div>
       {/* biome-ignore-end lint/a11y/noNoninteractiveTabindex: see above */}
-      {isIn && <p class="way-out">{t(hasLevels ? "field.outByEscape" : "field.outByTab")}</p>}
       {isIn && (
         <>
           <div class="on-stage">
-            <ScoreBug match={court} />
-            {isNarrow && court.sheet.value?.call && (
-              <p class="fixture">{played(court.sheet.value)}</p>
-            )}
-            <NextStep {...props} isNarrow={isNarrow} />
-            {!alone && !isStacked && !tryOut?.standing.value && (
-              <Brief court={court} player={player} />
-            )}
+            <div class="score" ref={keepScore}>
+              <ScoreBug match={court} />
+              {isNarrow && court.sheet.value?.call && (
+                <p class="fixture">{played(court.sheet.value)}</p>
+              )}
+            </div>
+            <div class="told">
+              {urgent}
+              <InputMethodHint {...props} />
+              <NextStep {...props} isNarrow={isNarrow} />
+            </div>
+            {hasBrief && <Brief court={court} player={player} />}
             {!alone && <Countdown match={court} />}
             {!alone && <Sound match={court} own={player.index.value} />}
-            {!alone && (
-              <ResultCard
-                match={court}
-                own={player.index.value}
-                withReplay
-                isLast={isNarrow}
-                next={official(player)}
-              >
-                {player.data && player.data.length > 0 && (
-                  <button class="button" type="button" onClick={props.onSave}>
-                    {t("end.save")}
-                  </button>
-                )}
-              </ResultCard>
-            )}
+            {!alone && !isStacked && <Outcome {...{ court, player, onSave }} isLast={isNarrow} />}
           </div>
-          <button class="badge" type="button" onClick={onView}>
-            {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
-            <span>{t(`views.${view.value}`)}</span>
-          </button>
-          {!alone && <Thirds match={court} toldElsewhere />}
-          <InputMethodHint {...props} />
+          <div class="under-field">
+            <button class="badge" type="button" onClick={onView}>
+              {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
+              <span>{t(`views.${view.value}`)}</span>
+            </button>
+            {!alone && <Thirds match={court} most={1} toldElsewhere />}
+            <p class="way-out">{t(hasLevels ? "field.outByEscape" : "field.outByTab")}</p>
+          </div>
           <Curtain {...props} />
         </>
       )}
@@ -144,7 +152,7 @@ function InputMethodHint({ hasInputMethod }: Props) {
 function Curtain({ court, hasFocus }: Props) {
   const phase = useMemo(() => phaseOf(court), [court]).value;
   const matters = phase >= Phase.READY && phase <= Phase.HALTED;
-  if (hasFocus.value || !matters) return null;
+  if (hasFocus.value || !matters || !hasKeyboard.value) return null;
   return (
     <button class="curtain" type="button" onClick={() => window.focus()}>
       <b>{t("focus.steer")}</b>

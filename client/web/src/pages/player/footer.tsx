@@ -5,6 +5,7 @@ import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { t } from "../../i18n";
 import { played, seatName, team } from "../../i18n/words";
+import { hasKeyboard } from "../../ui/screen";
 import { canChange } from "./files";
 
 interface Props {
@@ -27,15 +28,15 @@ export function Footer({ court, player, onKeys, onFiles, onSettings }: Props) {
   return (
     <footer class="foot">
       <p class="who">
+        {sheet && seat && sheet.seats.length > 1 && (
+          <b title={team(sheet, index)}>
+            {team(sheet, index)} ({seatName(seat.id)})
+          </b>
+        )}
         {sheet && <span>{played(sheet)}</span>}
         <span class="muted">
           {t("join.court")} {court.welcome.value?.court}
         </span>
-        {sheet && seat && sheet.seats.length > 1 && (
-          <span class="muted">
-            {team(sheet, index)} ({seatName(seat.id)})
-          </span>
-        )}
       </p>
       <dl>
         <div title={t("foot.tripHint")}>
@@ -63,9 +64,11 @@ export function Footer({ court, player, onKeys, onFiles, onSettings }: Props) {
       <p class={`link-state${isLinked ? " good" : ""}`}>
         {t(isLinked ? "foot.linked" : "foot.broken")}
       </p>
-      <button class="button quiet small keys-button" type="button" onClick={onKeys}>
-        {t("keys.title")} <kbd>?</kbd>
-      </button>
+      {hasKeyboard.value && (
+        <button class="button quiet small" type="button" onClick={onKeys}>
+          {t("keys.title")} <kbd>?</kbd>
+        </button>
+      )}
       <button class="button quiet small" type="button" disabled={!isOpen} onClick={onFiles}>
         {t("files.change")}
       </button>

@@ -5,6 +5,7 @@
 
 import { signal } from "@preact/signals";
 import { t } from "../../i18n";
+import { hasKeyboard } from "../../ui/screen";
 import { pressing } from "./pad";
 
 const HOLD_MS = 1000;
@@ -55,7 +56,7 @@ export function LeavingBar({ leaving, onStay }: { leaving: Leaving; onStay: () =
   if (!state) return null;
   return (
     <div class={`leaving ${state}`} role="status">
-      <p>{t("leaving.hold")}</p>
+      <p>{t(hasKeyboard.value ? "leaving.hold" : "leaving.ask")}</p>
       <button class="button small" type="button" {...pressing(() => leaving.go())}>
         {t("leaving.go")}
       </button>

@@ -9,6 +9,7 @@ import type { TryOut } from "../../core/try_out";
 import { Level, Phase, RESTART_KEY, SeatFlag } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { BEATS_PER_S } from "../../i18n/words";
+import { Kbd } from "../../ui/kbd";
 
 export const LEVEL_LETTERS = ["A", "B"] as const;
 
@@ -57,14 +58,14 @@ export function Pad(props: Props) {
         <Restart {...props} />
         <Digit {...props} digit={0} standing={standing} />
         <button class="key other" type="button" {...pressing(onView)}>
-          <kbd>Space</kbd>
+          <Kbd>Space</Kbd>
           <small>{t("pad.view")}</small>
         </button>
       </div>
       <div class="under">
         <StandingLine standing={standing} />
         <button class="button quiet leave" type="button" onClick={onLeave}>
-          <kbd>z</kbd> {t("pad.leave")}
+          <Kbd>z</Kbd> {t("pad.leave")}
         </button>
       </div>
     </section>
@@ -129,7 +130,7 @@ function LevelSwitch({ court, player, onLevel }: Props) {
           {t(level === Level.POSTURE ? "pad.levelA" : "pad.levelB")}
         </button>
       ))}
-      <kbd>Tab</kbd>
+      <Kbd>Tab</Kbd>
     </fieldset>
   );
 }
@@ -198,7 +199,7 @@ function Restart({ player, onKey }: Props) {
       aria-disabled={seconds > 0}
       {...pressing((atMs) => onKey(RESTART_KEY, atMs))}
     >
-      <kbd>x</kbd>
+      <Kbd>x</Kbd>
       <small>{seconds ? t("pad.restartIn", { seconds }) : t("pad.restart")}</small>
     </button>
   );

@@ -9,6 +9,7 @@ import type { TryOut } from "../../core/try_out";
 import { type Event, Level, Phase, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";
 import { Board } from "../../ui/board";
+import { Kbd } from "../../ui/kbd";
 import { later } from "../../ui/later";
 import { EventLog } from "../../ui/log";
 import { useMedia } from "../../ui/screen";
@@ -16,6 +17,7 @@ import { Brief } from "./brief";
 import { STACKED } from "./field";
 import { FilesChanged } from "./files";
 import { useLessons } from "./lessons";
+import { Outcome } from "./outcome";
 import { Pad } from "./pad";
 
 /** Only practice has it. */
@@ -31,6 +33,7 @@ interface Props {
   onView: () => void;
   onLeave: () => void;
   onLinkTest: () => void;
+  onSave: () => void;
 }
 
 /** What the page shows elsewhere already. */
@@ -42,10 +45,12 @@ export function isTold(event: Event): boolean {
 }
 
 export function Rail(props: Props) {
-  const { court, player, alone } = props;
+  const { court, player, alone, onSave } = props;
   const progress = useLessons(court, player);
+  const isStacked = useMedia(STACKED);
   return (
     <aside class="rail">
+      {!alone && isStacked && <Outcome {...{ court, player, onSave }} isLast />}
       {alone ? <Coach court={court} player={player} progress={progress} /> : <Before {...props} />}
       <FilesChanged court={court} player={player} alone={alone} />
       <NoKeys court={court} player={player} />
@@ -96,7 +101,7 @@ function Ready({ player }: Props) {
         disabled={!canSteer}
         onClick={() => void player.ready(true)}
       >
-        {t("ready.say")} <kbd>r</kbd>
+        {t("ready.say")} <Kbd>r</Kbd>
       </button>
     );
   }

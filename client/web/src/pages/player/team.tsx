@@ -24,6 +24,7 @@ export function TeamCard({ court, team }: Props) {
     );
   }
   const isOver = there.state === "out" || there.state === "over";
+  const own = `contest#team=${encodeURIComponent(there.team)}`;
   return (
     <section class="card entrance" aria-labelledby="entrance-title" data-state={there.state}>
       <div>
@@ -47,16 +48,23 @@ export function TeamCard({ court, team }: Props) {
         </>
       )}
       {isOver || team.driven.value ? (
-        <a class={`button ${isOver ? "strong" : ""}`} href={`watch${location.search}`}>
-          {t("watching.watch")}
-        </a>
+        <p class="row">
+          {isOver && contest && (
+            <a class="button strong" href={own}>
+              {t("team.matches")}
+            </a>
+          )}
+          {there.state !== "over" && (
+            <a class="button" href={`watch${location.search}`}>
+              {t("watching.watch")}
+            </a>
+          )}
+        </p>
       ) : (
         <p class="muted">{t("team.byItself")}</p>
       )}
       <p class="ways">
-        {contest && (
-          <a href={`contest#team=${encodeURIComponent(there.team)}`}>{t("team.matches")}</a>
-        )}
+        {contest && !isOver && <a href={own}>{t("team.matches")}</a>}
         {contest && <a href="contest">{t("team.tables")}</a>}
         <RulesLink />
       </p>

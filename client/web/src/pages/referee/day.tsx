@@ -1,11 +1,12 @@
 /** The court's part of a contest: what comes next, who is late, and what a result changes. */
 
-import { useSignal } from "@preact/signals";
+import { signal, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { ownToken } from "../../core/address";
 import { type CourtPlan, Desk as OfficeDesk } from "../../core/desk";
 import { part } from "../../core/match";
 import type { Phrase } from "../../core/phrase";
+import { teamsOfNext } from "../../core/timetable";
 import { BEATS_PER_S, Phase, SeatFlag } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { team, timeOf } from "../../i18n/words";
@@ -16,6 +17,13 @@ const AGAIN_MS = 5000;
 const LATE_S = 60;
 
 let office: OfficeDesk | null = null;
+/** What the office said last; null: nothing. */
+const plan = signal<CourtPlan | null>(null);
+
+/** Who probably plays next at this court; "" if nobody knows. */
+export function nextTeams(): string {
+  return teamsOfNext(plan.value?.coming ?? []);
+}
 
 /**
  * The connection to the contest's office; null while there is none: the gateway has no office, the
@@ -42,7 +50,6 @@ interface Result {
 export function DayCard({ desk }: { desk: Desk }) {
   const from = officeOf(desk);
   const court = desk.court.sheet.value?.court ?? "";
-  const plan = useSignal<CourtPlan | null>(null);
   useEffect(() => {
     if (!from) return;
     const look = () =>
@@ -55,7 +62,7 @@ export function DayCard({ desk }: { desk: Desk }) {
     void look();
     const timer = setInterval(look, AGAIN_MS);
     return () => clearInterval(timer);
-  }, [from, court, plan]);
+  }, [from, court]);
   const coming = plan.value?.coming ?? [];
   if (!from || !plan.value) return null;
   return (

@@ -3,6 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Phrase } from "../../core/phrase";
+import { canPlayAgain } from "../../core/rulings";
 import type { Health } from "../../core/wire";
 import { said, t } from "../../i18n";
 import type { Desk } from "./desk";
@@ -35,7 +36,7 @@ export function HealthCard({ desk }: { desk: Desk }) {
       <h2 id="health-title">{t("courtHealth.title")}</h2>
       <Verdict name={name} text={t(`courtHealth.${name}`)} />
       {health?.record_trouble && <p class="refused">{said(health.record_trouble)}</p>}
-      {health?.verdict && <FoldedAdvice advice={health.verdict.advice} />}
+      <FoldedAdvice advice={adviceOf(health)} />
       {health && (
         <dl class="facts">
           <dt>{t("courtHealth.factor")}</dt>
@@ -65,6 +66,11 @@ export function HealthCard({ desk }: { desk: Desk }) {
 
 interface AdviceProps {
   advice: readonly (Phrase | string)[];
+}
+
+/** Why the match should be played again; nothing where that can't be decided any more. */
+export function adviceOf(health: Health | null): AdviceProps["advice"] {
+  return health?.verdict && canPlayAgain(health.decisions) ? health.verdict.advice : [];
 }
 
 /** What the contest's limits say of this match so far; nothing while all is within them. */

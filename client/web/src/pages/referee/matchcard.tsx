@@ -7,11 +7,14 @@ import { whyHalted } from "../../core/rulings";
 import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
 import { type MessageName, said, t } from "../../i18n";
 import { seatName, team } from "../../i18n/words";
+import { Kbd } from "../../ui/kbd";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
+import { TeamName } from "../../ui/team_name";
 import { Act } from "./act";
+import { nextTeams } from "./day";
 import { type Answer, COMMON_REASONS, type Desk, type Step } from "./desk";
 import * as drafts from "./drafts";
-import { Advice } from "./health";
+import { Advice, adviceOf } from "./health";
 import { Outlook } from "./outlook";
 
 const CLOCK_S = 10;
@@ -57,16 +60,19 @@ export function MatchCard({ desk }: { desk: Desk }) {
 
 function BigButton({ desk }: { desk: Desk }) {
   const name = desk.next.value;
+  const does = t(`decide.${name}` as MessageName);
+  const teams = name === "next" ? nextTeams() : "";
   return (
     <div class={desk.fresh.value ? "big fresh" : "big"}>
       <Act
         why={desk.whyNot(name)}
         tone={`strong ${name}`}
-        label={t(`decide.${name}` as MessageName)}
+        label={teams ? t("referee.nextOf", { does, teams }) : does}
         onAct={() => takeNext(desk)}
       >
-        <span>{t(`decide.${name}` as MessageName)}</span>
-        <kbd>Ctrl+Enter</kbd>
+        <span>{does}</span>
+        {teams && <TeamName name={teams} />}
+        <Kbd>Ctrl+Enter</Kbd>
       </Act>
     </div>
   );
@@ -102,9 +108,8 @@ function Missing({ desk }: { desk: Desk }) {
 
 /** Beside the result, before it becomes official. */
 function ReplayAdvice({ desk }: { desk: Desk }) {
-  const advice = desk.court.health.value?.verdict?.advice;
   const over = OVER.has(desk.phase.value);
-  return over && advice ? <Advice advice={advice} /> : null;
+  return over ? <Advice advice={adviceOf(desk.court.health.value)} /> : null;
 }
 
 /** Why the match is halted, large: a court that was started again, a fault, a referee's reason. */
@@ -197,7 +202,7 @@ function Groups({ desk }: { desk: Desk }) {
             onAct={() => ask(drafts.declare(court, index))}
           >
             <SeatMark sheet={sheet} index={index} />
-            <span class="cut">{team(sheet, index)}</span>
+            <TeamName name={team(sheet, index)} />
           </Act>
         ))}
         <Act why={desk.whyNot("declare")} onAct={() => ask(drafts.declare(court, null))}>

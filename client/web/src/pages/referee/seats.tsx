@@ -13,6 +13,7 @@ import {
 import { said, t } from "../../i18n";
 import { seatName, seatState, team } from "../../i18n/words";
 import { SeatMark } from "../../ui/score";
+import { TeamName } from "../../ui/team_name";
 import { Act } from "./act";
 import type { Desk } from "./desk";
 import * as drafts from "./drafts";
@@ -49,7 +50,9 @@ function SeatCard({ desk, sheet, index }: Props) {
     <section class="card seat" data-seat={index} aria-label={t("referee.seat", { seat: side })}>
       <header>
         <SeatMark sheet={sheet} index={index} />
-        <h2>{team(sheet, index)}</h2>
+        <h2>
+          <TeamName name={team(sheet, index)} />
+        </h2>
         {state && <span class="seat-state">{state}</span>}
       </header>
       <LinkFacts desk={desk} sheet={sheet} index={index} />

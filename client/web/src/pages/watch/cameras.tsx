@@ -4,6 +4,7 @@ import type { Signal } from "@preact/signals";
 import type { Sheet } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
 import type { CameraName } from "../../scene/View";
+import { Kbd } from "../../ui/kbd";
 import type { KeyRow } from "../../ui/key_help";
 
 const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
@@ -38,15 +39,14 @@ export function Cameras({ camera, sheet }: { camera: Signal<CameraName>; sheet: 
             key={name}
             type="button"
             class="button"
+            aria-label={word}
             aria-pressed={camera.value === name}
             title={t("camera.key", { name: word, key: index + 1 })}
             onClick={() => {
               camera.value = name;
             }}
           >
-            <span class="key" aria-hidden="true">
-              {index + 1}
-            </span>
+            <Kbd>{index + 1}</Kbd>
             {word}
           </button>
         );

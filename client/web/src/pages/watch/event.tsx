@@ -1,16 +1,16 @@
 /** Between the matches of an event: which event this is, and what comes next. */
 
-import { useComputed, useSignal } from "@preact/signals";
-import { useEffect, useMemo } from "preact/hooks";
+import { useComputed } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { eventFeed } from "../../core/contest/feed";
 import { nextGames, tableAhead } from "../../core/contest/games";
 import { type ContestSheet, champions, stateOf, teamsOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
-import { phaseOf } from "../../core/match";
 import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { hint } from "../../i18n/words";
 import { directorBegins } from "../../ui/banner";
+import { TeamPicture } from "../../ui/team_picture";
 import {
   expected,
   gameTitle,
@@ -22,35 +22,8 @@ import {
 } from "../contest/words";
 import "../../ui/opening.css";
 
-/** For so long a stream shows the result; then what comes next. */
-const READ_MS = 15_000;
 const GAMES_MOST = 3;
 const ROWS_MOST = 8;
-
-/** Whether a court of an event waits for its next match; it changes only when the answer does. */
-export function useBetween(court: Court): boolean {
-  return useComputed(() => {
-    const sheet = court.sheet.value;
-    const waits = court.frame.value?.phase === Phase.LOBBY && !!sheet?.fixture && !sheet.call;
-    return waits || !court.begun.value;
-  }).value;
-}
-
-/** Whether the result of the newest match of an event has been read, and the next has not come. */
-export function useResultIsRead(court: Court): boolean {
-  const phase = useMemo(() => phaseOf(court), [court]).value;
-  const isOver = phase === Phase.OFFICIAL || phase === Phase.VOID;
-  const isRead = useSignal(false);
-  useEffect(() => {
-    isRead.value = false;
-    if (!isOver) return;
-    const timer = setTimeout(() => {
-      isRead.value = true;
-    }, READ_MS);
-    return () => clearTimeout(timer);
-  }, [isOver, isRead]);
-  return isRead.value && !!court.welcome.value?.desk;
-}
 
 /** Keep the sheet of the event new, for all that shows teams, tables and games. */
 export function useEvent(court: Court): void {
@@ -82,6 +55,11 @@ function Coming({ sheet }: { sheet: ContestSheet }) {
   if (!games.length) {
     return (
       <>
+        <div class="pictures">
+          {winners.map((team) => (
+            <TeamPicture key={team} sheet={sheet} team={team} />
+          ))}
+        </div>
         <p class="next">
           {winners.length > 0
             ? `${winnersTitle(winners)}: ${listed(winners)}`

@@ -3,7 +3,7 @@
 import { useComputed, useSignal, useSignalEffect } from "@preact/signals";
 import { type MessageName, t } from "../../../i18n";
 import { IconButton } from "../../../ui/icons";
-import { isNarrow } from "../../../ui/screen";
+import { Kbd } from "../../../ui/kbd";
 import { PhaseDots } from "../learning/dots";
 import { keyName } from "../names";
 import type { Studio } from "../studio";
@@ -61,7 +61,7 @@ export function Head({ studio, onFiles, onPhase, onSettings }: Props) {
           onClick={() => void trials.tryIt()}
         >
           {t(trials.trying.value ? "design.trying" : "design.try")}
-          {!isNarrow.value && <kbd>Ctrl+Enter</kbd>}
+          <Kbd>Ctrl+Enter</Kbd>
         </button>
         <CompareButton trials={trials} showing={showing} />
         <IconButton name="settings" label={t("settings.title")} onClick={onSettings} />

@@ -2,6 +2,7 @@
 
 import type { RobotReply } from "../../../core/wire";
 import { type MessageName, t } from "../../../i18n";
+import { hasKeyboard } from "../../../ui/screen";
 import type { Can } from "../can";
 import type { Files } from "../files/files";
 import { Field } from "./field";
@@ -42,7 +43,9 @@ export function Robot({ robot, numbers, files, can }: Props) {
           )}
         </p>
       )}
-      <p class="muted">{t("design.robotHint")}</p>
+      <p class="muted">
+        {t("design.robotHint")} {hasKeyboard.value && t("design.robotKeys")}
+      </p>
       <table class="facts">
         <thead>
           <tr>
