@@ -103,10 +103,8 @@ export class Studio {
     computed<Shown | null>(() => {
       const { watching, shown, tick } = this.showing;
       if (watching.value && shown.value) return { trial: shown.value.trial, tick: tick.value };
-      const { table, active, draft } = this.sheet;
-      const cells = table.value?.rows[active.value.row]?.cells;
-      if (!cells) return null;
-      return { cells: draft.value === null ? cells : cells.with(active.value.col, draft.value) };
+      const cells = this.sheet.posture.value;
+      return cells && { cells };
     }),
   );
 

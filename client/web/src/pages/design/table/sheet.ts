@@ -77,6 +77,13 @@ export class Sheet {
   readonly area = computed<Area>(() => areaOf(this.anchor.value, this.active.value));
   /** What is being typed into the active cell: the picture shows it already; null: nothing. */
   readonly draft = signal<Cell | null>(null);
+  /** The cells of the active row, with what is being typed; null: there is no table. */
+  readonly posture = computed<readonly Cell[] | null>(() => {
+    const { row, col } = this.active.value;
+    const cells = this.table.value?.rows[row]?.cells ?? null;
+    const draft = this.draft.value;
+    return cells && draft !== null ? cells.with(col, draft) : cells;
+  });
   /** Cells where what was pasted can't stand, with the reason; until the next edit or move. */
   readonly unpasted = signal<readonly (Place & { why: string })[]>([]);
   /** Joints that are pointed at; empty: those of the active cell are lit. */

@@ -4,7 +4,7 @@ import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { anglesOf, bring, neighbours, wayOf } from "../../../core/design/feet";
 import { jointsOfLeg } from "../../../core/design/parts";
 import { Rest } from "../../../core/design/sources";
-import { type Cell, type Table, withCells } from "../../../core/design/table";
+import { type Table, withCells } from "../../../core/design/table";
 import { type Leg, points, type Three, type Unreached } from "../../../core/leg/leg";
 import { remembered } from "../../../core/settings";
 import type { RobotReply } from "../../../core/wire";
@@ -45,7 +45,7 @@ export class Feet implements Annotations {
   readonly legs = computed<readonly Leg[]>(() => this.robot.value?.shapes ?? []);
   /** Root, 1st and 2nd of each leg now. */
   readonly angles = computed<readonly Three[]>(() => {
-    const cells = this.cells.value;
+    const cells = this.sheet.posture.value;
     const start = this.robot.value?.start_deg;
     if (!cells || !start) return [];
     return this.legs.value.map((_, leg) => anglesOf(cells, start, leg));
@@ -62,16 +62,9 @@ export class Feet implements Annotations {
   readonly handles: (HTMLElement | null)[] = [];
   readonly strokes: (SVGPolylineElement | null)[] = [];
 
-  private readonly cells = computed<readonly Cell[] | null>(() => {
-    const { table, active, draft } = this.sheet;
-    const cells = table.value?.rows[active.value.row]?.cells;
-    return cells && draft.value !== null
-      ? cells.with(active.value.col, draft.value)
-      : (cells ?? null);
-  });
   /** Height of the body's origin [m]. */
   private readonly body_m = computed(() => {
-    const [robot, cells] = [this.robot.value, this.cells.value];
+    const [robot, cells] = [this.robot.value, this.sheet.posture.value];
     return robot && cells ? new Rest(robot).poses(cells)[2]! : 0;
   });
   private place: Placing = () => null;
@@ -174,7 +167,8 @@ export class Feet implements Annotations {
     const beside = neighbours(sequence, row);
     if (!robot || !table || !sequence || !beside) return [];
     const legs = this.legs.value;
-    const cellsOf = (one: number) => (one === row ? this.cells.value! : table.rows[one]!.cells);
+    const cellsOf = (one: number) =>
+      one === row ? this.sheet.posture.value! : table.rows[one]!.cells;
     const anglesAt = (one: number, leg: number) => anglesOf(cellsOf(one), robot.start_deg, leg);
     const ways = legs.map((shape, leg): Line => {
       const postures = sequence.map((one) => anglesAt(one, leg));
