@@ -393,7 +393,7 @@ def test_a_foot_is_moved_in_the_picture(open_page: OpenPage, address: tuple[str,
     assert [page.cell(1, col) for col in range(18)] == before
     expect(page.find(".feet polyline.way")).to_have_count(6)
     page.page.click(".ways")
-    expect(page.find(".feet polyline")).to_have_count(0)
+    expect(page.find(".feet polyline.way")).to_have_count(0)
     assert violations(page.page) == []
 
 

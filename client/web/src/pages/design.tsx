@@ -1,7 +1,7 @@
 /** The page where a gait is designed, and tried (workshop 3-2, 4-1, 4-2). */
 
-import { signal, useSignal } from "@preact/signals";
-import { useEffect, useMemo } from "preact/hooks";
+import { type Signal, signal, useSignal, useSignalEffect } from "@preact/signals";
+import { useEffect, useMemo, useRef } from "preact/hooks";
 import { hasGait } from "../core/design/gait_link";
 import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
@@ -52,6 +52,7 @@ export default function Design() {
     () => ({ marks: coach.marks, target: trials.target, people: people.places, group }),
     [coach, trials, people, group],
   );
+  useQuestion(studio, tab);
   useKeys(studio);
   useDrop(dragging, (taken) => void takeFiles(files, taken));
   useLinks(studio);
@@ -216,6 +217,18 @@ function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
   }, [sheet, files, trials, membership]);
+}
+
+/** A new question of a phase does not hide behind another tab. */
+function useQuestion({ learning, can }: Studio, tab: Signal<Tab>): void {
+  const shown = useRef("");
+  useSignalEffect(() => {
+    const now = learning.phases.value;
+    const asked = can.value.learn && now?.phases[now.phase]?.asked;
+    const name = asked ? `${now?.phase} ${asked.name}` : "";
+    if (name && name !== shown.current) tab.value = "phase";
+    shown.current = name;
+  });
 }
 
 /** A link with a gait is offered when the page opens with it, and when it is pasted anywhere. */

@@ -3,6 +3,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { flag } from "../core/address";
+import type { Leg } from "../core/leg/leg";
 import { SAMPLES } from "../core/leg/samples.gen";
 import { t } from "../i18n";
 import { Settings } from "../ui/settings";
@@ -107,6 +108,11 @@ function Head({ lesson, attendance }: { lesson: Lesson; attendance: Attendance }
   );
 }
 
+/** What the first sentences of the steps name. */
+function introOf({ label, lengths_mm: [l0, l1, l2] }: Leg) {
+  return { leg: label, l0, l1, l2 };
+}
+
 function Screen({ lesson }: { lesson: Lesson }) {
   const { name, questions } = lesson.step.value;
   const { Picture, More } = SHOWN[name];
@@ -125,7 +131,7 @@ function Screen({ lesson }: { lesson: Lesson }) {
         <h2 id="step-title">
           {at + 1}. {t(`leg.step.${name}`)}
         </h2>
-        <p>{t(`leg.intro.${name}`, { leg: lesson.leg.value.label })}</p>
+        <p>{t(`leg.intro.${name}`, introOf(lesson.leg.value))}</p>
         {asked.map((question, index) => (
           <Ask key={`${name} ${index}`} lesson={lesson} question={question} at={index} />
         ))}

@@ -152,8 +152,10 @@ export class Studio {
       this.why.value = body.why;
       void this.openFirst();
     } else if (kind === "phases") {
+      const before = this.learning.phases.peek()?.phase;
       this.learning.phases.value = body;
       const can = this.can.peek();
+      if (body.phase !== before && can.learn) this.trials.suit(body.phase);
       const sample = can.save || hasEarned(body);
       this.can.value = { ...can, rules: body.rules, sample };
     } else if (kind === "progress") {

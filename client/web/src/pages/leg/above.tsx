@@ -65,6 +65,46 @@ export function Swing({ r, swing, isShown }: SwingProps) {
   );
 }
 
+/** A leg from above, turned by Root: how far forward and how far outward its foot is. */
+export function Turned({ r, root }: { r: number; root: number }) {
+  const [out, ahead] = [r * cos(root), r * sin(root)];
+  const size = Math.max(62, Math.abs(r) + 30);
+  return (
+    <svg
+      class="leg-drawing"
+      viewBox={`${-size} ${-size} ${2 * size} ${2 * size}`}
+      role="img"
+      style={textSize(2 * size)}
+      aria-label={t("leg.fromAbove")}
+    >
+      <rect class="body" x={-50} y={-45} width={50} height={90} rx={6} />
+      <Label x={-25} y={53} kind="muted">
+        ▲ {t("leg.front")}
+      </Label>
+      <g class="triangle">
+        <Line kind="side" from={[0, 0]} to={[out, 0]} />
+        <Line kind="side" from={[out, 0]} to={[out, ahead]} />
+        <RightAngle x={out} y={0} u={-out} v={ahead} />
+      </g>
+      <Line kind="link l1" from={[0, 0]} to={[out, ahead]} />
+      {root !== 0 && <Arc x={0} y={0} radius={30} from={0} to={root} />}
+      <Label x={out / 2} y={ahead < 0 ? 9 : -9}>
+        {mm(Math.abs(out))}
+      </Label>
+      {Math.abs(ahead) > 4 && (
+        <Label x={out + (out < 0 ? -8 : 8)} y={ahead / 2} anchor={out < 0 ? "end" : "start"}>
+          {mm(Math.abs(ahead))}
+        </Label>
+      )}
+      <Label x={38 * cos(root / 2)} y={38 * sin(root / 2)} kind="angle" anchor="start">
+        θ₀ {mm(root, 0)}°
+      </Label>
+      <circle class="joint" cx={0} cy={0} r={5} />
+      <circle class="foot" cx={out} cy={-ahead} r={6} />
+    </svg>
+  );
+}
+
 /** How far the body goes: an arrow in the body. */
 function arrow(way: number): string {
   const half = way / 2;

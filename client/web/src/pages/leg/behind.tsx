@@ -163,7 +163,22 @@ function Links({ leg, first, second, hasShank = true, isPale = false }: LinksPro
       <Line kind="link l0" from={[0, 0]} to={[hip.r, 0]} />
       <Line kind="link l1" from={[hip.r, 0]} to={[knee.r, knee.z]} />
       {hasShank && <Line kind="link l2" from={[knee.r, knee.z]} to={[foot.r, foot.z]} />}
+      {!isPale && (
+        <>
+          <LinkName name="L₁" from={hip} to={knee} />
+          {hasShank && <LinkName name="L₂" from={knee} to={foot} />}
+        </>
+      )}
     </g>
+  );
+}
+
+/** The name of a link, on its middle. */
+function LinkName({ name, from, to }: { name: string; from: Spot; to: Spot }) {
+  return (
+    <Label x={(from.r + to.r) / 2} y={(from.z + to.z) / 2} kind="link-name">
+      {name}
+    </Label>
   );
 }
 

@@ -1,6 +1,6 @@
 /** The formulas beside the pictures, with the numbers of the moment in them. */
 
-import { bodyWay, type Leg, spots } from "../../core/leg/leg";
+import { bodyWay, cos, type Leg, sin, spots } from "../../core/leg/leg";
 import { t } from "../../i18n";
 import { mm } from "./svg";
 
@@ -51,6 +51,18 @@ export function FootFormula({ leg, first, second }: FootProps) {
           `${l1} · sin ${deg(first)} − ${l2} · cos ${lean}`,
           mm(foot.z),
         ],
+      ]}
+    />
+  );
+}
+
+/** Where the foot is, seen from above: Root turns the whole leg. */
+export function RootFormula({ r, root }: { r: number; root: number }) {
+  return (
+    <Lines
+      lines={[
+        [`${t("leg.forward")}: r sin θ₀`, `${mm(r)} · sin ${deg(root)}`, mm(r * sin(root))],
+        [`${t("leg.outward")}: r cos θ₀`, `${mm(r)} · cos ${deg(root)}`, mm(r * cos(root))],
       ]}
     />
   );

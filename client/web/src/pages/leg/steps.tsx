@@ -5,7 +5,7 @@ import { bodyWay } from "../../core/leg/leg";
 import { feetOf, type StepName } from "../../core/leg/lesson";
 import { margin } from "../../core/leg/stance";
 import { t } from "../../i18n";
-import { RobotAbove, Swing } from "./above";
+import { RobotAbove, Swing, Turned } from "./above";
 import { Behind } from "./behind";
 import { Joints, Pairs, Slider } from "./controls";
 import { FootFormula, KneeFormula, SwingFormula } from "./formulas";
@@ -114,9 +114,14 @@ export const SHOWN: Readonly<Record<StepName, Shown>> = {
   },
   table: {
     Picture: ({ lesson }) => {
-      const [, first, second] = lesson.angles.value;
+      const [root, first, second] = lesson.angles.value;
       const robot = lesson.robot.value;
-      return <Behind robot={robot} first={first} second={second} triangles={2} isWide />;
+      return (
+        <>
+          <Behind robot={robot} first={first} second={second} triangles={2} isWide />
+          <Turned r={lesson.foot.value.r} root={root} />
+        </>
+      );
     },
     More: ({ lesson }) => <Table lesson={lesson} />,
   },

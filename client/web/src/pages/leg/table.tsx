@@ -4,13 +4,16 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { joint, LEVELS } from "../../core/design/table";
 import { GIVEN_LEG, written } from "../../core/leg/given";
-import { spots, type Three } from "../../core/leg/leg";
+import { points, spots, type Three } from "../../core/leg/leg";
 import { hasPage } from "../../core/served";
 import { t } from "../../i18n";
 import { Joints } from "./controls";
+import { RootFormula } from "./formulas";
 import type { Lesson } from "./lesson";
 
 const DESIGN = "design";
+
+const placeOf = ([x, y, z]: Three) => ({ x, y, z });
 
 export function Table({ lesson }: { lesson: Lesson }) {
   const canOpen = useSignal(false);
@@ -48,6 +51,9 @@ export function Table({ lesson }: { lesson: Lesson }) {
       </table>
       <p class="muted">{t("leg.table.round", { ...foot })}</p>
       <Joints lesson={lesson} levels={[0, 1, 2]} />
+      <p>{t("leg.table.root", placeOf(leg.position_mm))}</p>
+      <RootFormula r={foot.r} root={angles[0]} />
+      <p>{t("leg.table.foot", placeOf(points(leg, angles)[3]))}</p>
       {canOpen.value ? (
         <a class="button strong" href={`${DESIGN}?${query}`}>
           {t("leg.table.open")}

@@ -5,6 +5,7 @@ import { type MessageName, t } from "../../../i18n";
 import { IconButton } from "../../../ui/icons";
 import { Kbd } from "../../../ui/kbd";
 import { PhaseDots } from "../learning/dots";
+import type { Learning } from "../learning/learning";
 import { keyName } from "../names";
 import type { Studio } from "../studio";
 import type { Sheet } from "../table/sheet";
@@ -37,7 +38,7 @@ export function Head({ studio, onFiles, onPhase, onSettings }: Props) {
       <FileButtons studio={studio} onFiles={onFiles} />
       <div class="where">
         {can.learn && <PhaseDots learning={studio.learning} can={can} onOpen={onPhase} />}
-        <Task sheet={sheet} trials={trials} />
+        <Task sheet={sheet} trials={trials} learning={can.learn ? studio.learning : null} />
       </div>
       <div class="acts">
         <button
@@ -76,10 +77,19 @@ interface TaskProps {
   trials: Trials;
 }
 
+/** The phases before anything walks. */
+const LESSON = 0;
+const ONE_LEG = 1;
+
 /** What to do next, in a sentence. */
-function Task({ sheet, trials }: TaskProps) {
+function Task({ sheet, trials, learning }: TaskProps & { learning: Learning | null }) {
   const name = useComputed<MessageName>(() => {
     if (sheet.bad.value.length) return "design.task.bad";
+    const phases = learning?.phases.value;
+    const now = phases?.phases[phases.phase];
+    if (now?.asked) return "design.task.question";
+    if (now?.number === LESSON && now.state !== "met") return "design.task.lesson";
+    if (now?.number === ONE_LEG && now.state !== "met") return "design.task.edit";
     const last = trials.all.value.at(-1);
     if (!last) return sheet.history.value?.canUndo.value ? "design.task.try" : "design.task.edit";
     return last.version === sheet.version.value ? "design.task.read" : "design.task.again";
@@ -113,7 +123,7 @@ function KeyChooser({ sheet, trials }: TaskProps) {
         {sheet.table.value?.kind === "postures" &&
           POSES.map((pose) => (
             <option key={pose} value={pose}>
-              {t("design.keyOption", { name: pose })}
+              {t(`design.pose.${pose}`)}
             </option>
           ))}
       </select>

@@ -7,15 +7,13 @@ import { CourtButton } from "../files/court_button";
 import type { Files } from "../files/files";
 import { classes } from "../names";
 import type { Sheet } from "../table/sheet";
-import type { Pose, Trials } from "../trials/trials";
+import { POSE_OF, type Trials } from "../trials/trials";
 import { closedText, stateName } from "./dots";
 import type { Learning } from "./learning";
 import { Question } from "./question";
 import { Check, Concept, FootGuess } from "./tasks";
 import "./learning.css";
 
-/** What is to be tried in a phase. */
-const POSE_OF: Readonly<Record<number, Pose>> = { 2: "A1", 3: "A1, A2" };
 const LESSON = 0;
 const ONE_LEG = 1;
 const CYCLE = 4;
@@ -70,9 +68,11 @@ export function PhasePanel(props: Props) {
       <p>{said(phase.question)}</p>
       {number === LESSON && (
         <a class={classes("button", !phase.asked && "strong")} href="leg">
-          {now.lesson_step
-            ? t("design.lesson.goOn", { step: now.lesson_step })
-            : t("design.lesson.begin")}
+          {phase.asked || state === "met"
+            ? t("design.lesson")
+            : now.lesson_step
+              ? t("design.lesson.goOn", { step: now.lesson_step })
+              : t("design.lesson.begin")}
         </a>
       )}
       {number === ONE_LEG && (
@@ -91,7 +91,7 @@ export function PhasePanel(props: Props) {
             void trials.tryIt();
           }}
         >
-          {t("design.phase.tryPose", { pose })}
+          {t("design.phase.tryPose", { pose: t(`design.pose.${pose}`) })}
         </button>
       )}
       {number === CONCEPT && <Concept learning={learning} word={now.word} />}

@@ -25,6 +25,8 @@ const PRESSED: Record<Pose, { keys: string; seconds: number; measured: number }>
   A1: { keys: "A1", seconds: 3, measured: 1 },
   "A1, A2": { keys: "A1:1, A2", seconds: 1.5, measured: 2 },
 };
+/** What a phase tries of level A. */
+export const POSE_OF: Readonly<Record<number, Pose>> = { 2: "A1", 3: "A1, A2" };
 const MOST_TRIALS = 40;
 /** No table that was on the page has this version. */
 const NO_VERSION = -1;
@@ -57,6 +59,12 @@ export class Trials {
   press(what: number | Pose): void {
     this.pose.value = typeof what === "number" ? null : what;
     if (typeof what === "number") this.sheet.key.value = what;
+  }
+
+  /** Choose what a phase tries: a key of level B, where it names no posture. */
+  suit(phase: number): void {
+    const isOfPostures = this.sheet.table.peek()?.kind === "postures";
+    this.pose.value = (isOfPostures && POSE_OF[phase]) || null;
   }
 
   /** What the next trial presses. */

@@ -14,8 +14,12 @@ import type { Sheet } from "../table/sheet";
 
 /** A line over the picture; points in the body frame [mm]. */
 export interface Line {
-  /** The way of a foot through the key's postures, or the leg in the posture before or after. */
-  kind: "way" | "before" | "after";
+  /**
+   * The way of a foot through the key's postures, the leg in the posture before or after, or an
+   * arrow to the front of the robot.
+   */
+  kind: "way" | "before" | "after" | "front";
+  /** -1: of no leg. */
   leg: number;
   points: readonly Three[];
 }
@@ -54,7 +58,10 @@ export class Feet implements Annotations {
   readonly places = computed<readonly Three[]>(() =>
     this.angles.value.map((angles, leg) => points(this.legs.value[leg]!, angles)[3]),
   );
-  readonly lines = computed<readonly Line[]>(() => (showsWays.value ? this.linesNow() : []));
+  readonly lines = computed<readonly Line[]>(() => [
+    ...this.front.value,
+    ...(showsWays.value ? this.linesNow() : []),
+  ]);
   /** Why the foot that is moved can't be where it should be. */
   readonly unreached = signal<{ leg: number; why: Unreached } | null>(null);
 
@@ -66,6 +73,20 @@ export class Feet implements Annotations {
   private readonly body_m = computed(() => {
     const [robot, cells] = [this.robot.value, this.sheet.posture.value];
     return robot && cells ? new Rest(robot).poses(cells)[2]! : 0;
+  });
+  private readonly front = computed<readonly Line[]>(() => {
+    const robot = this.robot.value;
+    if (!robot) return [];
+    const body_mm = 1000 * Number(robot.facts.body_length_m);
+    const [from, to] = [body_mm / 2 + 20, body_mm / 2 + 85];
+    const points: Three[] = [
+      [0, from, 0],
+      [0, to, 0],
+      [-12, to - 18, 0],
+      [0, to, 0],
+      [12, to - 18, 0],
+    ];
+    return [{ kind: "front", leg: -1, points }];
   });
   private place: Placing = () => null;
   private reach: () => Reaching | null = () => null;

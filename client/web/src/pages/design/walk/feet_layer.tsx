@@ -55,7 +55,7 @@ export function FeetLayer({ feet }: { feet: Feet }) {
         }}
       >
         {t("design.foot.ways")}
-        {lines.length > 0 && (
+        {showsWays.value && (
           <>
             <i class="before">{t("design.foot.before")}</i>
             <i class="after">{t("design.foot.after")}</i>
@@ -105,7 +105,7 @@ function Handle({ feet, leg, label, place: [x, y, z] }: HandleProps) {
         feet.step(leg, way.map((one) => step * one) as unknown as Three);
       }}
     >
-      <span aria-hidden="true">{label}</span>
+      <span aria-hidden="true">{t("design.foot.place", { leg: label, x, y, z })}</span>
     </button>
   );
 }
