@@ -6,10 +6,19 @@ import pytest
 from msgspec.structs import replace
 from office_room import CODE, KEY, NOW_MS, Room, said, sample
 
+from lacoc_server.contest.acts import steering
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Drawn, Entered, Played, Substituted, Undrawn
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    Called,
+    Drawn,
+    Entered,
+    Played,
+    Substituted,
+    Undrawn,
+)
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
 from lacoc_server.contest.live.office import Office
@@ -197,7 +206,21 @@ def test_a_draw_is_taken_back_and_made_again(room: Room) -> None:
     assert undrawable is not None
     assert undrawable.stage == "cup"
     assert said(room.ask(Undraw(secret=KEY, stage="finals", reason="x"))) == "league.not-drawn"
+    (first, *_) = compute(room.facts, FORMATS).stages[0].matches
+    assert first.next_seats is not None
+    call = {"pairing": first.pairing.id, "game": 1, "teams": first.next_seats, "court": "main"}
+    room.store.append(league_facts.new(Called, **call))
+    assert room.view.undrawable is not None, "a game that is only called holds nobody up"
+    room.store.append(
+        steering.moving(
+            compute(room.facts, FORMATS), (), first.pairing.id, not_before_ms=NOW_MS * 2
+        )
+    )
+    lines = effect_of(room.ask(Undraw(secret=KEY, stage="cup", reason="a late team")))
+    assert [*lines] == ["decide.gone", "decide.taken-back", "decide.waits-for-draw"]
     room.ask(Undraw(secret=KEY, stage="cup", reason="a late team", really=True))
+    assert compute(room.facts, FORMATS).running == ()
+    assert wrongs(room.facts) == []
     assert room.view.undrawable is None
     office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
     note_plans(room.store, room.where.plans)  # as a restart of the office does
@@ -211,6 +234,7 @@ def test_a_draw_is_taken_back_and_made_again(room: Room) -> None:
     assert room.view.to_draw is None
     (view,) = compute(room.facts, FORMATS).stages
     assert view.stage.entries == ("Ants", "Bees", "Crabs", "Dogs", "Eels")
+    assert compute(room.facts, FORMATS).moves == (), "what was moved was of the other draw"
     assert wrongs(room.facts) == []
     match = view.matches[0]
     assert match.next_seats is not None

@@ -115,6 +115,7 @@ def test_a_corrected_game_keeps_its_record() -> None:
     (counted,) = facts.match().games
     assert (counted.scores, counted.record) == ((0, 1), "x.mcap")
     assert (counted.court, counted.began_ms) == ("north", 7000)
+    assert counted.ruled, "the result is not what was played"
     facts.add(Replay, **ABOUT, game=1)
     facts.add(Replaced, **ABOUT, game=1, **SCORE)
     (counted,) = facts.match().games

@@ -1,6 +1,6 @@
 """Steer the day of a contest: what the office's page decides, from a terminal."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from datetime import datetime, time
 from typing import TYPE_CHECKING, Annotated
 
@@ -44,10 +44,10 @@ def move(
     """
     courts = [*contests.load(contest).courts]
 
-    def moved(now: "Contest") -> "AnyFact":
+    def moved(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import moving
 
-        return moving(now, courts, pairing, court, before, _ms_of(at) if at else 0)
+        return [moving(now, courts, pairing, court, before, _ms_of(at) if at else 0)]
 
     _steer(contest, by, moved)
 
@@ -63,10 +63,10 @@ def pause(
 ) -> None:
     """Call no more games until the contest goes on; games that were called are played."""
 
-    def paused(now: "Contest") -> "AnyFact":
+    def paused(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import pausing
 
-        return pausing(now, _ms_of(until) if until else 0, reason, _now_ms())
+        return [pausing(now, _ms_of(until) if until else 0, reason, _now_ms())]
 
     _steer(contest, by, paused)
 
@@ -74,10 +74,10 @@ def pause(
 def resume(contest: ContestArgument = FILE, by: By = "") -> None:
     """Let a paused contest go on."""
 
-    def resumed(now: "Contest") -> "AnyFact":
+    def resumed(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import resuming
 
-        return resuming(now, _now_ms())
+        return [resuming(now, _now_ms())]
 
     _steer(contest, by, resumed)
 
@@ -92,10 +92,10 @@ def shift(
 ) -> None:
     """Make all that is to come later: no game is called for so long, and all set times move."""
 
-    def shifted(_: "Contest") -> "AnyFact":
+    def shifted(_: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import MINUTE_MS, shifting
 
-        return shifting(minutes * MINUTE_MS, reason)
+        return [shifting(minutes * MINUTE_MS, reason)]
 
     _steer(contest, by, shifted)
 
@@ -103,10 +103,10 @@ def shift(
 def unshift(contest: ContestArgument = FILE, by: By = "") -> None:
     """Take the newest 'shift' back: all is as if it had never been."""
 
-    def unshifted(now: "Contest") -> "AnyFact":
+    def unshifted(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import unshifting
 
-        return unshifting(now)
+        return [unshifting(now)]
 
     _steer(contest, by, unshifted)
 
@@ -118,10 +118,10 @@ def announce(
 ) -> None:
     """Show a line to all, on all pages."""
 
-    def announced(_: "Contest") -> "AnyFact":
+    def announced(_: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import announcing
 
-        return announcing(text)
+        return [announcing(text)]
 
     _steer(contest, by, announced)
 
@@ -141,10 +141,10 @@ def substitute(
     The other team leaves the contest. Where it has played already, it keeps its place.
     """
 
-    def substituted(now: "Contest") -> "AnyFact":
+    def substituted(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import substituting
 
-        return substituting(now, team, other, reason)
+        return [substituting(now, team, other, reason)]
 
     _steer(contest, by, substituted, asks=True, yes=yes)
 
@@ -164,7 +164,7 @@ def undraw(
     It stays undrawn until you draw it again: then also with a team that came late.
     """
 
-    def undrawn(now: "Contest") -> "AnyFact":
+    def undrawn(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import undrawing
 
         return undrawing(now, stage, reason)
@@ -198,7 +198,7 @@ def staff(
 def _steer(
     file: "Path",
     by: str,
-    act: "Callable[[Contest], AnyFact]",
+    act: "Callable[[Contest], Sequence[AnyFact]]",
     *,
     asks: bool = False,
     yes: bool = False,
@@ -208,7 +208,7 @@ def _steer(
     Args:
         file: the contest file.
         by: who of the staff decides; "": the organiser.
-        act: returns the fact for the contest as it is.
+        act: returns the facts for the contest as it is; the last one says what was done.
         asks: whether to show first what it changes, and to ask.
         yes: do not ask.
 
@@ -224,15 +224,15 @@ def _steer(
     with FactStore(ContestFolder(file).facts, by) as store:
         facts = store.facts()
         now = compute(facts, FORMATS)
-        fact = act(now)
-        if asks and not wanted_so(deciding.effect(facts, [fact]), yes):
+        more = act(now)
+        if asks and not wanted_so(deciding.effect(facts, more), yes):
             return
 
-        def decision(newest: "tuple[AnyFact, ...]") -> "Iterator[AnyFact]":
-            yield fact if newest == facts else act(compute(newest, FORMATS))
+        def decision(newest: "tuple[AnyFact, ...]") -> "Sequence[AnyFact]":
+            return more if newest == facts else act(compute(newest, FORMATS))
 
         store.decide(decision)
-        screen.show(steering.done(now, fact))
+        screen.show(steering.done(now, more[-1]))
 
 
 def _ms_of(clock: str) -> int:

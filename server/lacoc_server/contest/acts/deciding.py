@@ -1,5 +1,6 @@
 """Decisions about a match: the fact of each one, and what it would change."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
@@ -15,11 +16,13 @@ from lacoc_server.contest.league.facts import (
     Replay,
     Voided,
     new,
+    stage_of,
 )
 from lacoc_server.contest.league.fixture import named, standing
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.standings import DRAW
+from lacoc_server.contest.league.timetable.calling import needed
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import due, waits_for_organiser
 from lacoc_server.contest.league.timetable.seeding import moved_apart
@@ -64,18 +67,29 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     found = changes(was, then)
     here = sum(not team.gone for team in then.teams)
     lines = [say("decide.leaves", team=team, left=here) for team in found.leaving]
-    for before, after in found.matches:
-        match = after or before
-        assert match is not None
-        lines.append(
-            say(
-                "decide.match",
-                match=named(then if after else was, match.pairing.id),
-                teams=[team or "?" for team in match.seated],
-                state=match.state,
-                winner=match.winner or None,
-            )
+    lines += (
+        say(
+            "decide.match",
+            match=named(then, match.pairing.id),
+            teams=[team or "?" for team in match.seated],
+            state=match.state,
+            winner=match.winner or None,
         )
+        for _, match in found.matches
+        if match is not None
+    )
+    gone = Counter(
+        stage_of(match.pairing.id) for match, after in found.matches if match and not after
+    )
+    lines += (
+        say("decide.gone", stage=title(was, stage), matches=count) for stage, count in gone.items()
+    )
+    stay = {call.id for call in needed(then)}
+    lines += (
+        say("decide.taken-back", court=call.court, match=named(was, call.pairing), teams=call.teams)
+        for call in was.running
+        if call.id not in stay
+    )
     for fact in placed:
         if isinstance(fact, Replaced):
             lines += _meaning(then, fact)

@@ -12,6 +12,7 @@ from lacoc_server.contest.league.facts import (
     AnyFact,
     Moved,
     Paused,
+    Recalled,
     Resumed,
     Shifted,
     Substituted,
@@ -154,18 +155,20 @@ def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
 
 
 def undrawable(contest: Contest) -> str:
-    """Return the newest stage, if nobody has played in it; "" if its draw stays."""
+    """Return the newest stage, if no game of it has a result; "" if its draw stays."""
     newest = contest.stages[-1].name if contest.stages else ""
-    busy = any(stage_of(call.pairing) == newest for call in contest.running)
-    return "" if newest in contest.stages_ended_ms or busy else newest
+    return "" if newest in contest.stages_ended_ms else newest
 
 
-def undrawing(contest: Contest, stage: str, reason: str) -> Undrawn:
+def undrawing(contest: Contest, stage: str, reason: str) -> list[Recalled | Undrawn]:
     """Take the draw of a stage back; it waits until the organiser draws it again.
 
+    Returns:
+        The draw that is taken back, after the games that courts have of it.
+
     Raises:
-        UserError: if no stage is named, it is not drawn, somebody has played in it, another stage
-            was drawn since, a court has a game of it, or the reason is missing.
+        UserError: if no stage is named, it is not drawn, a game of it has a result, another stage
+            was drawn since, or the reason is missing.
     """
     drawn = [view.name for view in contest.stages]
     if not stage:
@@ -177,7 +180,11 @@ def undrawing(contest: Contest, stage: str, reason: str) -> Undrawn:
         raise UserError(say("day.draw-stays", stage=title(contest, stage)))
     if not reason.strip():
         raise UserError(say("decide.needs-reason"))
-    return new(Undrawn, stage=stage, reason=reason)
+    called = (call for call in contest.running if stage_of(call.pairing) == stage)
+    return [
+        *(new(Recalled, pairing=one.pairing, game=one.game, reason="undrawn") for one in called),
+        new(Undrawn, stage=stage, reason=reason),
+    ]
 
 
 def done(contest: Contest, fact: AnyFact) -> Phrase:

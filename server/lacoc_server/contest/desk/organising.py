@@ -153,7 +153,7 @@ def undraw(book: Book, asked: Undraw) -> Effect:
     """Take the draw of a stage back, or say what that would change; errors as `undrawing`."""
     return _decided(
         book,
-        lambda contest: [steering.undrawing(contest, asked.stage, asked.reason)],
+        lambda contest: steering.undrawing(contest, asked.stage, asked.reason),
         asked.really,
     )
 

@@ -242,13 +242,14 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
     """Compute a contest from facts in their order; errors as with `compute`."""
     unused: dict[str, Phrase] = {}
     teams = entered_teams(known, unused)
+    drawn, planned = drawn_stages(known, teams, formats, unused)
+    valid = _of_newest_draws(known, unused)
     by_pairing: dict[str, list[OfMatch]] = {}
-    for fact in known:
+    for fact in valid:
         if isinstance(fact, OfMatch):
             by_pairing.setdefault(fact.pairing, []).append(fact)
-    drawn, planned = drawn_stages(known, teams, formats, unused)
     shifts = _shifts(known, unused)
-    steering = [fact for fact in known if not isinstance(fact, Shifted) or fact.id in shifts]
+    steering = [fact for fact in valid if not isinstance(fact, Shifted) or fact.id in shifts]
     stages = [
         _view(plan, stage, formats[plan.format], teams, by_pairing, is_last=number == len(drawn))
         for number, (plan, stage) in enumerate(drawn, 1)
@@ -269,7 +270,7 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
             for fact in known
             if isinstance(fact, Undrawn) and fact.id not in unused and fact.stage in coming
         ),
-        running=_running(known),
+        running=_running(valid),
         moves=_moves(steering),
         decisions=decisions(known),
         day=_day(steering),
@@ -281,6 +282,20 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
             Unused(fact=fact.id, why=unused[fact.id]) for fact in known if fact.id in unused
         ),
     )
+
+
+def _of_newest_draws(facts: Sequence[AnyFact], unused: Mapping[str, Phrase]) -> list[AnyFact]:
+    """Return the facts without those about matches of draws that were taken back since."""
+    undrawn = {
+        fact.stage: number
+        for number, fact in enumerate(facts)
+        if isinstance(fact, Undrawn) and fact.id not in unused
+    }
+    return [
+        fact
+        for number, fact in enumerate(facts)
+        if not isinstance(fact, OfMatch) or number > undrawn.get(stage_of(fact.pairing), -1)
+    ]
 
 
 class Newest:

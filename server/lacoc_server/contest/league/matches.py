@@ -44,6 +44,8 @@ class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     """Where it was played; "": nobody knows, as of games without a network."""
     began_ms: int = 0
     """When that court was given it, in milliseconds since 1970, UTC; 0: nobody knows."""
+    ruled: bool = False
+    """Whether the organiser gave this result, in place of what was played."""
     fact: str
     """Id of the fact that says so."""
 
@@ -257,6 +259,7 @@ def _game(fact: Played | Replaced, played: Played | None, call: Called | None) -
         record=played.record if played is not None else "",
         court=call.court if call is not None else "",
         began_ms=call.at_ms if call is not None else 0,
+        ruled=isinstance(fact, Replaced),
         fact=fact.id,
     )
 

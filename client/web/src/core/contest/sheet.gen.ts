@@ -107,6 +107,7 @@ export interface CountedGame {
   record?: string;
   court?: string;
   began_ms?: number;
+  ruled?: boolean;
   fact: string;
 }
 

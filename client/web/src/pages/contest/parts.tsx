@@ -75,15 +75,18 @@ export function GameScore({ match, game }: GameScoreProps) {
       {one}
       <span class="colon">:</span>
       {other}
+      {game.ruled && "*"}
     </>
   );
-  if (!game.record) return <span title={t("contest.seats", { left, right })}>{points}</span>;
+  const ruled = game.ruled ? t("contest.ruled") : "";
+  const title = [t("contest.seats", { left, right }), ruled].filter(Boolean).join(" ");
+  if (!game.record) return <span title={title}>{points}</span>;
   const label = t("contest.replayOf", { left, right, number: game.number });
   return (
     <a
       href={replayAddress(game.record)}
-      title={t("contest.seats", { left, right })}
-      aria-label={`${one} : ${other}. ${label}`}
+      title={title}
+      aria-label={[`${one} : ${other}.`, ruled, label].filter(Boolean).join(" ")}
     >
       {points}
     </a>

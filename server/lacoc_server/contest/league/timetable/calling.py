@@ -63,6 +63,17 @@ def results(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterator[AnyFact
             )
 
 
+def needed(contest: Contest) -> list[Called]:
+    """Return the games at courts that are still the next ones of their matches."""
+    following = {
+        (match.pairing.id, match.next_game, match.next_seats)
+        for view in contest.stages
+        for match in view.matches
+        if match.state == "open"
+    }
+    return [call for call in contest.running if (call.pairing, call.game, call.teams) in following]
+
+
 def taken_back(
     contest: Contest, seen: Mapping[str, SeenCourt], now_ms: int, since_ms: int = 0
 ) -> Iterator[AnyFact]:
@@ -78,19 +89,14 @@ def taken_back(
         now_ms: the time, in milliseconds since 1970, UTC.
         since_ms: since when the office listens to its courts.
     """
-    needed = {
-        (match.pairing.id, match.next_game, match.next_seats)
-        for view in contest.stages
-        for match in view.matches
-        if match.state == "open"
-    }
+    stays = {call.id for call in needed(contest)}
     moves = {move.pairing: move for move in contest.moves}
     for call in contest.running:
         court = seen.get(call.court, SeenCourt(0))
         move = moves.get(call.pairing)
         if court.call == call.id and court.begun:
             continue
-        if (call.pairing, call.game, call.teams) not in needed:
+        if call.id not in stays:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
         elif move is not None and (
             move.court not in ("", call.court) or move.not_before_ms > now_ms
