@@ -30,3 +30,10 @@ class SeenTrial:
     figures: Figures
     form: KeyForm
     """The table of the measured key."""
+
+    @property
+    def no_feet_share(self) -> float:
+        """Share of the measured ticks in which no foot is down."""
+        span = self.walk.span
+        none = ~self.walk.down[span.first : span.end].any(axis=1)
+        return float(none.mean()) if len(none) else 0.0
