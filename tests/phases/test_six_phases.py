@@ -149,7 +149,7 @@ def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sa
 
     assert missing("A1:1, A2", 1, 2) == {"phases.answer"}
     assert missing("A3:1, A4", 3, 4) == {"phases.answer"}
-    assert missing("A2:1, A1", 2, 1) == {"phases.farther"}
+    assert missing("A2:1, A1", 2, 1) == {"phases.went-back"}
     assert missing("A2:1, A3", 2, 3) == {"phases.farther", "phases.same-feet"}
     assert missing("A2", 2) == {"phases.two-postures"}
 

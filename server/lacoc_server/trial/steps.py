@@ -71,7 +71,9 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     lowest_m = [min(tip.z for tip in feet) for feet in tips]
     legs = range(len(robot.legs))
     under_m = -robot.size_m[2] / 2
-    reaches = [[min(placed[leg][2].z, placed[leg][3].z) < under_m for placed in points] for leg in legs]
+    reaches = [
+        [min(placed[leg][2].z, placed[leg][3].z) < under_m for placed in points] for leg in legs
+    ]
     return Steps(
         [[feet[leg].y for feet in tips] for leg in legs],
         [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],

@@ -95,7 +95,6 @@ THREE_LEGS = WorkshopPhase(
 )
 
 
-
 def _farther(found_mm: float, least_mm: float) -> Phrase:
     """Say that the robot must move farther forward."""
     if found_mm < 0:

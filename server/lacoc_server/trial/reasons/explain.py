@@ -53,7 +53,7 @@ def explain(
     Returns:
         At most `MOST_SENTENCES` sentences, the most useful first.
     """
-    form = KeyForm.of(robot, sequence, goal_of(press, figures), press.digit)
+    form = KeyForm.of(robot, sequence, goal_of(press, figures), press.digit, press.level)
     seen = SeenTrial(robot, walk, figures, form)
     found = [finding for rule in _RULES for finding in rule(seen)]
     found.sort(key=lambda finding: -finding.rank)

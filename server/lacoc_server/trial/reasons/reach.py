@@ -42,11 +42,8 @@ def reach_repairs(form: KeyForm) -> list[Repair]:
     return standing or lowered
 
 
-def _lowered(
-    form: KeyForm, high: list[int], level: int, start_deg: Floats
-) -> Iterator[KeyForm]:
-    """Lower legs by one of their joints, or by both, until their lowest number is that of a stand.
-    """
+def _lowered(form: KeyForm, high: list[int], level: int, start_deg: Floats) -> Iterator[KeyForm]:
+    """Lower legs by one joint, or by both, until their lowest number is that of a stand."""
     for levels in ([level], [1, 2]):
         ix = np.ix_(range(form.postures), levels, high)
         angles = form.angles_deg.copy()
