@@ -98,7 +98,8 @@ function one(value: Value, formats: string[], words: Words, depth: number): stri
 
 function plain(value: Value, formats: string[], words: Words, depth: number): string {
   if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", words);
-  if (typeof value === "number" || typeof value === "bigint") return number(Number(value), formats, words);
+  if (typeof value === "number" || typeof value === "bigint")
+    return number(Number(value), formats, words);
   if (typeof value === "string") {
     if (formats.includes("marker")) return markerText(value, words);
     for (const format of formats) {

@@ -35,5 +35,5 @@ class SeenTrial:
     def no_feet_share(self) -> float:
         """Share of the measured ticks in which no foot is down."""
         span = self.walk.span
-        none = ~self.walk.down[span.first : span.end].any(axis=1)
-        return float(none.mean()) if len(none) else 0.0
+        down = self.walk.down[span.first : span.end]
+        return float((down.sum(axis=1) == 0).mean()) if len(down) else 0.0
