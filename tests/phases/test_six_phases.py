@@ -167,7 +167,7 @@ def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sampl
 
     assert missing(own) == {"phases.answer"}
     assert missing(start) == {"phases.more-numbers", "phases.farther"}
-    assert missing(turning) == {"phases.farther", "phases.turns"}
+    assert missing(turning) == {"phases.went-back", "phases.turns"}
     walk = tried(try_gait(own, "B1"), own, [1, 2, 3, 4])
     assert codes([go, walk], 4) == {"phases.more-numbers", "phases.foreign"}
 

@@ -97,7 +97,7 @@ THREE_LEGS = WorkshopPhase(
 
 def _farther(found_mm: float, least_mm: float) -> Phrase:
     """Say that the robot must move farther forward."""
-    if found_mm < 0:
+    if round(found_mm) < 0:
         return say("phases.went-back", found_mm=-found_mm, least_mm=least_mm)
     return say("phases.farther", found_mm=found_mm, least_mm=least_mm)
 
