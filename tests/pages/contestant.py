@@ -118,7 +118,7 @@ class Contestant:
 
     def number(self, selector: str) -> float:
         """Return the first number in the text of an element."""
-        text = self.find(selector).first.inner_text()
+        text = self.find(selector).first.inner_text().replace("−", "-")
         found = re.search(r"-?\d+(\.\d+)?", text)
         assert found is not None, text
         return float(found[0])

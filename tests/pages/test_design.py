@@ -354,7 +354,8 @@ def test_a_foot_is_moved_in_the_picture(open_page: OpenPage, address: tuple[str,
     expect(page.find("#cell-1-12")).to_have_attribute("aria-selected", "true")
 
     def place_mm() -> list[int]:
-        return [int(one) for one in re.findall(r"-?\d+", foot.get_attribute("aria-label") or "")]
+        said = (foot.get_attribute("aria-label") or "").replace("−", "-")
+        return [int(one) for one in re.findall(r"-?\d+", said)]
 
     was = place_mm()
     for _ in range(4):

@@ -74,7 +74,7 @@ def test_the_lesson_by_keyboard_ends_in_the_table(own: OwnPage, open_page: OpenP
     learner.guesses("35.0 mm")
     learner.sees("z = L₁ sin θ₁ = 70 · sin 30° = 35.0 mm")
     learner.goes_on()
-    learner.guesses("r 104.7 mm, z -41.8 mm")
+    learner.guesses("r 104.7 mm, z −41.8 mm")
     expect(page.locator(".formulas p").nth(1)).to_contain_text("= −41.8 mm")
     learner.goes_on()
     learner.guesses("80.1 mm")
@@ -83,11 +83,11 @@ def test_the_lesson_by_keyboard_ends_in_the_table(own: OwnPage, open_page: OpenP
     learner.goes_on()
     learner.guesses("two")
     expect(page.locator(".pairs .button")).to_have_text(
-        ["1st 1.2°, 2nd 37.8°", "1st -51.0°, 2nd 142.2°"]
+        ["1st 1.2°, 2nd 37.8°", "1st −51.0°, 2nd 142.2°"]
     )
     foot = page.get_by_role("slider", name="Foot")
     foot.press("ArrowUp")
-    learner.sees("r 129.0 mm, z -52.0 mm")
+    learner.sees("r 129.0 mm, z −52.0 mm")
     for _ in range(2):
         foot.press("Shift+ArrowRight")
     expect(page.locator(".unreached")).to_have_text(re.compile(r"Too far, by \d"))

@@ -127,7 +127,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     rows = page.find(".mistakes li")
     assert rows.nth(0).locator("p").all_inner_texts() == [
         "LocoTra-data-new.txt · row 3 · column 17 · joint 16 (L,C)",
-        '"x" expected: an angle from -150 to 150 degrees',
+        '"x" expected: an angle from −150 to 150 degrees',
     ]
     assert "joint 17 (L,F)" in rows.nth(1).inner_text()
     page.sees("main[data-standing=outside]")

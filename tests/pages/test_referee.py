@@ -204,7 +204,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     page.locator("input[name=amount]").fill("-3")
     expect(page.locator(".shows")).to_have_text("18 : 18 → 15 : 18")
     confirm(page, "other", "a warning")
-    log_has(page, "Referee Kim: -3 points for Ants: Ants 15 : 18 Bees. Reason: a warning")
+    log_has(page, "Referee Kim: −3 points for Ants: Ants 15 : 18 Bees. Reason: a warning")
     has_scores(page, 15, 18)
     # While the match is halted: set a disc, take that back, change the clock.
     expect(page.locator(".why-halted")).to_have_count(0)

@@ -149,7 +149,7 @@ def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sa
 
     assert missing("A1:1, A2", 1, 2) == {"phases.answer"}
     assert missing("A3:1, A4", 3, 4) == {"phases.answer"}
-    assert missing("A2:1, A1", 2, 1) == {"phases.farther"}
+    assert missing("A2:1, A1", 2, 1) == {"phases.went-back"}
     assert missing("A2:1, A3", 2, 3) == {"phases.farther", "phases.same-feet"}
     assert missing("A2", 2) == {"phases.two-postures"}
 
@@ -167,7 +167,7 @@ def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sampl
 
     assert missing(own) == {"phases.answer"}
     assert missing(start) == {"phases.more-numbers", "phases.farther"}
-    assert missing(turning) == {"phases.farther", "phases.turns"}
+    assert missing(turning) == {"phases.went-back", "phases.turns"}
     walk = tried(try_gait(own, "B1"), own, [1, 2, 3, 4])
     assert codes([go, walk], 4) == {"phases.more-numbers", "phases.foreign"}
 

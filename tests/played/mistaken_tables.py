@@ -51,6 +51,10 @@ class Said(NamedTuple):
     pointed: bool
     """Whether it points at a wrong cell."""
     sentences: tuple[str, ...]
+    codes: tuple[str, ...]
+    """The codes of all sentences."""
+    level: int
+    """Level of the cell at which the first sentence points; -1: at none."""
 
 
 class Outcome(NamedTuple):
@@ -262,6 +266,25 @@ def beginners() -> Iterator[tuple[Mistaken, tuple[str, ...]]]:
     yield made("all 1st at 60", put((1, 1), 60), "odd-row", "belly")
 
 
+# Tables whose feet hang in the air, stand for ever, or go the wrong way.
+
+
+def change_of(table: str, kind: str, change: Callable[[Floats], Any]) -> Mistaken:
+    """Change a good gait of the hexapod.
+
+    Args:
+        table: the gait, of `GOOD`.
+        kind: what the change is.
+        change: changes the angles, (postures, 3, legs).
+    """
+    good = GOOD[table][1]()
+    changed = good.copy()
+    change(changed)
+    changed = _kept(changed, entry_of("hexapod").robot)
+    cells = {at for at in np.ndindex(good.shape) if abs(changed[at] - good[at]) > 0.5}
+    return Mistaken("hexapod", kind, changed, cells, good)
+
+
 # What is told.
 
 
@@ -287,8 +310,14 @@ def told(table: Mistaken, codes: tuple[str, ...]) -> Said:
     code = first.said.code.removeprefix("explain.") if first else ""
     cell = first.cell if first else None
     at = None if cell is None else (cell.posture, *divmod(cell.joint, len(robot.legs)))
-    sentences = tuple(render(one.said) for one in explained)
-    return Said(code, code in codes, at in table.cells, sentences)
+    return Said(
+        code,
+        code in codes,
+        at in table.cells,
+        tuple(render(one.said) for one in explained),
+        tuple(one.said.code.removeprefix("explain.") for one in explained),
+        at[1] if at else -1,
+    )
 
 
 def repaired(table: Mistaken, codes: tuple[str, ...]) -> Outcome:

@@ -1,10 +1,21 @@
 """Tests of reasons and repairs: a table with one mistake, of which it is known where it is."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from mistaken_tables import GOOD, KEY, KINDS, beginners, mistaken, repaired, sequence_of, told
+from mistaken_tables import (
+    GOOD,
+    KEY,
+    KINDS,
+    beginners,
+    change_of,
+    mistaken,
+    repaired,
+    sequence_of,
+    told,
+)
 from sample_walks import entry_of
 
 from lacoc_server.studio.coach.coach import task_of
@@ -34,6 +45,72 @@ def test_the_coach_repairs_a_beginners_mistake(kind: str) -> None:
     found = repaired(*next(one for one in BEGINNERS if one[0].kind == kind))
     assert found.lost
     assert found.back, found
+
+
+LEFT = slice(3, 6)
+ADVICE = {"dragged", "backward", "out-of-step"}
+"""Sentences that tell what a single leg should do otherwise."""
+
+
+@pytest.mark.parametrize("table", ["sample", "tripod"])
+@pytest.mark.parametrize(
+    ("kind", "change", "code"),
+    [
+        ("60 everywhere", lambda t: t[:, 1].fill(60), "none-reaches"),
+        ("45 more", lambda t: np.add(t[:, 1], 45, out=t[:, 1]), "none-reaches"),
+        (
+            "60, and the left Roots' signs",
+            lambda t: (t[:, 1].fill(60), np.negative(t[:, 0, LEFT], out=t[:, 0, LEFT])),
+            "none-reaches",
+        ),
+        (
+            "45 more, but not L,C",
+            lambda t: np.add(t[:, 1], [45, 45, 45, 45, -60, 45], out=t[:, 1]),
+            "few-reach",
+        ),
+    ],
+)
+def test_feet_that_never_reach_the_floor_are_named_first(
+    table: str, kind: str, change: Any, code: str
+) -> None:
+    """If too few feet reach the floor, the first sentence says so and points at a 1st number.
+
+    No sentence tells what feet in the air should do otherwise.
+    """
+    found = told(change_of(table, kind, change), (code,))
+    assert found.named, found
+    assert found.pointed, found
+    assert found.level == 1, found
+    assert not {"no-lift", "all-lifted", "unstable", *ADVICE} & set(found.codes), found
+    if code == "none-reaches":
+        assert "no-feet" in found.codes, found
+        assert "belly" not in found.codes, found
+
+
+@pytest.mark.parametrize("table", ["sample", "tripod"])
+@pytest.mark.parametrize(
+    ("kind", "change", "code"),
+    [
+        ("rows 1, 2 in the air", lambda t: np.add(t[:2, 1], 50, out=t[:2, 1]), "wrong-mirror"),
+        ("row 1 in the air", lambda t: np.add(t[0, 1], 50, out=t[0, 1]), "odd-row"),
+        ("left in the air", lambda t: t[:, 1, LEFT].fill(60), "odd-side"),
+        ("1st signs", lambda t: np.negative(t[:, 1], out=t[:, 1]), "lift-sign"),
+        ("left 1st signs", lambda t: np.negative(t[:, 1, LEFT], out=t[:, 1, LEFT]), "side-sign"),
+        ("left Roots", lambda t: np.negative(t[:, 0, LEFT], out=t[:, 0, LEFT]), "side-sign"),
+        ("rows 3, 4 copied", lambda t: np.copyto(t[2:], t[:2]), "wrong-mirror"),
+    ],
+)
+def test_beside_a_mistake_of_many_numbers_no_leg_is_advised(
+    table: str, kind: str, change: Any, code: str
+) -> None:
+    """What a leg does because of a mistake of many numbers is no advice beside that mistake."""
+    found = told(change_of(table, kind, change), (code,))
+    assert found.named, found
+    assert found.pointed, found
+    assert not ADVICE & set(found.codes), found
+    # Opposite signs push a side back; it does not only push less.
+    assert "turns" not in found.codes or kind != "left Roots", found
+    assert "opposed" not in found.codes or kind == "left Roots", found
 
 
 @pytest.mark.parametrize("kind", KINDS)

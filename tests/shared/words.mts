@@ -8,7 +8,9 @@ const TEXTS = new URL("../../client/web/src/i18n/texts/", import.meta.url);
 function wordsOf(language: string): Words {
   const folder = new URL(`${language}/`, TEXTS);
   const files = readdirSync(folder).map((name) => readFileSync(new URL(name, folder), "utf-8"));
-  return Object.assign({}, ...files.map((text) => JSON.parse(text)));
+  // What pages write otherwise than programs.
+  const programs = { "number.minus": "-" };
+  return Object.assign({}, ...files.map((text) => JSON.parse(text)), programs);
 }
 
 const words: Record<string, Words> = { en: wordsOf("en"), ja: wordsOf("ja") };

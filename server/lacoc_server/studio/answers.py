@@ -25,7 +25,7 @@ from lacoc_server.trial.walk import Floats, Press, Walk
 from lacoc_shared import __version__
 from lacoc_shared.codec import BadMessage, decode, encode, message_hash, protocol_of
 from lacoc_shared.gait.joining import join_postures, sample_sequences
-from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, LocomotionTable, PostureTable
+from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import PROTOCOL, Refusal, SentFile, Sheet, SheetSeat
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
@@ -212,7 +212,7 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
     notes = []
     if walk.fault is not None:
         notes.append(say("trial.fault", why=walk.fault))
-    if not figures.cycles:
+    if not figures.cycles and last.level is Level.LOCOMOTION:
         notes.append(say("trial.no-cycle", seconds=figures.seconds))
     return Trial(last, walk, figures, explain(course.robot, walk, figures, last, sequence), notes)
 

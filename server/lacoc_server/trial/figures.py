@@ -47,9 +47,9 @@ class Figures:
     few_feet_share: float
     """Share of ticks with fewer than three feet down."""
     margin_mm: float | None
-    """Median of the support margin [mm]; None if no foot was ever down."""
+    """Median of the support margin [mm]; None if in half of the ticks or more no foot is down."""
     margin_low_mm: float | None
-    """5th percentile of the support margin [mm]; None if no foot was ever down."""
+    """5th percentile of the support margin [mm] while a foot is down; None if `margin_mm` is."""
     stable_share: float
     """Share of ticks with the centre of mass inside the support polygon."""
     slip_mm_s: float
@@ -93,6 +93,7 @@ def measure(walk: Walk) -> Figures:
     turn_deg = math.degrees(yaws[-1] - yaws[0])
     margins = margins_m(down[part], walk.contact_w_m[part], walk.centre_w_m[part])
     known = margins[~np.isnan(margins)]
+    has_margin = 2 * len(known) > len(margins)
     grip = walk.grip_n[part]
     load, slip = grip.sum(axis=0), (grip * walk.slip_m_s[part]).sum(axis=0)
     slip_m_s = _ratio(slip.sum(), load.sum())
@@ -114,8 +115,8 @@ def measure(walk: Walk) -> Figures:
         phase=phases(down, span.first, cycles),
         changes_hz=changes_hz(down[part], span.seconds),
         few_feet_share=float((down[part].sum(axis=1) < 3).sum()) / ticks,
-        margin_mm=1000 * float(np.median(known)) if len(known) else None,
-        margin_low_mm=1000 * float(np.percentile(known, 5)) if len(known) else None,
+        margin_mm=1000 * float(np.median(known)) if has_margin else None,
+        margin_low_mm=1000 * float(np.percentile(known, 5)) if has_margin else None,
         stable_share=float((known > 0).sum()) / ticks,
         slip_mm_s=1000 * slip_m_s,
         slip_legs_mm_s=[1000 * _ratio(one, all_n) for one, all_n in zip(slip, load, strict=True)],

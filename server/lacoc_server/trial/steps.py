@@ -5,7 +5,11 @@ from dataclasses import dataclass
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.feet import mean_phase
+from lacoc_server.trial.support import margin_m
 from lacoc_shared.gait.tables import Posture
+
+_OUTSIDE_M = 0.03
+"""A body whose middle is farther outside the feet that reach the floor than this falls on it."""
 
 
 @dataclass(frozen=True)
@@ -16,6 +20,12 @@ class Steps:
     """For each leg and posture, the foot's y: how far it is in front of the body's origin."""
     lift_m: list[list[float]]
     """For each leg and posture, how high the foot is above the lowest foot of this posture."""
+    reaches: list[list[bool]]
+    """For each leg and posture, whether its shank comes below the body. If it does not, the body
+    lies on the floor before this foot touches it."""
+    stands: list[bool]
+    """For each posture, whether at least half of the feet reach, and the middle of the body is
+    about above them."""
 
     @property
     def highest_m(self) -> list[float]:
@@ -26,11 +36,15 @@ class Steps:
     def swing_m2(self) -> list[float]:
         """For each leg, its motion forward times its lift, summed over the sequence.
 
-        A negative value means that the leg swings backward while it is lifted.
+        A negative value means that the leg swings backward while it is lifted. A motion while the
+        robot does not stand counts nothing: then no foot pushes.
         """
         return [
             sum(
-                (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2
+                (ahead[index] - ahead[index - 1])
+                * (lift[index] + lift[index - 1])
+                * (self.stands[index] + self.stands[index - 1])
+                / 4
                 for index in range(len(ahead))
             )
             for ahead, lift in zip(self.ahead_m, self.lift_m, strict=True)
@@ -52,10 +66,27 @@ class Steps:
 
 def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     """Compute where a sequence puts the feet."""
-    tips = [[leg[3] for leg in robot.points(posture)] for posture in sequence]
+    points = [robot.points(posture) for posture in sequence]
+    tips = [[leg[3] for leg in placed] for placed in points]
     lowest_m = [min(tip.z for tip in feet) for feet in tips]
     legs = range(len(robot.legs))
+    under_m = -robot.size_m[2] / 2
+    reaches = [
+        [min(placed[leg][2].z, placed[leg][3].z) < under_m for placed in points] for leg in legs
+    ]
     return Steps(
         [[feet[leg].y for feet in tips] for leg in legs],
         [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],
+        reaches,
+        [
+            _stands([(feet[leg].x, feet[leg].y) for leg in legs if reaches[leg][index]], len(legs))
+            for index, feet in enumerate(tips)
+        ],
     )
+
+
+def _stands(feet: Sequence[tuple[float, float]], legs: int) -> bool:
+    if len(feet) < legs // 2:
+        return False
+    margin = margin_m(feet, (0.0, 0.0))
+    return margin is not None and margin > -_OUTSIDE_M

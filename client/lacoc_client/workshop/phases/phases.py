@@ -34,7 +34,7 @@ from lacoc_client.workshop.phases.proof.work import (
     TrialWork,
     VersionWork,
 )
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 _WALKS_MM_S, _STILL_MM = 15.0, 10.0
 
@@ -94,6 +94,14 @@ THREE_LEGS = WorkshopPhase(
     asks=tripod_question,
 )
 
+
+def _farther(found_mm: float, least_mm: float) -> Phrase:
+    """Say that the robot must move farther forward."""
+    if round(found_mm) < 0:
+        return say("phases.went-back", found_mm=-found_mm, least_mm=least_mm)
+    return say("phases.farther", found_mm=found_mm, least_mm=least_mm)
+
+
 _HALF_CYCLE_MM = 15.0
 _SAME_FEET = 0.9
 
@@ -109,7 +117,7 @@ HALF_CYCLE = WorkshopPhase(
             Bound(are_two_postures, lambda found: say("phases.two-postures"), least=1.0),
             Bound(
                 lambda facts: facts.forward_mm,
-                lambda found: say("phases.farther", found_mm=found, least_mm=_HALF_CYCLE_MM),
+                lambda found: _farther(found, _HALF_CYCLE_MM),
                 least=_HALF_CYCLE_MM,
             ),
             Bound(
@@ -148,7 +156,7 @@ A_CYCLE = WorkshopPhase(
             IS_UPRIGHT,
             Bound(
                 lambda facts: facts.forward_mm,
-                lambda found: say("phases.farther", found_mm=found, least_mm=_CYCLES_MM),
+                lambda found: _farther(found, _CYCLES_MM),
                 least=_CYCLES_MM,
             ),
             Bound(

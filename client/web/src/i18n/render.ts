@@ -98,7 +98,8 @@ function one(value: Value, formats: string[], words: Words, depth: number): stri
 
 function plain(value: Value, formats: string[], words: Words, depth: number): string {
   if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", words);
-  if (typeof value === "number" || typeof value === "bigint") return number(Number(value), formats);
+  if (typeof value === "number" || typeof value === "bigint")
+    return number(Number(value), formats, words);
   if (typeof value === "string") {
     if (formats.includes("marker")) return markerText(value, words);
     for (const format of formats) {
@@ -129,7 +130,9 @@ function shownText(text: string): string {
   return short.replace(CONTROLS, "\ufffd");
 }
 
-function number(value: number, formats: string[]): string {
+/** Pages have a word for the minus, the sign that pictures write; programs write a hyphen. */
+function number(value: number, formats: string[], words: Words): string {
+  const minus = found("number.minus", words) ?? "-";
   const plural = formats.find((format) => format.startsWith("plural "));
   if (plural) {
     const [single, many] = plural.slice("plural ".length).split("|");
@@ -138,12 +141,12 @@ function number(value: number, formats: string[]): string {
   if (!Number.isFinite(value) || Math.abs(value) >= LARGEST) return "?";
   if (formats.includes("clock")) {
     const seconds = Number(Math.abs(value).toFixed(0));
-    const sign = value < 0 && seconds ? "-" : "";
+    const sign = value < 0 && seconds ? minus : "";
     return `${sign}${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
   }
   const digits = formats.find((format) => format.startsWith("."))?.slice(1);
   let text = Math.abs(value).toFixed(digits === undefined ? DECIMALS : Number(digits));
   if (digits === undefined) text = text.replace(/\.?0+$/, "");
   if (!/[1-9]/.test(text)) return text;
-  return (value < 0 ? "-" : formats.includes("+") ? "+" : "") + text;
+  return (value < 0 ? minus : formats.includes("+") ? "+" : "") + text;
 }

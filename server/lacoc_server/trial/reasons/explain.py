@@ -6,6 +6,7 @@ the figure that shows the situation. A cause in the table usually comes before a
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.figures import Figures
@@ -14,6 +15,7 @@ from lacoc_server.trial.reasons.goal import goal_of
 from lacoc_server.trial.reasons.legs import at_limits, odd_legs, seam
 from lacoc_server.trial.reasons.likely import likely_mistake
 from lacoc_server.trial.reasons.seen import SeenTrial, TrialFinding
+from lacoc_server.trial.steps import steps_of
 from lacoc_server.trial.walk import Press, Walk
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.studio import Sentence
@@ -23,14 +25,17 @@ MOST_SENTENCES = 3
 
 _TIPPED = 0.8
 """A robot has tipped over if its `upright` is below this: it leans by more than 37 degrees."""
-_BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.9, 3.0, 20.0, 15.0
+_BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.1, 3.0, 20.0, 15.0
 _STILL_MM_S, _BACK_MM_S = 5.0, 5.0
 _SLIDES_MOST = 1.25
 """Sliding is what a walk is about if the feet slide this many times as fast as the robot goes."""
-_WHOLE, _LEG = 95.0, 69.0
+_HANGS, _WHOLE, _LEG = 97.0, 95.0, 69.0
 """Rank of the mistake in the table. What a leg does otherwise is told by its effect, if there is
 one (`legs`)."""
-_OF_LEGS = ("odd-joint", "odd-joint-sign", "odd-leg", "too-late", "too-early")
+_RANKS = dict.fromkeys(("odd-joint", "odd-joint-sign", "odd-leg", "too-late", "too-early"), _LEG)
+_RANKS |= dict.fromkeys(("none-reaches", "few-reach"), _HANGS)
+_OPPOSED = 0.2
+"""The sides push in opposite directions if the weaker one has this part of the other's push."""
 
 
 def explain(
@@ -48,7 +53,7 @@ def explain(
     Returns:
         At most `MOST_SENTENCES` sentences, the most useful first.
     """
-    form = KeyForm.of(robot, sequence, goal_of(press, figures), press.digit)
+    form = KeyForm.of(robot, sequence, goal_of(press, figures), press.digit, press.level)
     seen = SeenTrial(robot, walk, figures, form)
     found = [finding for rule in _RULES for finding in rule(seen)]
     found.sort(key=lambda finding: -finding.rank)
@@ -66,12 +71,22 @@ def explain(
 
 
 def _mistake(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Name the mistake that the table most probably has."""
+    """Name the mistake that the table most probably has, and what single legs do besides.
+
+    What a leg would do right in the table without the mistake is no advice: it would lead away
+    from the repair.
+    """
     found = likely_mistake(seen.form)
-    if found is not None:
-        is_leg = found.said.code.removeprefix("explain.") in _OF_LEGS
-        rank = _LEG if is_leg else _WHOLE
-        yield TrialFinding(rank, found.said, found.leg, found.cell)
+    legs = list(odd_legs(seen))
+    if found is None:
+        yield from legs
+        return
+    rank = _RANKS.get(found.said.code.removeprefix("explain."), _WHOLE)
+    yield TrialFinding(rank, found.said, found.leg, found.cell)
+    if found.leg < 0:
+        left = {(one.said.code, one.leg) for one in odd_legs(replace(seen, form=found.form))}
+        legs = [one for one in legs if (one.said.code, one.leg) in left]
+    yield from legs
 
 
 def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
@@ -84,14 +99,17 @@ def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def _balance(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Say how often parts other than feet rest on the floor, and how often balance is lost."""
+    """Say how often other parts than feet carry the robot, and how often balance is lost."""
     figures = seen.figures
-    if figures.belly_share > _BELLY:
+    hangs = seen.no_feet_share
+    if min(hangs, figures.belly_share) > _BELLY:
+        yield TrialFinding(58.5, say("explain.no-feet", percent=100 * hangs))
+    if figures.belly_share > hangs + _BELLY:
         yield TrialFinding(58, say("explain.belly", percent=100 * figures.belly_share))
-    if figures.stable_share < _FALLS:
-        percent = 100 * (1 - figures.stable_share)
-        margin_mm = figures.margin_low_mm if figures.margin_low_mm is not None else 0.0
-        yield TrialFinding(35, say("explain.unstable", percent=percent, margin_mm=margin_mm))
+    falls = 1 - figures.stable_share - hangs
+    if falls > _FALLS and figures.margin_low_mm is not None:
+        said = say("explain.unstable", percent=100 * falls, margin_mm=figures.margin_low_mm)
+        yield TrialFinding(35, said)
 
 
 def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
@@ -107,9 +125,12 @@ def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
     elif figures.speed_mm_s < -max(_BACK_MM_S, abs(figures.lateral_mm_s)):
         yield TrialFinding(50, say("explain.goes-back", speed_mm_s=speed_mm_s))
     if turns:
-        side = "left" if figures.drift_deg_s > 0 else "right"
+        side, other = ("left", "right") if figures.drift_deg_s > 0 else ("right", "left")
         drift_deg_s = abs(figures.drift_deg_s)
-        yield TrialFinding(40, say("explain.turns", side=side, drift_deg_s=drift_deg_s))
+        said = say("explain.turns", side=side, drift_deg_s=drift_deg_s)
+        if _pushes_back(seen, -1 if side == "left" else 1):
+            said = say("explain.opposed", side=side, other=other, drift_deg_s=drift_deg_s)
+        yield TrialFinding(40, said)
     if figures.slip_mm_s > _SLIDES_MM_S:
         legs = figures.slip_legs_mm_s
         leg = max(range(len(legs)), key=legs.__getitem__)
@@ -129,12 +150,19 @@ def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
         yield TrialFinding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))
 
 
+def _pushes_back(seen: SeenTrial, side: int) -> bool:
+    """Return whether the legs on a side push the body back, and those on the other side forward."""
+    swings = steps_of(seen.robot, seen.form.sequence).swing_m2
+    back = -sum(m2 for m2, leg in zip(swings, seen.robot.legs, strict=True) if leg.side == side)
+    ahead = sum(m2 for m2, leg in zip(swings, seen.robot.legs, strict=True) if leg.side != side)
+    return min(back, ahead) > _OPPOSED * max(back, ahead)
+
+
 _RULES: tuple[Callable[[SeenTrial], Iterator[TrialFinding]], ...] = (
     _ended,
     _mistake,
     at_limits,
     seam,
-    odd_legs,
     _balance,
     _way,
 )

@@ -16,7 +16,7 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.steps import steps_of
 from lacoc_server.trial.walk import Floats
-from lacoc_shared.gait.tables import JOINTS_PER_LEG, LEVEL_NAMES, Posture
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, LEVEL_NAMES, Level, Posture
 from lacoc_shared.studio import CellPlace
 from lacoc_shared.words import Phrase, say
 
@@ -46,25 +46,42 @@ class KeyForm:
         angles_deg: (postures, 3, legs) the angles.
         goal: what the key is for.
         digit: digit of the key, to name its cells.
+        level: level of the key. A key of level A is a row of the table.
     """
 
-    def __init__(self, robot: RobotSpec, angles_deg: Floats, goal: Goal, digit: int) -> None:
+    def __init__(
+        self,
+        robot: RobotSpec,
+        angles_deg: Floats,
+        goal: Goal,
+        digit: int,
+        level: Level = Level.LOCOMOTION,
+    ) -> None:
         self.robot = robot
         self.angles_deg = angles_deg
         self.goal = goal
         self.digit = digit
+        self.level = level
 
     @classmethod
-    def of(cls, robot: RobotSpec, sequence: Sequence[Posture], goal: Goal, digit: int) -> "KeyForm":
+    def of(
+        cls,
+        robot: RobotSpec,
+        sequence: Sequence[Posture],
+        goal: Goal,
+        digit: int,
+        level: Level = Level.LOCOMOTION,
+    ) -> "KeyForm":
         """Make the table of a sequence of postures [rad]."""
         angles = np.degrees(np.array(sequence, float))
         shape = (len(sequence), JOINTS_PER_LEG, len(robot.legs))
-        return cls(robot, angles.reshape(shape), goal, digit)
+        return cls(robot, angles.reshape(shape), goal, digit, level)
 
     def changed(self, angles_deg: Floats) -> "KeyForm":
         """Return the table with other angles, kept in the ranges of their joints."""
         low, high = np.array(self.robot.ranges_deg).T.reshape(2, *self.angles_deg.shape[1:])
-        return KeyForm(self.robot, np.clip(angles_deg, low, high), self.goal, self.digit)
+        kept = np.clip(angles_deg, low, high)
+        return KeyForm(self.robot, kept, self.goal, self.digit, self.level)
 
     @property
     def postures(self) -> int:
@@ -156,6 +173,9 @@ class KeyForm:
 
     def name(self, cell: TableCell) -> Phrase:
         """Make the phrase that names a cell."""
+        if self.level is Level.POSTURE:
+            leg, level = self.robot.labels[cell.leg], LEVEL_NAMES[cell.level]
+            return say("explain.row-cell", row=self.digit, leg=leg, level=level)
         return cell_name(self.robot, self.digit, self.postures, self.place(cell))
 
     def place(self, cell: TableCell) -> CellPlace:

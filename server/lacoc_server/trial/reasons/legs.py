@@ -73,6 +73,8 @@ def odd_legs(seen: SeenTrial) -> Iterator[TrialFinding]:
         return
     labels, legs = seen.walk.legs, range(len(seen.walk.legs))
     steps = steps_of(seen.robot, seen.form.sequence)
+    if not any(steps.stands):
+        return
     highest_m, swing_m2 = steps.highest_m, steps.swing_m2
     usual_m, usual_m2 = statistics.median(highest_m), statistics.median(swing_m2)
     dragged = [leg for leg in legs if highest_m[leg] < _DRAGGED * usual_m and usual_m > _LIFT_M]

@@ -30,3 +30,10 @@ class SeenTrial:
     figures: Figures
     form: KeyForm
     """The table of the measured key."""
+
+    @property
+    def no_feet_share(self) -> float:
+        """Share of the measured ticks in which no foot is down."""
+        span = self.walk.span
+        down = self.walk.down[span.first : span.end]
+        return float((down.sum(axis=1) == 0).mean()) if len(down) else 0.0

@@ -8,6 +8,7 @@ from lacoc_server.trial.reasons.form import KeyForm, TableCell
 from lacoc_server.trial.reasons.repairs import Repair
 from lacoc_server.trial.steps import steps_of
 from lacoc_server.trial.walk import Floats
+from lacoc_shared.gait.tables import LEVEL_NAMES
 from lacoc_shared.words import Phrase, say
 
 _SAME_DEG = 2.0
@@ -53,7 +54,10 @@ def shared_repairs(form: KeyForm) -> Iterator[Repair]:
         yield from _swung(form, say("explain.no-swing", cell=form.name(cell)), cell)
         return
     thrust = np.array(form.thrust_m2)
-    if lift.max() < _LIFT_M:
+    signs = list(_lift_signs(form))
+    if lift.max() < _LIFT_M and signs:
+        yield from signs
+    elif lift.max() < _LIFT_M:
         folds = np.ptp(angles[:, 1:], axis=0).max() > _SAME_DEG * 3
         row, level, leg = np.unravel_index(
             int(np.abs(angles[:, 1:] - angles[:, 1:].min(axis=0)).argmax()), angles[:, 1:].shape
@@ -67,7 +71,29 @@ def shared_repairs(form: KeyForm) -> Iterator[Repair]:
         said = say("explain.same-height", cell=form.name(cell), leg=form.robot.labels[swings])
         yield from _lifted(form, said, cell, 45)
     elif thrust.sum() < 0:
+        yield from signs
         yield from _backward(form, thrust)
+
+
+def _lift_signs(form: KeyForm) -> Iterator[Repair]:
+    """Give all numbers of the 1st or the 2nd joints the other sign, if that lifts the feet."""
+    angles = form.angles_deg
+    start = np.degrees(np.array(form.robot.start_posture)).reshape(angles.shape[1:])
+    for level in (1, 2):
+        mean = angles[:, level].mean(axis=0)
+        stands_so = np.abs(mean + start[level]).sum() + 1 < np.abs(mean - start[level]).sum()
+        all_minus = angles[:, level].max() <= _SAME_DEG and mean.min() < -_SAME_DEG
+        if not (stands_so or all_minus):
+            continue
+        flipped = angles.copy()
+        flipped[:, level] *= -1
+        repaired = form.changed(flipped)
+        if sum(repaired.thrust_m2) < _AREA_M2:
+            continue
+        at = np.unravel_index(int(np.abs(angles[:, level]).argmax()), angles[:, level].shape)
+        cell = TableCell(int(at[0]), level, int(at[1]))
+        said = say("explain.lift-sign", cell=form.name(cell), level=LEVEL_NAMES[level])
+        yield Repair(said, cell, repaired, 5)
 
 
 def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
