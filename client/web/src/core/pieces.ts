@@ -28,8 +28,10 @@ export interface Shows {
 
 type Packed = [start: Uint8Array[], then: [ms: number, message: Uint8Array][]];
 
-/** A piece is asked for so long before it is shown: it was whole a full second before. */
-const AHEAD_MS = 950;
+/** The page begins so much later than it could: a lost packet is sent again after a second. */
+const SLACK_MS = 350;
+/** A piece is asked for so long before it is shown: then it has just become whole. */
+const AHEAD_MS = 950 + SLACK_MS;
 /** Not all pages of a crowd at the same moment. */
 const SPREAD_MS = 200;
 const AGAIN_MS = 500;
@@ -125,7 +127,7 @@ export class Pieces {
     if (closed >= FIRST && (run !== this.run || closed - this.next > BEHIND_MOST)) {
       this.run = run;
       this.next = closed - FIRST;
-      this.zeroMs = performance.now() - this.next * PIECE_MS;
+      this.zeroMs = performance.now() + SLACK_MS - this.next * PIECE_MS;
       this.begins = true;
     }
     if (run === this.run && closed > this.next) return true;
