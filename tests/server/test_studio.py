@@ -28,7 +28,7 @@ from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.support import margins_m
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.codec import decode, encode
-from lacoc_shared.gait.tables import Level, LocomotionTable
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.messages import PROTOCOL, Done, Refusal, SentFile
 from lacoc_shared.network.session import Question, Refused, Session, open_client
@@ -36,6 +36,7 @@ from lacoc_shared.studio import (
     STUDIO_MAX_BYTES,
     TRIAL_REPLY_MAX_BYTES,
     CancelRequest,
+    CellPlace,
     CoachReply,
     CoachRequest,
     GaitFiles,
@@ -182,6 +183,21 @@ def test_a_robot_is_described(asker: Asker, name: str) -> None:
             assert low is None or low <= number, fact
             assert high is None or number <= high, fact
     assert asker.trial(files_of(name)).ticks > 100
+
+
+def test_without_a_standing_foot_there_is_no_margin() -> None:
+    """A posture of level A with all feet in the air has no margin, and no note on cycles."""
+    robot = entry_of("hexapod").robot
+    legs = len(robot.legs)
+    start, up = robot.start_posture, math.radians(70)
+    hanging = (*start[:legs], *[up] * legs, *start[2 * legs :])
+    gait = Gait(PostureTable({1: hanging}), None)
+    trial = try_gait(make_course(robot), gait, "A1", 3.0)
+    assert (trial.figures.margin_mm, trial.figures.margin_low_mm) == (None, None)
+    codes = [one.said.code for one in trial.explained]
+    assert codes == ["explain.none-reaches", "explain.no-feet"]
+    assert trial.explained[0].cell == CellPlace(posture=0, joint=legs)
+    assert trial.notes == []
 
 
 def test_a_wrong_request_gets_one_refusal(asker: Asker) -> None:

@@ -15,7 +15,6 @@ from sample_walks import ROBOTS, entry_of, match_digests
 from lacoc_robots.library import find_robot
 from lacoc_robots.reading import load_gait
 from lacoc_server.match.entry import weigh_in
-from lacoc_server.studio.answers import try_gait
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import CYCLES, NO_CYCLE_S, SETTLE_TICKS, Course
 from lacoc_server.trial.feet import feet_down, phases
@@ -26,11 +25,10 @@ from lacoc_server.trial.support import hull, margin_m
 from lacoc_server.trial.walk import Press, Span, Walk
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import cli
-from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.studio import CellPlace
 
 SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
 
@@ -251,21 +249,6 @@ def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> N
 
     assert "explain.walks" in codes(60.0)
     assert "explain.walks" not in codes(-60.0)
-
-
-def test_without_a_standing_foot_there_is_no_margin(courses: dict[str, Course]) -> None:
-    """A posture of level A with all feet in the air has no margin, and no note on cycles."""
-    robot = entry_of("hexapod").robot
-    legs = len(robot.legs)
-    start, up = robot.start_posture, math.radians(70)
-    hanging = (*start[:legs], *[up] * legs, *start[2 * legs :])
-    gait = Gait(PostureTable({1: hanging}), None)
-    trial = try_gait(courses["hexapod"], gait, "A1", 3.0)
-    assert (trial.figures.margin_mm, trial.figures.margin_low_mm) == (None, None)
-    codes = [one.said.code for one in trial.explained]
-    assert codes == ["explain.none-reaches", "explain.no-feet"]
-    assert trial.explained[0].cell == CellPlace(posture=0, joint=legs)
-    assert trial.notes == []
 
 
 def test_foot_bars() -> None:
