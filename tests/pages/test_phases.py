@@ -113,7 +113,7 @@ def test_six_phases_are_done_by_keyboard(
         page.goes_over(1, 6)
         page.changes("50", guess="up")
         page.goes_over(1, 12)
-        page.changes("40", guess="in")
+        page.changes("40", guess="inward")
         page.sees(".foot-guess .verdict.wrong", "up")
         page.changes("20")
         page.goes_over(1, 6)
@@ -131,7 +131,7 @@ def test_six_phases_are_done_by_keyboard(
             page.fills(1, col, "45")
         page.fills(1, 3, "0")
         page.fills(1, 6, "20")
-        page.chooses(".learn button:has-text('Try A1')")
+        page.chooses(".learn button:has-text('(A1)')")
         page.answers("inside the nearest edge")
         page.is_done(2)
         page.goes_to(6)
@@ -144,7 +144,7 @@ def test_six_phases_are_done_by_keyboard(
         for col in LIFTED:
             page.fills(2, col, "45")
         page.fills(2, 5, "0")
-        page.chooses(".learn button:has-text('Try A1, A2')")
+        page.chooses(".learn button:has-text('(A1, A2)')")
         page.answers("R,C, L,B and L,F")
         page.is_done(3)
 

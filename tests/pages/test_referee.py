@@ -397,7 +397,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
     assert then - left in (10, 11)
     field.press("Control+a")
     field.press("Delete")
-    expect(page.get_by_role("dialog")).to_contain_text("-3600 to 3600, not 0")
+    expect(page.get_by_role("dialog")).to_contain_text("−3600 to 3600, not 0")
     page.get_by_role("dialog").get_by_role("button", name="+30", exact=True).click()
     expect(field).to_have_value("30")
     field.press("Control+a")

@@ -5,7 +5,15 @@ import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
 import type { Annotations, Reaching } from "./annotations";
 import { type Action, AutoCamera } from "./autocamera";
-import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
+import {
+  type Aim,
+  type CameraName,
+  type Frame2d,
+  isCalm,
+  Rig,
+  type ViewAxes,
+  viewOf,
+} from "./cameras";
 import { Labels } from "./labels";
 import type { FloorMarks } from "./marks";
 import { type Field, Model } from "./model";
@@ -470,7 +478,7 @@ export class Viewer implements Exposed {
       top: EDGE * (1 - (2 * top) / height),
       bottom: EDGE * (-1 + (2 * bottom) / height),
     };
-    const part = 1 - Math.exp(-(nowMs - this.framedMs) / FRAME_MS);
+    const part = isCalm.matches ? 1 : 1 - Math.exp(-(nowMs - this.framedMs) / FRAME_MS);
     this.framedMs = nowMs;
     const now = this.framed;
     if (!now || now.width !== width || now.height !== height) {

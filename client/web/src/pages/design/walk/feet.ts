@@ -4,7 +4,7 @@ import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { anglesOf, bring, neighbours, wayOf } from "../../../core/design/feet";
 import { jointsOfLeg } from "../../../core/design/parts";
 import { Rest } from "../../../core/design/sources";
-import { type Table, withCells } from "../../../core/design/table";
+import { mapRows, type Table, withCells } from "../../../core/design/table";
 import { type Leg, points, type Three, type Unreached } from "../../../core/leg/leg";
 import { remembered } from "../../../core/settings";
 import type { RobotReply } from "../../../core/wire";
@@ -172,12 +172,10 @@ export class Feet implements Annotations {
     if (!angles) return;
     const { row } = this.sheet.active.peek();
     const joints = jointsOfLeg(leg, this.legs.peek().length);
-    const change = (table: Table): Table => ({
-      ...table,
-      rows: table.rows.map((one, index) =>
+    const change = (table: Table): Table =>
+      mapRows(table, (one, index) =>
         index === row ? withCells(one, (cell, col) => angles[joints.indexOf(col)] ?? cell) : one,
-      ),
-    });
+      );
     this.sheet.edit(t("design.foot.step", { leg: shape.label }), change, `foot ${this.gesture}`);
     this.moved = { leg, to, table: this.sheet.table.peek() };
   }
