@@ -89,8 +89,9 @@ function Task({ sheet, trials, learning }: TaskProps & { learning: Learning | nu
     const now = phases?.phases[phases.phase];
     if (now?.asked) return "design.task.question";
     if (now?.number === LESSON && now.state !== "met") return "design.task.lesson";
-    if (now?.number === ONE_LEG && now.state !== "met") return "design.task.edit";
     const last = trials.all.value.at(-1);
+    const isStill = now?.number === ONE_LEG && now.state !== "met"; // there nothing walks yet
+    if (!last && isStill) return "design.task.edit";
     if (!last) return sheet.history.value?.canUndo.value ? "design.task.try" : "design.task.edit";
     return last.version === sheet.version.value ? "design.task.read" : "design.task.again";
   }).value;
