@@ -13,6 +13,7 @@ import pytest
 from chromium import OpenPage
 from contestant import Contestant
 from drop import drop
+from given_files import given_in
 from openpyxl import load_workbook
 from own_page import OwnPage
 from PIL import Image, ImageStat
@@ -322,7 +323,9 @@ def test_a_table_goes_to_the_page_on_which_teams_enter(
     tab = coming.value
     tab.wait_for_url("**/enter#files=*", wait_until="commit")
     assert tab.url.startswith(f"{address[0]}/enter#")
-    assert "Loco-data.txt" in tab.url
+    files = given_in(tab.url)["files"]
+    assert (files["postures"]["name"], files["robot"]) == ("Loco-data.txt", None)
+    assert b"\t" in files["postures"]["data"]
 
 
 @pytest.mark.long
@@ -409,7 +412,7 @@ def test_a_gait_is_shared(
     page.tries()
     page.page.click("text=Share")
     link = page.find(".design-share input")
-    expect(link).to_have_value(re.compile(r"/design#gait=[\w-]{100,}$"))
+    expect(link).to_have_value(re.compile(r"/design#files=[\w-]{100,}$"))
     assert violations(page.page) == []
     with page.page.expect_download() as picture:
         page.page.click("text=Save a picture")

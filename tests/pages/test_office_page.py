@@ -8,6 +8,7 @@ from urllib.parse import quote
 
 import pytest
 from chromium import OpenPage
+from given_files import fragment_of
 from office_event import Event, running
 from PIL import Image
 from playwright.sync_api import FilePayload, Page, expect
@@ -182,7 +183,11 @@ def see_the_picture(office: Page, team: str) -> None:
 def enter_a_workbook(open_page: OpenPage, event: Event, team: str) -> None:
     """Enter with a workbook alone, after a look at the sample; level B is made of either."""
     page = open_page(viewport=PHONE)
-    page.goto(f"{event.url}/enter")
+    handed_on = {"name": "歩容.txt", "data": event.right[0].read_bytes()}
+    page.goto(f"{event.url}/enter{fragment_of({'postures': handed_on})}")
+    expect(page.locator(".files li b").nth(1)).to_have_text("歩容.txt")
+    assert "#" not in page.url
+    page.get_by_role("button", name="Remove 歩容.txt").click()
     page.get_by_role("button", name="Take the sample gait").click()
     expect(page.locator(".files li b").nth(2)).to_have_text("made from Loco-data.txt")
     fill(page, event, team)

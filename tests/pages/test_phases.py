@@ -148,7 +148,9 @@ def test_six_phases_are_done_by_keyboard(
         page.answers("R,C, L,B and L,F")
         page.is_done(3)
 
+        expect(page.find(".chooser select")).to_have_value("A1, A2")
         page.goes_to(4)
+        expect(page.find(".chooser select")).to_have_value("2")
         page.chooses(".tools-button")
         page.chooses(".tools button:has-text('Make the other half')")
         page.steers(2)

@@ -69,9 +69,13 @@ test("out of reach says how far, and the leg points there", () => {
 
 test("a leg that is too long for a point folds; beyond a joint's range it stays", () => {
   const uneven = { ...LEG, lengths_mm: [15, 90, 40] };
-  const near = brought(uneven, [50 + 15 + 10, 45, -10], [0, 20, 0]);
-  assert.equal(near.unreached.why, "near");
-  assert.ok(near.angles === null || near.angles.every(Number.isInteger));
+  for (const z of [-10, -30]) {
+    const near = brought(uneven, [50 + 15 + 10, 45, z], [0, 20, 0]);
+    assert.equal(near.unreached.why, "near");
+    const [, hinge, , foot] = points(uneven, near.angles);
+    assert.ok(Math.abs(apart(hinge, foot) - (90 - 40)) < 0.5, `${near.angles}`);
+    assert.ok(foot[0] > hinge[0] && foot[2] <= hinge[2] + 0.01, "it points there");
+  }
   const stiff = { ...LEG, range_deg: [-20.4, 20.4] };
   assert.deepEqual(bring(stiff, footOf(stiff, [20.4, -20.4, 0]), [0, 0, 0]), [20, -20, 0]);
   const { angles, unreached } = brought(stiff, footOf(LEG, [30, 0, 0]), [0, 0, 0]);

@@ -5,7 +5,6 @@ import { test } from "node:test";
 import { bySeat, gamesOf, pointsOf } from "../../../client/web/src/core/contest/games.ts";
 import { places } from "../../../client/web/src/core/contest/places.ts";
 import { meetAgain } from "../../../client/web/src/core/draw.ts";
-import { enterPage, filesFragment, filesOf } from "../../../client/web/src/core/given.ts";
 import {
   canDecide,
   clockOf,
@@ -156,26 +155,6 @@ test("who has left without a game has no place, but who was beaten has one", () 
     places(sheet).map(({ team }) => team),
     ["A", "C"],
   );
-});
-
-test("files go in the fragment and come out as they were", () => {
-  const data = Uint8Array.from([0, 255, 10, 13, 200]);
-  const files = { robot: null, postures: { name: "歩容 &=#.txt", data }, locomotion: null };
-  assert.deepEqual(filesOf(`#${filesFragment(files)}`), files);
-  for (const hash of ["", "#token=x", "#files=", "#files={", "#files=[1]"]) {
-    assert.equal(filesOf(hash), null, hash);
-  }
-});
-
-test("an address is read however it is typed", () => {
-  for (const typed of ["192.168.1.20:8080", " http://192.168.1.20:8080/contest?big "]) {
-    assert.equal(enterPage(typed), "http://192.168.1.20:8080/enter");
-  }
-  assert.equal(enterPage("https://cup.example"), "https://cup.example/enter");
-  for (const typed of ["https://uni.example/cup", "https://uni.example/cup/play?court=north"]) {
-    assert.equal(enterPage(typed), "https://uni.example/cup/enter");
-  }
-  for (const typed of ["", "  ", "http://"]) assert.equal(enterPage(typed), "");
 });
 
 test("points of each game are in the order of the match's teams, whoever sat left", () => {

@@ -4,6 +4,7 @@ import ssl
 import threading
 import urllib.error
 import urllib.request
+from http import HTTPStatus
 from http.client import HTTPResponse
 from pathlib import Path
 from typing import Self, cast
@@ -18,7 +19,6 @@ _WAIT_S = 10.0
 _MOST_BYTES = 16 << 20
 _PICTURE_BYTES = 256 << 10
 """Longest picture of a team that is copied; they are some ten kilobytes long."""
-_GONE = 404
 
 
 class _TeamOfSheet(msgspec.Struct, frozen=True):
@@ -91,7 +91,7 @@ class SheetMirror:
                     path.parent.mkdir(parents=True, exist_ok=True)
                     write(path, data)
             except urllib.error.HTTPError as error:
-                if error.code != _GONE:
+                if error.code != HTTPStatus.NOT_FOUND:
                     return
             except (OSError, ValueError):
                 return

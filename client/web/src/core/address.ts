@@ -60,10 +60,17 @@ function tokenKept(): string {
  * storage, so that it need not stay in sight.
  */
 function secret(name: string, keptAs: string): string | null {
-  const parts = new URLSearchParams(location.hash.slice(1));
-  const found = parts.get(name);
+  const found = takePart(name);
   if (!found) return tab.read(keptAs);
   tab.write(keptAs, found);
+  return found;
+}
+
+/** Take a part out of the fragment: a reload finds an address without it. */
+export function takePart(name: string): string | null {
+  const parts = new URLSearchParams(location.hash.slice(1));
+  const found = parts.get(name);
+  if (!found) return null;
   parts.delete(name);
   const rest = parts.toString();
   history.replaceState(null, "", location.pathname + location.search + (rest && `#${rest}`));

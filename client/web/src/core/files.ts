@@ -1,6 +1,7 @@
 /** A contestant's files: recognised by their content, and kept for this tab. */
 
 import { computed } from "@preact/signals";
+import { fromBase64, toBase64 } from "./base64";
 import { Refused } from "./connection";
 import { remembered } from "./settings";
 import { tab } from "./storage";
@@ -119,16 +120,6 @@ function textOf(data: Uint8Array): string {
   const big = (head[0] === 0xfe && head[1] === 0xff) || (head[0] === 0 && head[1] !== 0);
   const encoding = little ? "utf-16le" : big ? "utf-16be" : "utf-8";
   return new TextDecoder(encoding).decode(head).replace("\uFEFF", "");
-}
-
-export function toBase64(data: Uint8Array): string {
-  let text = "";
-  for (const byte of data) text += String.fromCharCode(byte);
-  return btoa(text);
-}
-
-export function fromBase64(text: string): Uint8Array {
-  return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
 }
 
 /** Hand a file, in its parts, to the person. */

@@ -2,7 +2,7 @@
 
 import { type Signal, signal, useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import { hasGait } from "../core/design/gait_link";
+import { hasGiven } from "../core/given";
 import { said, t } from "../i18n";
 import { Banner, waitsForGateway } from "../ui/banner";
 import { Dropping, useDrop } from "../ui/drop";
@@ -168,7 +168,7 @@ function Offered({ studio: { handed, friend } }: { studio: Studio }) {
   if (gait) {
     return (
       <Offer
-        text={t("design.friend", { name: gait.name })}
+        text={t("design.friend", { name: gait.gait.name })}
         onTake={() => void friend.take(gait)}
         onLater={() => friend.putOff()}
       />
@@ -236,7 +236,7 @@ function useLinks({ friend }: Studio): void {
   useEffect(() => {
     const paste = (event: ClipboardEvent) => {
       const text = event.clipboardData?.getData("text/plain") ?? "";
-      if (!hasGait(text)) return;
+      if (!hasGiven(text)) return;
       event.preventDefault();
       event.stopPropagation();
       void friend.offer(text);

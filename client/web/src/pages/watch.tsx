@@ -23,7 +23,7 @@ import { LatestResults, OnAir } from "../ui/on_air";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
-import { isNarrow, keepHeight, tellHeight } from "../ui/screen";
+import { isNarrow, tellHeight } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Sound } from "../ui/sound";
 import { Thirds } from "../ui/thirds";
@@ -165,12 +165,10 @@ function Hud() {
 }
 
 /** What stands above the foot, as the field does, needs to know how high it is: cheers make it two rows. */
-const tellFoot = (foot: HTMLElement | null) => {
-  tellHeight("--foot", foot);
-  keepHeight(foot, (px) => {
+const tellFoot = (foot: HTMLElement | null) =>
+  tellHeight("--foot", foot, (px) => {
     footPx.value = px;
   });
-};
 
 /** Which court and match this is; with several courts, the way to another one. */
 function Brand() {

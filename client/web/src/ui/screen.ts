@@ -19,9 +19,20 @@ fine.addEventListener("change", () => {
   hasKeyboard.value = fine.matches;
 });
 
-/** Keep a CSS property of the page as high as an element: others make room for it. */
-export function tellHeight(property: `--${string}`, element: HTMLElement | null): void {
-  keepHeight(element, (px) => document.documentElement.style.setProperty(property, `${px}px`));
+/**
+ * Keep a CSS property of the page as high as an element: others make room for it.
+ *
+ * @param tell Is told the height too [px].
+ */
+export function tellHeight(
+  property: `--${string}`,
+  element: HTMLElement | null,
+  tell?: (px: number) => void,
+): void {
+  keepHeight(element, (px) => {
+    document.documentElement.style.setProperty(property, `${px}px`);
+    tell?.(px);
+  });
 }
 
 /** Tell how high an element is [px], now and whenever that changes. */

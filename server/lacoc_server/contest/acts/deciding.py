@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from lacoc_server.contest.league.contest import Contest, changes, compute
+from lacoc_server.contest.league.contest import Changes, Contest, changes, compute
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Drawn,
@@ -66,44 +66,56 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     was = compute(facts, FORMATS)
     found = changes(was, then)
     here = sum(not team.gone for team in then.teams)
-    lines = [say("decide.leaves", team=team, left=here) for team in found.leaving]
-    lines += (
-        say(
-            "decide.match",
-            match=named(then, match.pairing.id),
-            teams=[team or "?" for team in match.seated],
-            state=match.state,
-            winner=match.winner or None,
-        )
-        for _, match in found.matches
-        if match is not None
-    )
-    gone = Counter(
-        stage_of(match.pairing.id) for match, after in found.matches if match and not after
-    )
-    lines += (
-        say("decide.gone", stage=title(was, stage), matches=count) for stage, count in gone.items()
-    )
+    lines = [
+        *(say("decide.leaves", team=team, left=here) for team in found.leaving),
+        *_matches(found, was, then),
+        *_at_courts(was, then),
+        *(line for fact in placed if isinstance(fact, Replaced) for line in _meaning(then, fact)),
+        *_ranks(found, then),
+        *_follows(was, then),
+    ]
+    return (*lines,) or (say("decide.nothing"),)
+
+
+def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
+    """Say how matches stand then, and of which stages the matches are gone."""
+    gone: Counter[str] = Counter()
+    for before, match in found.matches:
+        if match is not None:
+            yield say(
+                "decide.match",
+                match=named(then, match.pairing.id),
+                teams=[team or "?" for team in match.seated],
+                state=match.state,
+                winner=match.winner or None,
+            )
+        elif before is not None:
+            gone[stage_of(before.pairing.id)] += 1
+    for stage, count in gone.items():
+        yield say("decide.gone", stage=title(was, stage), matches=count)
+
+
+def _at_courts(was: Contest, then: Contest) -> Iterator[Phrase]:
+    """Say which games courts give back."""
     stay = {call.id for call in needed(then)}
-    lines += (
-        say("decide.taken-back", court=call.court, match=named(was, call.pairing), teams=call.teams)
-        for call in was.running
-        if call.id not in stay
-    )
-    for fact in placed:
-        if isinstance(fact, Replaced):
-            lines += _meaning(then, fact)
+    for call in was.running:
+        if call.id not in stay:
+            match = named(was, call.pairing)
+            yield say("decide.taken-back", court=call.court, match=match, teams=call.teams)
+
+
+def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
+    """Say which ranks change, and which stages keep their teams all the same."""
     for stage, team, old, now in found.ranks:
         name = title(then, stage)
         if then.stage(stage).over:
-            lines.append(say("decide.rank", stage=name, team=team, before=old, after=now))
+            yield say("decide.rank", stage=name, team=team, before=old, after=now)
         else:
-            lines.append(say("decide.rank-so-far", stage=name, team=team, before=old, after=now))
+            yield say("decide.rank-so-far", stage=name, team=team, before=old, after=now)
     changed = {stage for stage, *_ in found.ranks}
-    drawn = (view.name for view in then.stages if view.plan.after in changed)
-    lines += (say("decide.drawn", stage=title(then, stage)) for stage in drawn)
-    lines += _follows(was, then)
-    return (*lines,) or (say("decide.nothing"),)
+    for view in then.stages:
+        if view.plan.after in changed:
+            yield say("decide.drawn", stage=title(then, view.name))
 
 
 def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:

@@ -44,8 +44,8 @@ class ContestFolder:
         """All tokens."""
         self.contacts = folder / f"{file.stem}.contacts.json"
         """How to reach the teams."""
-        self.published = contests.published_path(file)
-        """The published contest, if the office has published it."""
+        self.published = contests.published_path(file).absolute()
+        """The published contest, if there is one; absolute, because people are told it."""
         self.event_code = folder / f"{file.stem}.code.txt"
         """The event code, if it was changed."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"

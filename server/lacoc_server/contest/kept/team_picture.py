@@ -37,7 +37,7 @@ def small_picture(file: SentFile) -> bytes:
         square = ImageOps.fit(upright, (SIDE_PX, SIDE_PX))
         out = io.BytesIO()
         square.save(out, "WEBP", quality=80, method=4)
-    except (Image.DecompressionBombError, Image.DecompressionBombWarning):
+    except Image.DecompressionBombError:
         raise UserError(say("desk.large-picture", name=file.name, most=_MOST_PX)) from None
     except UnidentifiedImageError:
         raise UserError(say("desk.no-picture", name=file.name)) from None

@@ -1,7 +1,7 @@
 /** What the page knows of a team that enters, and what it asks of the office. */
 
 import { computed, signal } from "@preact/signals";
-import { keepToken, ownToken } from "../../core/address";
+import { keepToken, ownToken, takePart } from "../../core/address";
 import { Refused } from "../../core/connection";
 import {
   type AnyRequest,
@@ -12,12 +12,18 @@ import {
   type TeamLink,
 } from "../../core/desk";
 import { checkSizes, chosenFiles, chosenNames, forgetAll, keepGiven } from "../../core/files";
-import { filesOf } from "../../core/given";
+import { GIVEN, givenIn } from "../../core/given";
 import type { Phrase } from "../../core/phrase";
 import type { Mistake, Notice } from "../../core/wire";
 import { chosenPicture, forgetPicture } from "./own_picture";
 
 const LOOK_MS = 3000;
+
+/** Keep the files that another page has handed on. */
+async function takeGiven(): Promise<void> {
+  const given = await givenIn(`#${GIVEN}=${takePart(GIVEN)}`);
+  if (given) keepGiven(given.files);
+}
 
 export class Entrant {
   readonly desk = new Desk();
@@ -38,11 +44,7 @@ export class Entrant {
   readonly answered = signal<"taken" | "refused" | null>(null);
 
   constructor() {
-    const given = filesOf(location.hash);
-    if (given) {
-      keepGiven(given);
-      history.replaceState(null, "", location.pathname + location.search);
-    }
+    void takeGiven();
     // Files that were missing are there now.
     chosenNames.subscribe(() => {
       if (this.why.peek()?.code === "desk.no-files") this.why.value = null;

@@ -1,6 +1,6 @@
 /** The picture that a team gives of itself: made small here, and kept for this tab. */
 
-import { fromBase64, toBase64 } from "../../core/files";
+import { fromBase64, toBase64 } from "../../core/base64";
 import { remembered } from "../../core/settings";
 import { tab } from "../../core/storage";
 import type { SentFile } from "../../core/wire";

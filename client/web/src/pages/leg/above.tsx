@@ -16,6 +16,18 @@ interface SwingProps {
   isShown: boolean;
 }
 
+/** The right half of the body, whose middle edge has the Root joint. */
+function Body() {
+  return (
+    <>
+      <rect class="body" x={-50} y={-45} width={50} height={90} rx={6} />
+      <Label x={-25} y={53} kind="muted">
+        ▲ {t("leg.front")}
+      </Label>
+    </>
+  );
+}
+
 /** A leg from above, which swings from forward to backward around its Root joint. */
 export function Swing({ r, swing, isShown }: SwingProps) {
   const half = swing / 2;
@@ -29,10 +41,7 @@ export function Swing({ r, swing, isShown }: SwingProps) {
       style={textSize(r + 114)}
       aria-label={t("leg.fromAbove")}
     >
-      <rect class="body" x={-50} y={-45} width={50} height={90} rx={6} />
-      <Label x={-25} y={53} kind="muted">
-        ▲ {t("leg.front")}
-      </Label>
+      <Body />
       <Line kind="side" from={[0, 0]} to={[r, 0]} />
       <Line kind="link l1" from={[0, 0]} to={[out, ahead]} />
       {isShown && (
@@ -77,10 +86,7 @@ export function Turned({ r, root }: { r: number; root: number }) {
       style={textSize(2 * size)}
       aria-label={t("leg.fromAbove")}
     >
-      <rect class="body" x={-50} y={-45} width={50} height={90} rx={6} />
-      <Label x={-25} y={53} kind="muted">
-        ▲ {t("leg.front")}
-      </Label>
+      <Body />
       <g class="triangle">
         <Line kind="side" from={[0, 0]} to={[out, 0]} />
         <Line kind="side" from={[out, 0]} to={[out, ahead]} />

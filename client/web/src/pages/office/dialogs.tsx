@@ -2,8 +2,8 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { toBase64 } from "../../core/base64";
 import type { Effect, TeamPicture } from "../../core/desk";
-import { toBase64 } from "../../core/files";
 import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
 import { copy } from "../../ui/copy";

@@ -118,7 +118,9 @@ export function Field(props: Props) {
               <span>{t(`views.${view.value}`)}</span>
             </button>
             {!alone && <Thirds match={court} most={1} toldElsewhere />}
-            <p class="way-out">{t(hasLevels ? "field.outByEscape" : "field.outByTab")}</p>
+            {hasKeyboard.value && (
+              <p class="way-out">{t(hasLevels ? "field.outByEscape" : "field.outByTab")}</p>
+            )}
           </div>
           <Curtain {...props} />
         </>

@@ -1,7 +1,7 @@
 /** The way of the table to a court: to practice. */
 
 import { signal } from "@preact/signals";
-import { enterPage, filesFragment, type GivenFiles } from "../../../core/given";
+import { enterPage, fragmentOf, type GivenFiles } from "../../../core/given";
 import { t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
 import type { Gateway } from "../gateway";
@@ -45,7 +45,7 @@ export class Court {
     const tab = window.open("about:blank");
     try {
       const files = await gateway.ask<GivenFiles>("hand_on", gait);
-      const url = `${page}#${filesFragment(files)}`;
+      const url = page + (await fragmentOf({ files, sequences: null, key: null }));
       if (tab) tab.location.replace(url);
       else this.blocked.value = url;
     } catch (error) {
