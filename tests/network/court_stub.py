@@ -11,6 +11,7 @@ import msgspec
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
+from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
@@ -122,8 +123,16 @@ class CourtStub:
         self.beat = 0
         """The newest beat; its frame may not be sent yet."""
         desk = DecisionDesk([tokens.new_token_hash(WHISTLE)])
+        self.teams = TeamDesk()
+        """Answers teams that ask where they play; no office has told it anything."""
         self.network = CourtNetwork(
-            KEYS, [listen], inbox, desk, certificate, look_ahead=lambda _: lambda: SEEN
+            KEYS,
+            [listen],
+            inbox,
+            desk,
+            certificate,
+            look_ahead=lambda _: lambda: SEEN,
+            team_desk=self.teams,
         )
         self.trouble: Phrase | None = None
         """The reason why no beats pass, such as a full disk; None while they pass.

@@ -1,15 +1,19 @@
 """The desk of a court for teams that ask where they play."""
 
 import pytest
+from court_stub import CourtStub
 
+from lacoc_client.play.asking import NotNow, Patience
+from lacoc_client.play.team_way import TeamWay
 from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
+from lacoc_shared.contest.access import Access
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES
 from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.office import Where, Whereabouts
-from lacoc_shared.words import faults, say
+from lacoc_shared.words import Phrase, faults, say
 
 SALT = bytes(16)
 TOKENS = {team: new_token() for team in ("Ants", "Bees", "Crabs")}
@@ -75,3 +79,32 @@ def test_the_newest_word_counts(desk: TeamDesk) -> None:
     desk.tell({seal.hash_token(TOKENS["Ants"], salt): waits("Ants")})
     assert ask(desk, TOKENS["Ants"]) == waits("Ants")
     assert isinstance(ask(desk, TOKENS["Bees"]), Refusal)
+
+
+def test_who_comes_before_the_office_waits_for_it(court: CourtStub) -> None:
+    """A team whose court knows nothing yet is told so once, and led on when the office speaks."""
+    access = Access(court="main", connect=court.address, token=TOKENS["Ants"])
+    told: list[Phrase] = []
+    there = Whereabouts(team="Ants", state="court", said=say("team.awaits-draw"), call="a call")
+
+    def tell(said: Phrase) -> None:
+        told.append(said)
+        court.teams.tell({seal.hash_token(TOKENS["Ants"], SALT): there})
+
+    with TeamWay(
+        access, any_court=False, patience=Patience(None), tell=tell, stopping=lambda: False
+    ) as way:
+        assert way.next() == there
+    assert told == [say("refused.office-is-silent"), there.said]
+
+
+def test_who_gave_a_time_waits_no_longer(court: CourtStub) -> None:
+    """With a longest wait, the refusal of a court that knows nothing ends the program."""
+    access = Access(court="main", connect=court.address, token=TOKENS["Ants"])
+    with (
+        pytest.raises(NotNow),
+        TeamWay(
+            access, any_court=False, patience=Patience(0.1), tell=print, stopping=lambda: False
+        ),
+    ):
+        pass

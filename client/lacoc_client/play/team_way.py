@@ -85,7 +85,7 @@ class TeamWay:
         )
         try:
             self._court = _court_at(self._session, access.court, any_court=any_court)
-            self._newest = patience.until(self._ask)
+            self._newest = self._first(patience)
         except BaseException:
             self._session.close()
             raise
@@ -144,6 +144,20 @@ class TeamWay:
         if there.address:
             own = Access(court=there.court, connect=there.address, authority=own.authority)
         return replace(own, court=there.court).of_seat(there.seat, self._access.token)
+
+    def _first(self, patience: Patience) -> Whereabouts:
+        """Return the first answer.
+
+        Where nobody set a time, an office that is being opened is waited for.
+        """
+        while True:
+            try:
+                return patience.until(self._ask)
+            except NotNow as error:
+                if patience.wait_s is not None:
+                    raise
+                self._say(error.phrase)
+                self._rest(_SOON_S)
 
     def _ask(self) -> Whereabouts:
         return where(self._session, self._court, self._access.token)
