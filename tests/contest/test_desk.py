@@ -1,8 +1,10 @@
 """Tests of the desk of an office: entries by page, decisions, moves, and who may do what."""
 
 from pathlib import Path
+from random import Random
 
 import pytest
+from chance_event import Event
 from office_room import CODE, KEY, NOW_MS, Room, said, sample
 
 from lacoc_robots.library import robot_folder
@@ -493,6 +495,22 @@ def test_a_drawn_game_of_a_match_of_several_says_how_it_goes_on(room: Room) -> N
         f"Round robin, round 1 goes on at {match.teams[0]} ½ : ½ {match.teams[1]}: "
         "both teams play game 2."
     )
+
+
+def test_a_level_match_says_to_whom_it_goes_and_why() -> None:
+    """Before the last drawn game of a knockout counts, the winner is named with the reason."""
+    event = Event(2, 1, Random(1))
+    event.add(Closed)
+    event.begin("cup", "single-knockout", event.names)
+    (match,) = event.contest.stages[0].matches
+    seats, level = match.next_seats, {"scores": (5, 5), "outcome": "draw"}
+    event.add(Played, pairing=match.pairing.id, game=1, teams=seats, **level)
+    again = new(Replaced, pairing=match.pairing.id, game=2, teams=seats, reason="?", **level)
+    told = [render(line) for line in deciding.effect(event.facts, [again])]
+    assert (
+        "Final is level. It goes to t001 by the order of the draw, because they are equal in all "
+        "else."
+    ) in told
 
 
 def test_a_match_is_moved(room: Room) -> None:

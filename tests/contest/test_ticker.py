@@ -9,6 +9,7 @@ from lacoc_server.contest.league.facts import (
     Called,
     Closed,
     Drawn,
+    NoShow,
     Planned,
     Played,
     Recalled,
@@ -60,6 +61,21 @@ def test_a_contest_is_told_line_by_line() -> None:
     event.add(Played, **{**about, "game": 2, "scores": (9, 4), "outcome": "left"})
     assert terminal.lines()[-1] == "The contest is over."
     assert terminal.lines() == []
+
+
+def test_a_decision_is_told_with_its_reason_and_who_made_it() -> None:
+    """What somebody of the staff decides has one line; a draw by hand has that of a draw."""
+    event = Event(2, 1, Random(1))
+    event.add(Planned, stage="cup", format="single-knockout", draw="organiser")
+    event.add(Closed)
+    terminal = Terminal(event)
+    terminal.lines()
+    drawn = {"stage": "cup", "entries": tuple(event.names), "how": "hand", "reason": "by seeds"}
+    event.add(Drawn, **drawn)
+    assert terminal.lines() == ["Knockout is drawn: 2 teams."]
+    event.add(NoShow, pairing="cup:w1.1", team=TEAMS[0], reason="not seen", by="Kubota")
+    assert terminal.lines()[0] == ("Decided by Kubota: Final: t001 did not come. Reason: not seen")
+    assert "Decided" not in "".join(terminal.lines())
 
 
 def test_a_draw_that_waits_is_told() -> None:

@@ -102,6 +102,18 @@ test("rounds have the matches of all groups, and no byes in a bracket", () => {
   );
 });
 
+test("the match of a record is found by the games that were counted", () => {
+  const match = {
+    games: [
+      { number: 1, record: "a.mcap" },
+      { number: 2, record: "b.mcap" },
+    ],
+  };
+  const sheet = { stages: [{ matches: [{}] }, { matches: [{ games: [{ number: 1 }] }, match] }] };
+  assert.equal(g.matchOf(sheet, "b"), match);
+  assert.equal(g.matchOf(sheet, "c"), null);
+});
+
 test("a score has points of the only game, or games won, by place", () => {
   for (const sheet of [groups, finals]) {
     for (const view of sheet.stages) {

@@ -142,9 +142,11 @@ def draw(
             shown = replace(shown, how="hand", reason=reason, entries=teams)
         stage = title(now, shown.stage)
         effect = [say("contest.to-draw", stage=stage, teams=shown.entries)]
+        plan = now.planned[0]
+        if plan.after:
+            effect.append(say("contest.draw-stays"))
         if not shown.how:
             effect += deciding.seeds_moved(now, shown)
-        plan = now.planned[0]
         if again := meets_again(now, plan, FORMATS[plan.format], shown.entries):
             effect.append(say("contest.meet-again", pairs=[" – ".join(pair) for pair in again]))
         if wanted_so(effect, yes):

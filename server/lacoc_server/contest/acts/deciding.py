@@ -163,6 +163,8 @@ def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
         return
     if not match.winner:
         yield say("decide.level", match=about, teams=result.teams, points=DRAW)
+    if match.how in ("difference", "seed"):
+        yield say("decide.goes-to", match=about, team=match.winner, tie=match.how)
     called = {call.pairing for call in then.running}
     at_courts = [match for match in matches if match.pairing.id in called]
     coming = foreseen(then, FORMATS)

@@ -74,6 +74,14 @@ export function tableAhead(sheet: ContestSheet): { view: StageView; table: Table
   return null;
 }
 
+/** The match of which a record is a game; null: none, or its result has not come yet. */
+export function matchOf(sheet: ContestSheet, matchId: string): ContestMatch | null {
+  const matches = sheet.stages.flatMap(({ matches }) => matches);
+  const isOf = ({ games = [] }: ContestMatch) =>
+    games.some(({ record }) => record === `${matchId}.mcap`);
+  return matches.find(isOf) ?? null;
+}
+
 /** The numbers of the games that have been played, and of the next one. */
 export function gamesOf(match: ContestMatch): number[] {
   const numbers = (match.games ?? []).map(({ number }) => number);

@@ -50,7 +50,8 @@ export function DrawDialog({ organiser, view }: Props) {
   const reason = useSignal("");
   const order = useSignal<readonly string[]>(view.to_draw?.entries ?? []);
   if (!view.to_draw) return null;
-  const { stage, title, entries } = view.to_draw;
+  const { stage, title, entries, why } = view.to_draw;
+  const isFirst = !why.length; // no stage is before it
   const keepApart = () => {
     how.value = "hand";
     order.value = view.to_draw?.apart ?? entries;
@@ -58,8 +59,8 @@ export function DrawDialog({ organiser, view }: Props) {
   };
   const byHand = how.value === "hand";
   const whyOf = (team: string) => {
-    const why = view.to_draw?.why[entries.indexOf(team)];
-    return why && said(why);
+    const line = why[entries.indexOf(team)];
+    return line && said(line);
   };
   const teams = byHand ? order.value : entries;
   const ready = how.value === "lot" ? lot.value.trim() : !byHand || reason.value.trim();
@@ -80,6 +81,7 @@ export function DrawDialog({ organiser, view }: Props) {
         }}
       >
         <p>{t("office.draw.text")}</p>
+        {!isFirst && <p>{t("office.draw.stays")}</p>}
         <fieldset>
           <legend>{t("office.draw.order")}</legend>
           {HOW.map((one) => (
@@ -92,7 +94,7 @@ export function DrawDialog({ organiser, view }: Props) {
                   how.value = one;
                 }}
               />
-              {t(`office.draw.how.${one || "rank"}`)}
+              {t(`office.draw.how.${one || (isFirst ? "listed" : "rank")}`)}
             </label>
           ))}
         </fieldset>

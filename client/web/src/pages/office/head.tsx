@@ -33,7 +33,7 @@ export function Head({ organiser, view, onSettings }: Props) {
           )}
         </p>
       </div>
-      {event.open && (
+      {!isOver && ( // a team that comes late enters there, too
         <dl class="entrance">
           <div>
             <dt>{t("office.enterAt")}</dt>

@@ -1,8 +1,8 @@
-/** After a match of an event: when and where its teams play again, as far as the office knows. */
+/** After a game of an event: who won a level match, and when and where its teams play again. */
 
 import { eventFeed } from "../../core/contest/feed";
-import { nextGameOf } from "../../core/contest/games";
-import { type ContestSheet, stateOf } from "../../core/contest/sheet";
+import { matchOf, nextGameOf } from "../../core/contest/games";
+import { type ContestSheet, howEnded, stateOf } from "../../core/contest/sheet";
 import type { Court } from "../../core/court";
 import { t } from "../../i18n";
 import { expected } from "../contest/words";
@@ -11,14 +11,31 @@ export function NextOfTeams({ court }: { court: Court }) {
   const sheet = eventFeed.sheet.value;
   const played = court.sheet.value;
   if (!sheet || !played) return null;
-  if (stateOf(sheet) === "over") return <p>{t("event.over")}</p>;
+  const decided = <Decided sheet={sheet} matchId={played.match_id} />;
+  if (stateOf(sheet) === "over") {
+    return (
+      <>
+        {decided}
+        <p>{t("event.over")}</p>
+      </>
+    );
+  }
   return (
     <>
+      {decided}
       {played.seats.map(({ team }) => (
         <Next key={team} sheet={sheet} team={team} call={played.call} />
       ))}
     </>
   );
+}
+
+/** Why a match has a winner although its games are level. */
+function Decided({ sheet, matchId }: { sheet: ContestSheet; matchId: string }) {
+  const match = matchOf(sheet, matchId);
+  const how = match && howEnded(match);
+  if (!match?.winner || (how !== "difference" && how !== "seed")) return null;
+  return <p>{t("event.goesTo", { team: match.winner, how: t(`contest.how.${how}`) })}</p>;
 }
 
 function Next({ sheet, team, call }: { sheet: ContestSheet; team: string; call: string }) {

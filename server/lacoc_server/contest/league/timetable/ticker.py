@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from lacoc_server.contest.league.contest import Contest
+from lacoc_server.contest.league.decided import decided
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
@@ -46,10 +47,14 @@ class Ticker:
             known: what the office knows besides the facts.
         """
         yield from self._courts(known.seen)
+        if self._told < len(facts):
+            decisions = {one.fact: one for one in decided(contest)}
         for fact in facts[self._told :]:
-            said = _said(contest, fact)
-            if said is not None:
+            if (said := _said(contest, fact)) is not None:
                 yield said
+            elif one := decisions.get(fact.id):
+                reason, by = one.reason or None, one.by or None
+                yield say("news.decided", what=one.what, reason=reason, by=by)
         self._told = len(facts)
         for (pairing, game), why in known.held.items():
             if (pairing, game) not in self._held:
