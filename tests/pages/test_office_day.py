@@ -108,7 +108,7 @@ def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None
         pause = page.locator(".pause")
         expect(pause).to_contain_text("A pause, until the organiser goes on. (a cable)")
         expect(pause).to_contain_text(re.compile("Then: Group stage|Then: Round robin"))
-    expect(office.locator(".slot .time", has_text="or later").first).to_be_visible()
+    expect(office.locator(".slot .time", has_text="from ").first).to_be_visible()
     expect(watch.locator(".banner")).to_contain_text("a cable")
     watch.locator(".banner button").click()
     expect(watch.locator(".banner")).to_have_count(0)

@@ -329,6 +329,8 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
     state: Literal["refused", "waits", "late", "in", "withdrawn", "disqualified"]
     """refused: its newest files had mistakes, and it has not entered. withdrawn,
     disqualified: it was taken out. Others: see `OwnEntry`."""
+    replaced_by: str = ""
+    """The team that takes its place, so that it is withdrawn; "": none does."""
     files: str = ""
     bot: str = ""
     """The bot that plays for it; "": people play."""

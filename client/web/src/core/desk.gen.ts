@@ -207,6 +207,7 @@ export interface OwnEntry {
 export interface TeamRow {
   team: string;
   state: "refused" | "waits" | "late" | "in" | "withdrawn" | "disqualified";
+  replaced_by: string;
   files: string;
   bot: string;
   picture: boolean;

@@ -36,9 +36,14 @@ export function team(sheet: Sheet, index: number): string {
   return seat ? seat.team || seatName(seat.id) : "";
 }
 
-/** What is played: the fixture that an office assigned ("Semi-final 1"), and the game. */
+/** Which match of a contest it is ("Semi-final 1"), as an office assigned it; "": none. */
+export function fixtureOf({ call, fixture }: Sheet): string {
+  return call && fixture ? said(fixture) : "";
+}
+
+/** What is played: the match of the contest, and the game. */
 export function played(sheet: Sheet): string {
-  return sheet.call && sheet.fixture ? `${said(sheet.fixture)} · ${sheet.title}` : sheet.title;
+  return [fixtureOf(sheet), sheet.title].filter(Boolean).join(" · ");
 }
 
 /** What the game is about and how one scores; "" if its arena does not say. */

@@ -17,6 +17,7 @@ import { Aside } from "./watch/aside";
 import { Broadcast, type Style, scaleOfWindow } from "./watch/broadcast";
 import { EventCard, useEvent } from "./watch/event";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
+import { Decided } from "./watch/next";
 
 /** For so long a stream shows the result; then what comes next. */
 const READ_MS = 15_000;
@@ -65,7 +66,8 @@ export default function Overlay() {
         style={style}
         scale={scale}
         before={between.isOn.value && <EventCard court={court} />}
-        belowScore={<OnAir court={court} />}
+        belowScore={<OnAir court={court} withMatch />}
+        next={court.welcome.value?.desk ? <Decided court={court} /> : undefined}
         inCentre={<LatestResults court={court} />}
         replays={replays}
         beside={aside && <Aside court={aside} />}

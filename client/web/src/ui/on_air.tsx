@@ -2,34 +2,61 @@
 
 import { useMemo } from "preact/hooks";
 import type { Court } from "../core/court";
+import { Cuts } from "../core/cuts";
 import { phaseOf } from "../core/match";
-import { Phase, type Programme, type ShownResult } from "../core/wire";
+import { Phase, type ShownResult } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
+import { fixtureOf } from "../i18n/words";
 import "./on_air.css";
 
 const BETWEEN = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
 
+interface OnAirProps {
+  court: Court;
+  /** Whether to say which match of the contest it is: the page says it nowhere else. */
+  withMatch?: boolean;
+  /** Whether the page shows the picture now. */
+  isSeen?: boolean;
+}
+
 /** The court on air and the reason; nothing without a director, and before it begins. */
-export function OnAir({ court }: { court: Court }) {
+export function OnAir({ court, withMatch = false, isSeen = true }: OnAirProps) {
+  const cuts = useMemo(() => new Cuts(), [court]);
   const programme = court.programme.value;
   if (!programme || programme.begins_s > 0) return null;
-  return <Shown programme={programme} label={t("director.onAir")} />;
+  const { court: name } = programme;
+  const why = cuts.why(programme, isSeen);
+  const fixture = withMatch && court.sheet.value ? fixtureOf(court.sheet.value) : "";
+  return <Shown court={name} why={why} label={t("director.onAir")} fixture={fixture} />;
+}
+
+/** Which match of a contest a court plays, where only one court is there. */
+export function OnlyMatch({ court }: { court: Court }) {
+  const fixture = court.sheet.value && fixtureOf(court.sheet.value);
+  return fixture ? (
+    <p class="on-air" data-only>
+      {fixture}
+    </p>
+  ) : null;
+}
+
+interface ShownProps {
+  court: string;
+  why: string;
+  label: string;
+  fixture?: string;
 }
 
 /** Which court a picture shows, and why. */
-export function Shown({ programme, label }: { programme: Programme; label: string }) {
-  const why = programme.why && t(`director.why.${programme.why}` as MessageName);
+export function Shown({ court, why, label, fixture = "" }: ShownProps) {
+  const reason = why && t(`director.why.${why}` as MessageName);
   return (
-    <p
-      key={`${programme.court}/${programme.why}`}
-      class="on-air"
-      data-court={programme.court}
-      data-why={programme.why}
-    >
+    <p key={`${court}/${why}`} class="on-air" data-court={court} data-why={why}>
       <b>{label}</b>
       <span>
-        {t("director.court", { court: programme.court })}
-        {why && <span class="why"> · {why}</span>}
+        {t("director.court", { court })}
+        {fixture && ` · ${fixture}`}
+        {reason && <span class="why"> · {reason}</span>}
       </span>
     </p>
   );

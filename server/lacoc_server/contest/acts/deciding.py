@@ -70,7 +70,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         *(say("decide.leaves", team=team, left=here) for team in found.leaving),
         *_matches(found, was, then),
         *_at_courts(was, then),
-        *(line for fact in placed if isinstance(fact, Replaced) for line in _meaning(then, fact)),
+        *(line for fact in placed if isinstance(fact, Replaced) for line in _meaning(was, then, fact)),
         *_ranks(found, then),
         *_follows(was, then),
     ]
@@ -150,8 +150,13 @@ def seeds_moved(contest: Contest, draw: Drawn) -> Iterator[Phrase]:
         yield say("contest.seed-moved", team=team, why=why)
 
 
-def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
-    """Say what a result means: how its match stands then, and what both teams play next."""
+def _meaning(was: Contest, then: Contest, result: Replaced) -> Iterator[Phrase]:
+    """Say what a result means: how its match stands then, and what both teams play next.
+
+    Nothing is said of a result that counts already.
+    """
+    if _counts(was, result):
+        return
     matches = [match for view in then.stages for match in view.matches]
     match = next((match for match in matches if match.pairing.id == result.pairing), None)
     if match is None or {*match.teams} != {*result.teams}:
@@ -179,6 +184,18 @@ def _meaning(then: Contest, result: Replaced) -> Iterator[Phrase]:
             yield say("decide.awaits-draw", team=team)
         else:
             yield say("decide.plays-no-more", team=team)
+
+
+def _counts(contest: Contest, result: Replaced) -> bool:
+    """Return whether a game counts with a result already."""
+    return any(
+        (game.number, game.teams, game.scores, game.outcome)
+        == (result.game, result.teams, result.scores, result.outcome)
+        for view in contest.stages
+        for match in view.matches
+        if match.pairing.id == result.pairing
+        for game in match.games
+    )
 
 
 def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:

@@ -196,9 +196,7 @@ def done(contest: Contest, fact: AnyFact) -> Phrase:
     """
     match fact:
         case Moved():
-            known = {one.pairing.id: one.fixture for one in foreseen(contest, FORMATS)}
-            what = known.get(fact.pairing) or named(contest, fact.pairing)
-            return say("desk.moved", match=what, court=fact.court or None)
+            return _moved(contest, fact)
         case Paused():
             return say("day.paused")
         case Resumed():
@@ -215,3 +213,16 @@ def done(contest: Contest, fact: AnyFact) -> Phrase:
         case Undrawn():
             return say("day.undrawn", stage=title(contest, fact.stage))
     raise TypeError(type(fact).__name__)
+
+
+def _moved(contest: Contest, fact: Moved) -> Phrase:
+    """Say which match was moved, with its teams if they are known: rounds have many matches."""
+    coming = {one.pairing.id: one for one in foreseen(contest, FORMATS)}
+    one = coming.get(fact.pairing)
+    what = one.fixture if one is not None else named(contest, fact.pairing)
+    drawn = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    match = one.match if one is not None else drawn.get(fact.pairing)
+    left, right = match.seated if match is not None else (None, None)
+    teams = (left, right) if left and right else (None, None)
+    court = fact.court or None
+    return say("desk.moved", match=what, left=teams[0], right=teams[1], court=court)

@@ -13,7 +13,7 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import LOST_MS, SeenCourt
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
 from lacoc_server.contest.league.timetable.seeding import (
@@ -63,8 +63,7 @@ def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
         to_draw=_to_draw(contest),
         teams=tuple(_teams(book)),
         courts=tuple(
-            CourtRow(court=court, here=known.pace.now_ms - seen.heard_ms < LOST_MS)
-            for court, seen in known.seen.items()
+            CourtRow(court=court, here=seen.there) for court, seen in known.seen.items()
         ),
         slots=tuple(sorted(slots(contest, known), key=lambda slot: (slot.court, slot.at_ms))),
         day=DayState(
@@ -161,6 +160,7 @@ def _rows(book: Book) -> Iterator[TeamRow]:
         yield TeamRow(
             team=name,
             state=_state(one),
+            replaced_by=one.substitute,
             files=one.files,
             bot=one.bot,
             picture=one.picture,

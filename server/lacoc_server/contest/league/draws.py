@@ -40,6 +40,9 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     picture: bool = False
     """Whether a picture of the team is among its files."""
     withdrawn: bool = False
+    """Whether it has left, or another team takes its place."""
+    substitute: str = ""
+    """The team that takes its place; "": none does."""
     disqualified: bool = False
 
     @property
@@ -91,7 +94,9 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
             if isinstance(fact, FilesChanged):
                 used = {"files": fact.files, "bot": fact.bot, "picture": fact.picture}
                 team = msgspec.structs.replace(team, **used)
-            elif isinstance(fact, Withdrawn | Substituted):
+            elif isinstance(fact, Substituted):
+                team = msgspec.structs.replace(team, withdrawn=True, substitute=fact.substitute)
+            elif isinstance(fact, Withdrawn):
                 team = msgspec.structs.replace(team, withdrawn=True)
             else:
                 team = msgspec.structs.replace(team, disqualified=True)

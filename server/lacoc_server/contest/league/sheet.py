@@ -22,7 +22,7 @@ from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.league.titles import titles
 from lacoc_shared.words import Phrase
 
-VERSION = 7
+VERSION = 8
 """Version of the layout of a sheet."""
 EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
 _UNKNOWN = ("", 0)

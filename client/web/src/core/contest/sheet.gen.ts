@@ -2,7 +2,7 @@
 
 import type { Phrase } from "../phrase";
 
-export const VERSION = 7;
+export const VERSION = 8;
 
 export interface Team {
   name: string;
@@ -11,6 +11,7 @@ export interface Team {
   club: string;
   picture: boolean;
   withdrawn: boolean;
+  substitute: string;
   disqualified: boolean;
 }
 

@@ -46,17 +46,21 @@ export function isOver(view: StageView): boolean {
   return view.rounds_to_draw === 0 && view.matches.every(isDecided);
 }
 
-/** How many teams take part, and the names of those that have left. */
+/** How many teams take part, and those that do not any more. */
 export function teamsOf({ teams }: ContestSheet): {
   here: number;
+  /** Those that have withdrawn. */
   gone: string[];
+  /** Those whose place another team takes. */
+  replaced: Team[];
   expelled: string[];
 } {
   const expelled = teams.filter((team) => team.disqualified);
-  const gone = teams.filter((team) => team.withdrawn && !team.disqualified);
+  const left = teams.filter((team) => team.withdrawn && !team.disqualified);
   return {
-    here: teams.length - gone.length - expelled.length,
-    gone: gone.map(({ name }) => name),
+    here: teams.length - left.length - expelled.length,
+    gone: left.filter(({ substitute }) => !substitute).map(({ name }) => name),
+    replaced: left.filter(({ substitute }) => substitute),
     expelled: expelled.map(({ name }) => name),
   };
 }

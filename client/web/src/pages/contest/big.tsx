@@ -183,7 +183,12 @@ function Next({ sheet, games }: { sheet: ContestSheet; games: readonly NextGame[
   return (
     <>
       <PauseLine sheet={sheet} />
-      <h2>{t("contest.coming")}</h2>
+      <h2>
+        {t("contest.coming")}{" "}
+        {games.some((one) => !one.call && expected(sheet, one)) && (
+          <small>{t("contest.estimates")}</small>
+        )}
+      </h2>
       {!games.length && <p class="muted">{t("contest.noneComing")}</p>}
       <ol class="next-games" data-few={games.length <= 2 || undefined}>
         {games.map((one) => (

@@ -56,13 +56,15 @@ export function Head({ sheet }: { sheet: ContestSheet }) {
 export function Standing({ sheet }: { sheet: ContestSheet }) {
   const state = stateOf(sheet);
   const current = state === "running" ? currentStage(sheet) : null;
-  const { here, gone, expelled } = teamsOf(sheet);
+  const { here, gone, replaced, expelled } = teamsOf(sheet);
   const parts = [
     current && stageTitle(sheet, current.stage.name),
     t("contest.teamCount", { count: here }),
+    state !== "waiting" && t("contest.progress", progress(sheet)),
+    // A projector cuts what is too long: names come last.
+    ...replaced.map(({ name, substitute }) => t("contest.replaced", { team: name, substitute })),
     gone.length > 0 && t("contest.gone", { teams: listed(gone) }),
     expelled.length > 0 && t("contest.expelled", { teams: listed(expelled) }),
-    state !== "waiting" && t("contest.progress", progress(sheet)),
   ];
   return (
     <>

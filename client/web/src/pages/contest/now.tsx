@@ -61,6 +61,9 @@ export function Now({ sheet }: { sheet: ContestSheet }) {
       <div>
         <h2>{t("contest.coming")}</h2>
         {!coming.length && <p class="muted">{t("contest.noneComing")}</p>}
+        {coming.some((one) => expected(sheet, one)) && (
+          <p class="muted">{t("contest.estimates")}</p>
+        )}
         <ol class="coming">
           {coming.slice(0, COMING_MOST).map((one) => {
             const teams =

@@ -11,10 +11,11 @@ import { inPieces } from "../../core/pieces";
 import { reloadWhenServed } from "../../core/reload";
 import { Replays } from "../../core/replays";
 import { USUAL_HZ } from "../../core/wire";
-import { OnAir } from "../../ui/on_air";
+import { OnAir, OnlyMatch } from "../../ui/on_air";
 import { Aside } from "../watch/aside";
 import { Broadcast, type Style, scaleOfWindow } from "../watch/broadcast";
 import { qualityOfAddress } from "../watch/flags";
+import { Decided } from "../watch/next";
 
 const LOOK_MS = 200;
 
@@ -63,7 +64,14 @@ export function Picture({ shown }: { shown: Signal<boolean> }) {
         match={court}
         style={style}
         scale={scale}
-        belowScore={severalCourts() && <OnAir court={court} />}
+        belowScore={
+          severalCourts() ? (
+            <OnAir court={court} withMatch isSeen={shown.value} />
+          ) : (
+            <OnlyMatch court={court} />
+          )
+        }
+        next={<Decided court={court} />}
         beside={severalCourts() && <Aside court={aside} />}
         replays={replays}
       />

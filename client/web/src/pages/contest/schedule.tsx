@@ -41,6 +41,9 @@ export function Schedule({ sheet, view }: Props) {
           open={few || round === current}
         />
       ))}
+      {view.matches.some(({ games = [] }) => games.some(({ ruled }) => ruled)) && (
+        <p class="muted">{t("contest.ruledMark")}</p>
+      )}
     </div>
   );
 }

@@ -119,11 +119,13 @@ export function sideText(sheet: ContestSheet): string {
 
 /** What is special about a team. */
 function Marks({ team }: { team: Team }) {
+  const { substitute } = team;
+  const left = substitute ? t("contest.replacedBy", { substitute }) : t("contest.withdrawn");
   return (
     <>
       {team.bot && <small class="mark"> {t("contest.bot", { bot: team.bot })}</small>}
       {team.disqualified && <small class="out"> {t("contest.out")}</small>}
-      {team.withdrawn && !team.disqualified && <small class="out"> {t("contest.withdrawn")}</small>}
+      {team.withdrawn && !team.disqualified && <small class="out"> {left}</small>}
     </>
   );
 }

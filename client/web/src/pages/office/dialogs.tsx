@@ -8,6 +8,7 @@ import { pictureUrl } from "../../core/picture";
 import { said, t } from "../../i18n";
 import { copy } from "../../ui/copy";
 import { Dialog } from "../../ui/dialog";
+import { stateOf } from "./entries";
 import type { Organiser } from "./organiser";
 
 interface Props {
@@ -34,7 +35,7 @@ export function TeamDialog({ organiser, team }: Props) {
   return (
     <Dialog title={team} onClose={() => organiser.close()}>
       <div class="asks">
-        <p class="muted">{t(`office.state.${row.state}`)}</p>
+        <p class="muted">{stateOf(row)}</p>
         {row.files && (
           <p>
             {t("office.hash")} <code>{row.files}</code>
@@ -259,13 +260,15 @@ export function Reason({
 export function Effects({ effect }: { effect: Effect | null }) {
   return (
     <section class="effects" aria-live="polite">
-      <h3>{t("office.effect")}</h3>
       {effect && (
-        <ul>
-          {effect.lines.map((line, index) => (
-            <li key={index}>{said(line)}</li>
-          ))}
-        </ul>
+        <>
+          <h3>{t("office.effect")}</h3>
+          <ul>
+            {effect.lines.map((line, index) => (
+              <li key={index}>{said(line)}</li>
+            ))}
+          </ul>
+        </>
       )}
     </section>
   );

@@ -94,7 +94,7 @@ function Row({ organiser, row, open }: RowProps) {
       >
         {team}
       </button>
-      <span class="state">{t(`office.state.${state}`)}</span>
+      <span class="state">{stateOf(row)}</span>
       <span class="about muted">
         {bot && t("office.bot", { bot })}
         {files && <code title={t("office.hash")}>{files.slice(0, 8)}</code>}
@@ -141,6 +141,14 @@ function Row({ organiser, row, open }: RowProps) {
       )}
     </li>
   );
+}
+
+/** How a team's entry stands. */
+export function stateOf({ state, replaced_by }: TeamRow): string {
+  if (state === "withdrawn" && replaced_by) {
+    return t("office.state.replaced", { substitute: replaced_by });
+  }
+  return t(`office.state.${state}`);
 }
 
 /** Whether a name contains what is searched for. */

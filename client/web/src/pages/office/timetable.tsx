@@ -88,10 +88,12 @@ function CourtColumn({ organiser, column, dragged }: ColumnProps) {
       }}
       onDrop={(event) => drop(event, null)}
     >
-      <h3>
-        {t("contest.court", { court })}{" "}
-        {!here && <small class="warning">{t("office.courtAway")}</small>}
-      </h3>
+      <h3>{t("contest.court", { court })}</h3>
+      {!here && (
+        <p class="warning" role="status">
+          {t("office.courtAway", { court })}
+        </p>
+      )}
       {!slots.length && <p class="muted">{t("office.courtFree")}</p>}
       <ol>
         {slots.map((slot) => (

@@ -4,7 +4,7 @@ import { useComputed } from "@preact/signals";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { t } from "../../i18n";
-import { played, seatName, team } from "../../i18n/words";
+import { fixtureOf, seatName, team } from "../../i18n/words";
 import { hasKeyboard } from "../../ui/screen";
 import { canChange } from "./files";
 
@@ -33,10 +33,15 @@ export function Footer({ court, player, onKeys, onFiles, onSettings }: Props) {
             {team(sheet, index)} ({seatName(seat.id)})
           </b>
         )}
-        {sheet && <span>{played(sheet)}</span>}
-        <span class="muted">
+        <span class="muted court">
           {t("join.court")} {court.welcome.value?.court}
         </span>
+        {sheet && (
+          <span class="what">
+            {fixtureOf(sheet) && <span>{fixtureOf(sheet)}</span>}
+            <span>{sheet.title}</span>
+          </span>
+        )}
       </p>
       <dl>
         <div title={t("foot.tripHint")}>

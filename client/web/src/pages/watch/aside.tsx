@@ -28,7 +28,7 @@ export function Aside({ court }: { court: Court }) {
         <View source={court} camera="arena" quality="low" transparent label={t("watch.view")} />
       </div>
       <Sides court={court} />
-      {programme && <Shown programme={programme} label={t("director.meanwhile")} />}
+      {programme && <Shown {...programme} label={t("director.meanwhile")} />}
     </section>
   );
 }

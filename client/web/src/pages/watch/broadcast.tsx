@@ -59,6 +59,8 @@ interface More {
   /** Stands for the card of the opening: between the matches of an event. */
   before?: ComponentChildren;
   inCentre?: ComponentChildren;
+  /** Stands below an official result. */
+  next?: ComponentChildren;
   beside?: ComponentChildren;
   /** Whether no other match follows. */
   isLast?: boolean;
@@ -155,7 +157,7 @@ function Windows({ match, style, scale }: Props) {
 type Told = { match: Match } & More;
 
 /** Score and clock are those of now, also while the picture shows a moment again. */
-function Hud({ match, belowScore, before, inCentre, beside, isLast = false, replays }: Told) {
+function Hud({ match, belowScore, before, inCentre, next, beside, isLast = false, replays }: Told) {
   const isReplay = !!replays?.shown.value;
   return (
     <div class="hud">
@@ -174,7 +176,7 @@ function Hud({ match, belowScore, before, inCentre, beside, isLast = false, repl
       <div class="centre">
         <Countdown match={match} />
         <Sound match={match} isQuiet />
-        {!isReplay && !before && <ResultCard match={match} isLast={isLast} />}
+        {!isReplay && !before && <ResultCard match={match} isLast={isLast} next={next} />}
         {!isReplay && inCentre}
       </div>
       <div class="before">{before || <OpeningCard match={match} />}</div>

@@ -11,7 +11,7 @@ export function NextOfTeams({ court }: { court: Court }) {
   const sheet = eventFeed.sheet.value;
   const played = court.sheet.value;
   if (!sheet || !played) return null;
-  const decided = <Decided sheet={sheet} matchId={played.match_id} />;
+  const decided = <Decided court={court} />;
   if (stateOf(sheet) === "over") {
     return (
       <>
@@ -31,8 +31,10 @@ export function NextOfTeams({ court }: { court: Court }) {
 }
 
 /** Why a match has a winner although its games are level. */
-function Decided({ sheet, matchId }: { sheet: ContestSheet; matchId: string }) {
-  const match = matchOf(sheet, matchId);
+export function Decided({ court }: { court: Court }) {
+  const sheet = eventFeed.sheet.value;
+  const played = court.sheet.value;
+  const match = sheet && played && matchOf(sheet, played.match_id);
   const how = match && howEnded(match);
   if (!match?.winner || (how !== "difference" && how !== "seed")) return null;
   return <p>{t("event.goesTo", { team: match.winner, how: t(`contest.how.${how}`) })}</p>;
