@@ -65,9 +65,9 @@ class Room:
         code = EventCode(self.where.event_code, CODE)
         store = FactStore(self.where.facts)
         self.book = Book(self.where, store, self.applications, code)
-        courts = {"north": SeenCourt(NOW_MS), "south": SeenCourt(NOW_MS)}
-        known = OfficeKnowledge(courts, ContestPace(NOW_MS, 60_000), {})
-        self.desk = Desk(self.book, KEY, lambda: known)
+        courts = {court: SeenCourt(NOW_MS, there=True) for court in ("north", "south")}
+        self.known = OfficeKnowledge(courts, ContestPace(NOW_MS, 60_000), {})
+        self.desk = Desk(self.book, KEY, lambda: self.known)
 
     def ask(self, request: AnyRequest) -> object:
         """Encode a request as the network does, and return the desk's answer."""

@@ -24,6 +24,7 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.schedule import playable
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
@@ -513,6 +514,32 @@ def test_a_level_match_says_to_whom_it_goes_and_why() -> None:
     ) in told
 
 
+def test_a_result_that_counts_already_changes_nothing() -> None:
+    """Who decides the score again that counts is told so; not what the teams play next."""
+    event = Event(4, 1, Random(1))
+    event.add(Closed)
+    event.begin("cup", "single-knockout", event.names)
+    match = event.contest.stages[0].matches[0]
+    about = {"pairing": match.pairing.id, "game": 1, "teams": match.next_seats}
+    counts = {"scores": (7, 5), "outcome": "left"}
+    event.add(Played, **about, **counts)
+    again = new(Replaced, **about, **counts, reason="?")
+    assert [line.code for line in deciding.effect(event.facts, [again])] == ["decide.nothing"]
+    other = new(Replaced, **about, scores=(7, 6), outcome="left", reason="?")
+    assert "decide.then" in [line.code for line in deciding.effect(event.facts, [other])]
+
+
+def test_a_court_that_does_not_answer_is_marked_at_once(room: Room) -> None:
+    """The organiser sees it as soon as the office does, not only when its game is taken back."""
+    assert [court.here for court in room.view.courts] == [True, True]
+    seen = {**room.known.seen, "north": SeenCourt(NOW_MS)}
+    room.known = room.known._replace(seen=seen)
+    assert {court.court: court.here for court in room.view.courts} == {
+        "north": False,
+        "south": True,
+    }
+
+
 def test_a_match_is_moved(room: Room) -> None:
     """After a move, the view has the match at its new court and time; a wrong court is refused."""
     room.enter("Ants", "Bees", "Crabs", "Dogs")
@@ -522,7 +549,10 @@ def test_a_match_is_moved(room: Room) -> None:
     last = [*slots][-1]
     other = "south" if slots[last] == "north" else "north"
     later_ms = NOW_MS + 3_600_000
-    room.ask(Move(secret=KEY, pairing=last, court=other, not_before_ms=later_ms))
+    answer = room.ask(Move(secret=KEY, pairing=last, court=other, not_before_ms=later_ms))
+    (told,) = answer.said  # type: ignore[attr-defined]
+    match = next(match for match in playable(room.book.contest) if match.pairing.id == last)
+    assert f"({match.seated[0]} – {match.seated[1]}) is moved to court {other}." in render(told)
     (slot,) = (slot for slot in room.view.slots if slot.pairing == last)
     assert (slot.court, slot.at_ms) == (other, later_ms)
     assert slot.moved is not None

@@ -198,6 +198,12 @@ def test_a_substitute_comes_for_a_team_that_is_ill(room: Room) -> None:
     assert wrongs(room.facts) == []
     decided = sheet("", compute(room.facts, FORMATS)).decided
     assert [one.what.code for one in decided] == ["decided.substituted", "decided.entered-late"]
+    shown = {team.name: team for team in sheet("", compute(room.facts, FORMATS)).teams}
+    assert (shown["Bees"].withdrawn, shown["Bees"].substitute) == (True, "Eels")
+    assert shown["Eels"].substitute == ""
+    assert {row.team: row.replaced_by for row in room.view.teams if row.replaced_by} == {
+        "Bees": "Eels"
+    }
 
 
 def test_a_draw_is_taken_back_and_made_again(room: Room) -> None:

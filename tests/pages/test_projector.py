@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.long]
 PROJECTOR = {"width": 1920, "height": 1080}
 SMALL = {"width": 1280, "height": 720}
 TEAMS = ("Ants", "Bees", "九州工業大学ロボット研究会")
+NAME = "Robot Cup 2027"
+LONG_NAME = "The Second Autumn Cup of All Walking Robots of the North 2027"
 LINE = "Lunch until one o'clock in room 2-104; the robots meet at the north door."
 LEAST_SHARE = 0.028
 """A letter is at least this part of the picture's height: 15 m away it can be read on a screen that
@@ -79,6 +82,11 @@ def pictured(teams: Sequence[Team], folder: Path) -> tuple[Team, ...]:
     return tuple(given)
 
 
+def long_teams(sheet: bytes) -> bytes:
+    """Give all teams of a sheet names of the most letters."""
+    return re.sub(rb'"t(\d{3})"', rb'"Owls of the North Sea\1"', sheet)
+
+
 def fits(page: Page) -> None:
     """Check that a slide fits, and that everybody can read it."""
     found = page.evaluate(
@@ -92,14 +100,22 @@ def fits(page: Page) -> None:
               const scale = svg ? svg.getScreenCTM().a : 1;
               return [scale * parseFloat(getComputedStyle(one).fontSize), one.textContent];
             });
+          const main = slide.parentElement;
           return {
+            wide: [document.documentElement.scrollWidth, main.scrollWidth]
+              .map((px) => px - innerWidth),
             over: [slide.scrollHeight - slide.clientHeight, slide.scrollWidth - slide.clientWidth],
             small: sizes.filter(([size]) => size < least * innerHeight),
           };
         }""",
         LEAST_SHARE,
     )
-    assert found == {"over": [0, 0], "small": []}
+    assert found == {"wide": [0, 0], "over": [0, 0], "small": []}
+    row = page.locator(".slide tbody tr").first
+    if row.count():
+        cell = row.locator("td").last.bounding_box()
+        assert cell is not None
+        assert cell["x"] + cell["width"] <= page.evaluate("innerWidth")
     pictures = page.locator(".podium li:not([data-rank='1']) .team-picture").all()
     sizes = {(box["width"], box["height"]) for one in pictures if (box := one.bounding_box())}
     assert len(sizes) < 2
@@ -128,8 +144,13 @@ def show_all(page: Page) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("size", "locale", "line"),
-    [(PROJECTOR, "en-GB", ""), (SMALL, "ja-JP", ""), (SMALL, "en-GB", LINE)],
+    ("size", "locale", "line", "name"),
+    [
+        (PROJECTOR, "en-GB", "", NAME),
+        (PROJECTOR, "en-GB", "", LONG_NAME),
+        (SMALL, "ja-JP", "", NAME),
+        (SMALL, "en-GB", LINE, NAME),
+    ],
 )
 def test_every_slide_can_be_read(
     tmp_path: Path,
@@ -138,10 +159,12 @@ def test_every_slide_can_be_read(
     size: ViewportSize,
     locale: str,
     line: str,
+    name: str,
 ) -> None:
     """All slides fit both projectors in large letters, also with a line to all below them.
 
-    Every other team gave a picture: on the podium it is as large as the letter of one without.
+    Every other team gave a picture: on the podium it is as large as the letter of one without. One
+    has left, and another team takes its place. The contest and its teams may have long names.
     """
     told = Announced(id="f0", number=0, at_ms=0, text=line) if line else None
     kinds: set[str] = set()
@@ -150,11 +173,14 @@ def test_every_slide_can_be_read(
         page = open_page(viewport=size, locale=locale)
         page.clock.install()
         for number, (_, event) in enumerate(sheets()):
-            teams = pictured(event.contest.teams, tmp_path)
-            shown = msgspec.structs.replace(event.contest, announced=told, teams=teams)
-            made = sheet("Robot Cup 2027", shown, expected(event.contest))
+            *teams, last = pictured(event.contest.teams, tmp_path)
+            left = msgspec.structs.replace(last, withdrawn=True, substitute=teams[0].name)
+            shown = msgspec.structs.replace(
+                event.contest, announced=told, teams=(*teams, left)
+            )
+            made = encode(sheet(name, shown, expected(event.contest)))
             file = tmp_path / "contest.json"
-            file.write_bytes(encode(made))
+            file.write_bytes(long_teams(made) if name == LONG_NAME else made)
             # The server of plain files tells versions apart by their second.
             os.utime(file, (number, number))
             page.goto(f"{url}?big")

@@ -11,6 +11,7 @@ import { places, podium } from "../../../client/web/src/core/contest/places.ts";
 import * as c from "../../../client/web/src/core/contest/sheet.ts";
 import { slides } from "../../../client/web/src/core/contest/slides.ts";
 import { Turns } from "../../../client/web/src/core/contest/turns.ts";
+import { Cuts } from "../../../client/web/src/core/cuts.ts";
 import { Phase } from "../../../client/web/src/core/wire.ts";
 
 /** Sheets of contests with random results, made by Python. */
@@ -36,9 +37,11 @@ test("a contest is over when all its stages are, and then it has a winner", () =
 });
 
 test("teams that have left are named, and do not count", () => {
-  const [one, two, three, ...others] = groups.teams;
+  const [one, two, three, four, ...others] = groups.teams;
+  const replaced = { ...four, withdrawn: true, substitute: others[0].name };
   const teams = [
     { ...one, withdrawn: true },
+    replaced,
     { ...two, disqualified: true },
     { ...three, withdrawn: true, disqualified: true },
     ...others,
@@ -46,6 +49,7 @@ test("teams that have left are named, and do not count", () => {
   assert.deepEqual(c.teamsOf({ ...groups, teams }), {
     here: others.length,
     gone: [one.name],
+    replaced: [replaced],
     expelled: [two.name, three.name],
   });
 });
@@ -282,6 +286,15 @@ test("a projector shows the match that is played, and tables between matches", (
   assert.equal(at(60_000, "a", FINISHED), true);
   assert.equal(at(66_000, "b", PLAYING), false, "tables after a match, while others play");
   assert.equal(at(110_000, "b", PLAYING), true);
+});
+
+test("a court that has gone is named only to who saw it on air", () => {
+  const cuts = new Cuts();
+  assert.equal(cuts.why({ court: "a", why: "gone" }, true), "", "the page has just come");
+  assert.equal(cuts.why({ court: "b", why: "gone" }, false), "gone");
+  assert.equal(cuts.why({ court: "b", why: "gone" }, true), "gone", "as long as it is on air");
+  assert.equal(cuts.why({ court: "a", why: "played" }, false), "played");
+  assert.equal(cuts.why({ court: "b", why: "gone" }, true), "", "tables were shown meanwhile");
 });
 
 test("a projector that comes after the end shows no match of before", () => {

@@ -81,6 +81,7 @@ teams = 4                  # the best four of the groups
 apart = true               # teams of one group or club do not meet in the first round
 games = 3                  # best of three, sides swapped after each game
 third_place = true
+# final_court = "main"     # the final is played there; else at any court that is free
 arena = "{arena}"
 settings.match.start = "ready"
 # settings.match.duration_s = 120.0    # length of a game; else as in the arena's file

@@ -24,7 +24,9 @@ const BOX = { width: 216, height: 56 };
 const HEAD = 34;
 const PAD = 4;
 /** Height of a note below a box: its line, with the parts of letters below that. */
-const NOTE = 16;
+const NOTE = big ? 22 : 17;
+/** From a box to the line of its note: letters are larger on a projector. */
+const NOTE_LINE = big ? 17 : 13;
 /** From box to box: lines go between columns, notes between rows. */
 const STEP = { x: BOX.width + 44, y: BOX.height + NOTE + 6 };
 const NAME_EM = 11;
@@ -166,7 +168,7 @@ function MatchBox({ sheet, view, box }: BoxProps) {
         </Link>
       )}
       {note && (
-        <text class="note" x={BOX.width} y={BOX.height + 12}>
+        <text class="note" x={BOX.width} y={BOX.height + NOTE_LINE}>
           {fit(note, 20)}
         </text>
       )}
