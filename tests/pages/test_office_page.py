@@ -265,6 +265,7 @@ def decide(office: Page) -> None:
     dialog = office.get_by_role("dialog")
     go = dialog.get_by_role("button", name="Decide this")
     points = dialog.locator(".points input")
+    expect(dialog.locator(".effects")).to_be_empty()
     points.nth(0).fill("3")
     points.nth(1).fill("9")
     expect(dialog.locator(".effects li").first).to_contain_text("round 1 (")

@@ -93,6 +93,10 @@ def test_a_page_follows_its_team(tmp_path: Path, built_pages: Path, sit: Sit, co
         assert size is not None
         player.page.set_viewport_size({"width": 390, "height": 844})
         player.sees(".fixture", "Swiss")
+        player.page.set_viewport_size({"width": 1280, "height": 800})
+        player.sees(".foot .court", "Court south")
+        court = player.find(".foot .court")
+        assert court.evaluate("one => one.scrollWidth <= one.clientWidth")
         player.page.set_viewport_size(size)
         player.page.reload()
         asks_before_it_takes_over(player, sit(there["url"]), link)

@@ -81,7 +81,7 @@ teams = 4                  # the best four of the groups
 apart = true               # teams of one group or club do not meet in the first round
 games = 3                  # best of three, sides swapped after each game
 third_place = true
-# final_court = "main"     # the final is played there; else at any court that is free
+# final_court = "{court}"   # where the final is played; else at any court that is free
 arena = "{arena}"
 settings.match.start = "ready"
 # settings.match.duration_s = 120.0    # length of a game; else as in the arena's file
@@ -190,7 +190,7 @@ def _text(
     head = _HALL
     if public is not None:
         head = _ONLINE.format(pages=f"{public.pages}/", proxy=public.proxies[0])
-    stages = (_OPEN if friendly else _GROUPS).format(arena=arena)
+    stages = (_OPEN if friendly else _GROUPS).format(arena=arena, court=courts[0])
     enter = "" if friendly else "enter each team with 'lacoc contest enter NAME FOLDER', "
     return _TEMPLATE.format(
         enter=enter, secrets=secrets, public=head, stages=stages, courts="\n".join(tables)
