@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.feet import mean_phase
 from lacoc_server.trial.support import margin_m
-from lacoc_shared.gait.tables import Posture
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
 _OUTSIDE_M = 0.03
 """A body whose middle is farther outside the feet that reach the floor than this falls on it."""
@@ -21,8 +21,8 @@ class Steps:
     lift_m: list[list[float]]
     """For each leg and posture, how high the foot is above the lowest foot of this posture."""
     reaches: list[list[bool]]
-    """For each leg and posture, whether its shank comes below the body. If it does not, the body
-    lies on the floor before this foot touches it."""
+    """For each leg and posture, whether its shank comes below the body, with all of its thickness. If
+    it does not, the body lies on the floor before this foot touches it."""
     stands: list[bool]
     """For each posture, whether at least half of the feet reach, and the middle of the body is
     about above them."""
@@ -71,8 +71,10 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     lowest_m = [min(tip.z for tip in feet) for feet in tips]
     legs = range(len(robot.legs))
     under_m = -robot.size_m[2] / 2
+    shanks = [robot.capsules(posture)[JOINTS_PER_LEG - 1 :: JOINTS_PER_LEG] for posture in sequence]
     reaches = [
-        [min(placed[leg][2].z, placed[leg][3].z) < under_m for placed in points] for leg in legs
+        [min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m for one in shanks]
+        for leg in legs
     ]
     return Steps(
         [[feet[leg].y for feet in tips] for leg in legs],

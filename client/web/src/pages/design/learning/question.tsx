@@ -47,8 +47,8 @@ export function Question({ learning, phase: { number, asked } }: Props) {
           <>
             {t(told.right ? "design.question.right" : "design.question.wrong", {
               was: told.was.map(said).join(t("design.question.or")),
-            })}{" "}
-            {said(told.because)}
+              because: said(told.because),
+            })}
           </>
         )}
       </p>
