@@ -8,6 +8,10 @@ from lacoc_server.trial.feet import mean_phase
 from lacoc_server.trial.support import margin_m
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
+LIFT_M = 0.004
+"""A foot that is less above the lowest foot stands on the floor, about [m]."""
+_TOUCHES_M = 0.001
+"""A shank that is higher than the body's underside by less than this touches the floor too."""
 _OUTSIDE_M = 0.03
 """A body whose middle is farther outside the feet that reach the floor than this falls on it."""
 
@@ -21,11 +25,16 @@ class Steps:
     lift_m: list[list[float]]
     """For each leg and posture, how high the foot is above the lowest foot of this posture."""
     reaches: list[list[bool]]
-    """For each leg and posture, whether its shank comes below the body, with all of its thickness. If
-    it does not, the body lies on the floor before this foot touches it."""
+    """For each leg and posture, whether its shank, which is thick, comes as low as the body. If it does
+    not, the body lies on the floor before this foot touches it."""
     stands: list[bool]
     """For each posture, whether at least half of the feet reach, and the middle of the body is
     about above them."""
+
+    @property
+    def carries(self) -> list[list[bool]]:
+        """For each posture and leg, whether the foot is about as low as the lowest one."""
+        return [[lift < LIFT_M for lift in feet] for feet in zip(*self.lift_m, strict=True)]
 
     @property
     def highest_m(self) -> list[float]:
@@ -73,7 +82,7 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     under_m = -robot.size_m[2] / 2
     shanks = [robot.capsules(posture)[JOINTS_PER_LEG - 1 :: JOINTS_PER_LEG] for posture in sequence]
     reaches = [
-        [min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m for one in shanks]
+        [min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m + _TOUCHES_M for one in shanks]
         for leg in legs
     ]
     return Steps(
