@@ -123,9 +123,7 @@ def test_beside_a_mistake_of_many_numbers_no_leg_is_advised(
     ("first_deg", "second_deg", "hangs"),
     [(20, 40, False), (0, 80, False), (0, 90, False), (40, 40, True), (60, 40, True)],
 )
-def test_feet_that_stand_are_not_said_to_hang(
-    first_deg: int, second_deg: int, hangs: bool
-) -> None:
+def test_feet_that_stand_are_not_said_to_hang(first_deg: int, second_deg: int, hangs: bool) -> None:
     """A shank reaches the floor with all of its thickness, also if its axis ends too high."""
     posture = posture_of(first_deg, second_deg)
     mistake = likely_mistake(form_of("hexapod", posture[None], Level.POSTURE))
@@ -135,7 +133,7 @@ def test_feet_that_stand_are_not_said_to_hang(
 def test_a_body_that_leans_onto_its_feet_is_not_said_to_hang() -> None:
     """If feet stand in the trial, the table's few feet that reach the floor are no reason."""
     posture = posture_of(44, -5)
-    lean_deg = (-21, 0, 12, 24, 3, -5)
+    lean_deg = (0, -25, 7, -12, 3, -4)
     posture[1] += lean_deg
     posture[2] -= lean_deg
     trial = try_gait(course_of("hexapod"), level_a(posture), "A1", 3.0)
@@ -170,28 +168,20 @@ def test_feet_that_push_back_in_half_a_cycle_are_named(
     assert said.code == "explain.half-back"
     assert (said.values["legs"], said.values["others"]) == (wrong, others)
     assert explained[0].cell is not None
-    assert explained[0].cell.joint in [
-        entry_of("hexapod").robot.labels.index(leg) for leg in wrong
-    ]
+    assert explained[0].cell.joint in [entry_of("hexapod").robot.labels.index(leg) for leg in wrong]
     assert "row 1" in render(said)
     assert "row 2" in render(said)
 
 
 @pytest.mark.parametrize("table", ["sample", "tripod"])
-@pytest.mark.parametrize("rows", [(0, 1), (0, 1, 0, 1)])
-def test_the_same_feet_in_all_postures_are_no_mistake_of_a_row(
-    table: str, rows: tuple[int, ...]
-) -> None:
-    """If the same feet carry in all postures, other postures are missing; no number is wrong."""
+def test_two_postures_with_the_same_feet_have_no_wrong_number(table: str) -> None:
+    """If the same feet carry in both postures, others are missing: nothing is to be changed."""
     good = GOOD[table][1]()
-    part = good[list(rows)]
-    found = told(Mistaken("hexapod", "rows", part, set(), good), ("same-feet",))
+    found = told(Mistaken("hexapod", "rows", good[:2], set(), good), ("same-feet",))
     assert found.named, found
     assert not {"odd-row", "wrong-mirror", "swapped-rows", *ADVICE} & set(found.codes), found
-    repairs = [one.repair.form.angles_deg for one in weigh_repairs(form_of("hexapod", part))]
-    # Two postures have no other half that could be changed; of four, one can mirror the other.
-    wanted = part if len(rows) == 2 else good
-    assert any(np.array_equal(one, wanted) for one in repairs)
+    repairs = weigh_repairs(form_of("hexapod", good[:2]))
+    assert [one.repair.form.angles_deg.tolist() for one in repairs] == [good[:2].tolist()]
 
 
 @pytest.mark.parametrize("name", ["sample", "tripod", "octopod"])

@@ -209,7 +209,9 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
     walk = course.walk(gait, presses, seconds)
     figures = measure(walk)
     sequence = gait.sequence(last.level, last.digit) or ()
-    before = presses[-2] if presses[1:] and presses[-2].level is Level.POSTURE is last.level else None
+    before = (
+        presses[-2] if presses[1:] and presses[-2].level is Level.POSTURE is last.level else None
+    )
     posture = gait.sequence(before.level, before.digit) if before else None
     notes = []
     if walk.fault is not None:

@@ -12,6 +12,9 @@ LIFT_M = 0.004
 """A foot that is less above the lowest foot stands on the floor, about [m]."""
 _TOUCHES_M = 0.001
 """A shank that is higher than the body's underside by less than this touches the floor too."""
+_LEANS_M = 0.025
+"""A foot that is higher than the lowest one by more than this carries nothing: the body would have
+to lean too far."""
 _OUTSIDE_M = 0.03
 """A body whose middle is farther outside the feet that reach the floor than this falls on it."""
 
@@ -28,8 +31,8 @@ class Steps:
     """For each leg and posture, whether its shank, which is thick, comes as low as the body. If it does
     not, the body lies on the floor before this foot touches it."""
     stands: list[bool]
-    """For each posture, whether at least half of the feet reach, and the middle of the body is
-    about above them."""
+    """For each posture, whether at least half of the feet reach the floor together, and the middle of
+    the body is about above them."""
 
     @property
     def carries(self) -> list[list[bool]]:
@@ -82,7 +85,10 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     under_m = -robot.size_m[2] / 2
     shanks = [robot.capsules(posture)[JOINTS_PER_LEG - 1 :: JOINTS_PER_LEG] for posture in sequence]
     reaches = [
-        [min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m + _TOUCHES_M for one in shanks]
+        [
+            min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m + _TOUCHES_M
+            for one in shanks
+        ]
         for leg in legs
     ]
     return Steps(
@@ -90,8 +96,15 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
         [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],
         reaches,
         [
-            _stands([(feet[leg].x, feet[leg].y) for leg in legs if reaches[leg][index]], len(legs))
-            for index, feet in enumerate(tips)
+            _stands(
+                [
+                    (feet[leg].x, feet[leg].y)
+                    for leg in legs
+                    if reaches[leg][index] and feet[leg].z - low < _LEANS_M
+                ],
+                len(legs),
+            )
+            for index, (feet, low) in enumerate(zip(tips, lowest_m, strict=True))
         ],
     )
 

@@ -24,35 +24,27 @@ _AREA_M2 = 1e-4
 
 
 def same_feet_repairs(form: KeyForm) -> list[Repair]:
-    """List the repairs of a table in which the same feet carry the robot in all postures.
+    """List the repair of a table in which the same feet carry the robot in all postures.
 
-    What these feet push they push back again, whatever other numbers say. With an even number of
-    postures, at least four, a half can be made from the other; else postures are missing, and the
-    only repair leaves the table as it is.
+    What these feet push they push back again. Postures are missing, and no number is wrong: the
+    repair leaves the table as it is. A table of four postures or more has a half that could be the
+    mirror of the other, which is another mistake.
     """
     steps = steps_of(form.robot, form.sequence)
     carries = steps.carries[0]
-    if form.postures < 2 or all(carries) or any(one != carries for one in steps.carries):
+    if form.postures < 2 or form.half > 1 or all(carries):
         return []
-    ahead = np.array(steps.ahead_m).T[:, carries]
-    if not any(steps.stands) or np.ptp(ahead, axis=0).max() < _SWING_M:
+    if any(one != carries for one in steps.carries):
         return []
-    leg = [one for one, carrying in enumerate(carries) if carrying][int(np.ptp(ahead, axis=0).argmax())]
+    legs = [leg for leg, carrying in enumerate(carries) if carrying]
+    swings_m = [max(steps.ahead_m[leg]) - min(steps.ahead_m[leg]) for leg in legs]
+    if max(swings_m) < _SWING_M:
+        return []
+    leg = legs[swings_m.index(max(swings_m))]
     cell = TableCell(steps.swings_to(leg), 0, leg)
-    labels = [label for label, one in zip(form.robot.labels, carries, strict=True) if one]
+    labels = [form.robot.labels[one] for one in legs]
     said = say("explain.same-feet", cell=form.name(cell), legs=labels)
-    if form.half < 2:
-        return [Repair(said, cell, form, 5)]
-    halves = (range(form.half), range(form.half, form.postures))
-    return [Repair(said, cell, _mirrored(form, rows), 5) for rows in halves]
-
-
-def _mirrored(form: KeyForm, rows: range) -> KeyForm:
-    """Return the table with some rows made from their partners'."""
-    ix = np.ix_(rows, form.paired)
-    angles = form.angles_deg.copy()
-    angles[ix] = form.partners_deg[ix]
-    return form.changed(angles)
+    return [Repair(said, cell, form, 5)]
 
 
 def shared_repairs(form: KeyForm) -> Iterator[Repair]:
@@ -173,6 +165,8 @@ def _swung(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
 
 def _steps(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
     """Make a first walk: from the robot's own stand, swing and lift half of the feet at a time."""
-    flat = KeyForm(form.robot, np.repeat(form.start_deg[None], form.postures, axis=0), form.goal, form.digit)
+    flat = KeyForm(
+        form.robot, np.repeat(form.start_deg[None], form.postures, axis=0), form.goal, form.digit
+    )
     for one in _swung(flat, said, cell):
         yield from _lifted(one.form, said, cell, 5)
