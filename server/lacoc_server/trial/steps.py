@@ -28,11 +28,11 @@ class Steps:
     lift_m: list[list[float]]
     """For each leg and posture, how high the foot is above the lowest foot of this posture."""
     reaches: list[list[bool]]
-    """For each leg and posture, whether its shank, which is thick, comes as low as the body. If it does
-    not, the body lies on the floor before this foot touches it."""
+    """For each leg and posture, whether its thick shank comes as low as the body. If not, the body
+    lies on the floor before this foot touches it."""
     stands: list[bool]
-    """For each posture, whether at least half of the feet reach the floor together, and the middle of
-    the body is about above them."""
+    """For each posture, whether at least half of the feet reach the floor together, and the middle
+    of the body is about above them."""
 
     @property
     def carries(self) -> list[list[bool]]:

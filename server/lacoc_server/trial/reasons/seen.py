@@ -10,7 +10,6 @@ from lacoc_server.trial.walk import Walk
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.words import Phrase
 
-
 _MOSTLY = 0.5
 
 
