@@ -101,7 +101,8 @@ class KeyForm:
     @property
     def start_deg(self) -> Floats:
         """(3, legs) the angles in which the robot stands before a key."""
-        return np.degrees(np.array(self.robot.start_posture)).reshape(JOINTS_PER_LEG, self.legs)
+        start: Floats = np.degrees(np.array(self.robot.start_posture))
+        return start.reshape(JOINTS_PER_LEG, self.legs)
 
     @property
     def paired(self) -> tuple[int, ...]:
