@@ -166,10 +166,10 @@ def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sampl
         return codes([go, *made, tried(try_gait(table, "B1"), table, [1, 2, 3, 4])], 4)
 
     assert missing(own) == {"phases.answer"}
-    assert missing(start) == {"phases.more-numbers", "phases.farther"}
+    assert missing(start) == {"phases.more-numbers-or-tools", "phases.farther"}
     assert missing(turning) == {"phases.went-back", "phases.turns"}
     walk = tried(try_gait(own, "B1"), own, [1, 2, 3, 4])
-    assert codes([go, walk], 4) == {"phases.more-numbers", "phases.foreign"}
+    assert codes([go, walk], 4) == {"phases.more-numbers-or-tools", "phases.foreign"}
 
 
 def test_a_tool_helps_from_phase_4_on(try_gait: Tries, sample: Sample) -> None:
@@ -181,7 +181,10 @@ def test_a_tool_helps_from_phase_4_on(try_gait: Tries, sample: Sample) -> None:
     typed, made = edit(start, half), edit(half, own, "tool")
 
     assert codes([typed, WentToPhase(phase=4), made, walk], 4) == {"phases.answer"}
-    assert codes([WentToPhase(phase=4), made, walk], 4) == {"phases.more-numbers", "phases.foreign"}
+    assert codes([WentToPhase(phase=4), made, walk], 4) == {
+        "phases.more-numbers-or-tools",
+        "phases.foreign",
+    }
 
 
 def test_phase_5_needs_another_walk_a_word_and_a_vote(try_gait: Tries, sample: Sample) -> None:

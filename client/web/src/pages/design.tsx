@@ -43,7 +43,7 @@ export default function Design() {
   const { sheet, trials, showing, coach, files, robot, gateway, membership, people, group } =
     studio;
   const open = useSignal<"" | "files" | "settings" | "share">("");
-  const tab = useSignal<Tab>("trials");
+  const tab = useSignal<Tab>("phase");
   window.__studio = studio;
   const close = () => {
     open.value = "";
@@ -202,7 +202,7 @@ function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
       const key = event.key.toLowerCase();
       // A field other than the grid's has an undo of its own while something is typed there.
       const isField = (event.target as HTMLElement).matches(
-        "input:not(.cell-input):not([type=range]):not([data-kept])",
+        "input:not(.cell-input, [type=range], [type=checkbox], [type=radio], [data-kept])",
       );
       if (key === "enter") void trials.tryIt();
       else if (key === "s" && membership.name.peek()) {

@@ -140,11 +140,11 @@ class TrialWork:
         """Return the outcome of the best trial; for another question one new number is enough."""
         trials = own_trials(evidence, start)
         outcomes = [self._judged(one, again) for one in reversed(trials)]
-        lacks = (_one_more(1),) if again else (_more_numbers(self.numbers), _TRY)
+        lacks = (_one_more(1),) if again else (self._more_numbers(self.numbers), _TRY)
         return max(outcomes, key=lambda outcome: outcome.share, default=Outcome(0.0, lacks))
 
     def _judged(self, one: OwnTrial, again: bool) -> Outcome:
-        wanted, lacks = (1, _one_more) if again else (self.numbers, _more_numbers)
+        wanted, lacks = (1, _one_more) if again else (self.numbers, self._more_numbers)
         own = one.typed + (one.made if self.tools else 0)
         foreign = Bound(
             lambda facts: one.foreign,
@@ -153,6 +153,11 @@ class TrialWork:
         )
         bounds = [bound.look(one.tried.facts) for bound in (foreign, *self.bounds)]
         return every([counted(own, wanted, lacks), *bounds])
+
+    def _more_numbers(self, left: int) -> Phrase:
+        if not self.tools:
+            return _more_numbers(left)
+        return say("phases.more-numbers-or-tools", left=left, least_deg=NUMBER_DEG)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import { Result } from "./trials/result";
 import "./side.css";
 
 const TABS = ["trials", "phase", "coach", "robot", "group"] as const;
+/** The chosen tab; where there is none of this name, the first one is shown. */
 export type Tab = (typeof TABS)[number];
 
 interface Props {
@@ -20,7 +21,7 @@ interface Props {
   onShare: () => void;
 }
 
-export function Side({ studio, tab, onShare }: Props) {
+export function Side({ studio, tab: chosen, onShare }: Props) {
   const { sheet, trials, showing, robot } = studio;
   const can = studio.can.value;
   const tabs = TABS.filter(
@@ -29,6 +30,7 @@ export function Side({ studio, tab, onShare }: Props) {
       (can.coach || name !== "coach") &&
       (studio.group.news.value || name !== "group"),
   );
+  const tab = tabs.includes(chosen.value) ? chosen.value : tabs[0]!;
   return (
     <aside class="side">
       <Result sheet={sheet} trials={trials} showing={showing} onShare={onShare} />
@@ -39,17 +41,18 @@ export function Side({ studio, tab, onShare }: Props) {
             id={`tab-${name}`}
             type="button"
             role="tab"
-            aria-selected={tab.value === name}
+            aria-selected={tab === name}
             aria-controls={`panel-${name}`}
-            tabIndex={tab.value === name ? 0 : -1}
+            tabIndex={tab === name ? 0 : -1}
             onClick={() => {
-              tab.value = name;
+              chosen.value = name;
             }}
             onKeyDown={(event) => {
               const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
               if (!by) return;
-              tab.value = tabs[(index + by + tabs.length) % tabs.length]!;
-              document.getElementById(`tab-${tab.value}`)?.focus();
+              const next = tabs[(index + by + tabs.length) % tabs.length]!;
+              chosen.value = next;
+              document.getElementById(`tab-${next}`)?.focus();
             }}
           >
             {t(`design.tab.${name}`)}
@@ -59,16 +62,16 @@ export function Side({ studio, tab, onShare }: Props) {
           </button>
         ))}
       </div>
-      <div
-        id={`panel-${tab.value}`}
-        role="tabpanel"
-        aria-labelledby={`tab-${tab.value}`}
-        class="panel"
-      >
-        {tab.value === "trials" && (
-          <TrialList trials={trials} showing={showing} version={sheet.version.value} />
+      <div id={`panel-${tab}`} role="tabpanel" aria-labelledby={`tab-${tab}`} class="panel">
+        {tab === "trials" && (
+          <TrialList
+            trials={trials}
+            robot={robot.robot.value}
+            showing={showing}
+            version={sheet.version.value}
+          />
         )}
-        {tab.value === "phase" && (
+        {tab === "phase" && (
           <PhasePanel
             learning={studio.learning}
             sheet={sheet}
@@ -78,12 +81,12 @@ export function Side({ studio, tab, onShare }: Props) {
             court={studio.court}
             files={studio.files}
             onVariants={() => {
-              tab.value = "coach";
+              chosen.value = "coach";
               void studio.coach.others.askVariants();
             }}
           />
         )}
-        {tab.value === "coach" && (
+        {tab === "coach" && (
           <CoachPanel
             coach={studio.coach}
             sheet={sheet}
@@ -92,8 +95,8 @@ export function Side({ studio, tab, onShare }: Props) {
             trials={trials}
           />
         )}
-        {tab.value === "group" && <GroupPanel group={studio.group} />}
-        {tab.value === "robot" && (
+        {tab === "group" && <GroupPanel group={studio.group} />}
+        {tab === "robot" && (
           <Robot robot={robot} numbers={studio.numbers} files={studio.files} can={can} />
         )}
       </div>

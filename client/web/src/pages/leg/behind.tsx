@@ -1,15 +1,19 @@
 /** The first leg from behind: its links, a right triangle at each, and its foot to drag. */
 
 import { useRef } from "preact/hooks";
-import { bent, type Leg, type SampleRobot, type Spot, spots } from "../../core/leg/leg";
+import { bent, cos, type Leg, type SampleRobot, type Spot, sin, spots } from "../../core/leg/leg";
 import { t } from "../../i18n";
-import { Arc, Label, Line, mm, RightAngle, textSize } from "./svg";
+import { Arc, Label, type LabelProps, Line, mm, RightAngle, textSize } from "./svg";
 
 /** A square of the area that the foot reaches [mm]. */
 const SQUARE_MM = 2;
 const EDGE_MM = 16;
 /** A side shorter than this has no number [mm]. */
 const SHORT_MM = 4;
+/** From the middle of a link to that of its name [mm]. */
+const BESIDE_MM = 11;
+/** From here on a text has room in an angle [deg]. */
+const ROOMY_DEG = 25;
 
 interface Props {
   robot: SampleRobot;
@@ -173,10 +177,13 @@ function Links({ leg, first, second, hasShank = true, isPale = false }: LinksPro
   );
 }
 
-/** The name of a link, on its middle. */
+/** The name of a link, beside its middle: above L₁, outside of L₂. */
 function LinkName({ name, from, to }: { name: string; from: Spot; to: Spot }) {
+  const [along, up] = [to.r - from.r, to.z - from.z];
+  const share = BESIDE_MM / Math.hypot(along, up);
+  const [x, y] = [(from.r + to.r) / 2 - share * up, (from.z + to.z) / 2 + share * along];
   return (
-    <Label x={(from.r + to.r) / 2} y={(from.z + to.z) / 2} kind="link-name">
+    <Label x={x} y={y} kind="link-name">
       {name}
     </Label>
   );
@@ -195,7 +202,7 @@ function First({ leg, first }: { leg: Leg; first: number }) {
       <RightAngle x={knee.r} y={0} u={-along} v={knee.z} />
       {first !== 0 && <Arc x={hip.r} y={0} radius={26} from={0} to={first} />}
       {Math.abs(along) > SHORT_MM && (
-        <Label x={hip.r + along / 2} y={8 * below}>
+        <Label x={hip.r + along / 2} y={10 * below}>
           {mm(Math.abs(along))}
         </Label>
       )}
@@ -205,12 +212,21 @@ function First({ leg, first }: { leg: Leg; first: number }) {
         </Label>
       )}
       {first !== 0 && (
-        <Label x={hip.r - 7} y={below * 13} kind="angle" anchor="end">
+        <Label {...firstNameAt(hip, first)} kind="angle">
           θ₁ {mm(first, 0)}°
         </Label>
       )}
     </g>
   );
+}
+
+/** Where the size of the first angle stands: in the angle, if there is room, or else beside it. */
+function firstNameAt(hip: Spot, first: number): Pick<LabelProps, "x" | "y" | "anchor"> {
+  if (Math.abs(first) < ROOMY_DEG) {
+    return { x: hip.r - 7, y: first >= 0 ? -13 : 13, anchor: "end" };
+  }
+  const half = first / 2;
+  return { x: hip.r + 32 * cos(half), y: 32 * sin(half), anchor: "start" };
 }
 
 /** The triangle that hangs from the knee: below it, and outward. */

@@ -17,7 +17,7 @@ export function textSize(width: number): string {
   return `font-size: ${(width / TEXTS).toFixed(1)}px`;
 }
 
-interface LabelProps {
+export interface LabelProps {
   x: number;
   y: number;
   anchor?: "start" | "middle" | "end";

@@ -250,6 +250,7 @@ export class Files {
     this.isAskedFor = true;
     batch(() => {
       this.sheet.put(step, table, null);
+      this.sheet.mirrors.value = false;
       this.file.value = { ...NO_FILE, saved: "" };
     });
   }

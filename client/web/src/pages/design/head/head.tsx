@@ -1,6 +1,6 @@
 /** The head of the page: the file, the task, and what lets the robot walk. */
 
-import { useComputed, useSignal, useSignalEffect } from "@preact/signals";
+import { useSignal, useSignalEffect } from "@preact/signals";
 import { type MessageName, t } from "../../../i18n";
 import { IconButton } from "../../../ui/icons";
 import { Kbd } from "../../../ui/kbd";
@@ -83,21 +83,28 @@ const ONE_LEG = 1;
 
 /** What to do next, in a sentence. */
 function Task({ sheet, trials, learning }: TaskProps & { learning: Learning | null }) {
-  const name = useComputed<MessageName>(() => {
+  const phases = learning?.phases.value;
+  const now = phases?.phases[phases.phase];
+  const next = now?.state === "met" ? phases?.phases[now.number + 1] : undefined;
+  const last = trials.all.value.at(-1);
+  const name = ((): MessageName => {
     if (sheet.bad.value.length) return "design.task.bad";
-    const phases = learning?.phases.value;
-    const now = phases?.phases[phases.phase];
     if (now?.asked) return "design.task.question";
+    if (next) return "design.task.next";
     if (now?.number === LESSON && now.state !== "met") return "design.task.lesson";
-    const last = trials.all.value.at(-1);
     const isStill = now?.number === ONE_LEG && now.state !== "met"; // there nothing walks yet
     if (!last && isStill) return "design.task.edit";
     if (!last) return sheet.history.value?.canUndo.value ? "design.task.try" : "design.task.edit";
-    return last.version === sheet.version.value ? "design.task.read" : "design.task.again";
-  }).value;
+    if (last.version !== sheet.version.value) return "design.task.again";
+    return last.trial.reply.explained.length ? "design.task.read" : "design.task.change";
+  })();
   return (
     <p class="task" role="status">
-      {t(name, { count: sheet.bad.value.length })}
+      {t(name, {
+        count: sheet.bad.value.length,
+        phase: now?.number ?? 0,
+        next: next?.number ?? 0,
+      })}
     </p>
   );
 }

@@ -1,5 +1,6 @@
 /** The history of trials; each belongs to a version of the table. */
 
+import type { RobotReply } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { classes } from "../names";
 import type { Showing } from "../walk/showing";
@@ -12,6 +13,8 @@ const [SPEED, DRIFT, STABLE] = TILES;
 
 interface ListProps {
   trials: Trials;
+  /** The robot that the next trial lets walk. */
+  robot: RobotReply | null;
   showing: Showing;
   /** The version of the table. */
   version: number;
@@ -29,14 +32,19 @@ export function TrialList(props: ListProps) {
   );
 }
 
-function TrialRow({ trials, showing, version, tried }: ListProps & { tried: Tried }) {
+/** Whether two robots are equal in all that their page shows. */
+function isSame(one: RobotReply, other: RobotReply | null): boolean {
+  const shown = (robot: RobotReply) => JSON.stringify([robot.facts, robot.shapes]);
+  return one === other || (other !== null && shown(one) === shown(other));
+}
+
+function TrialRow(props: ListProps & { tried: Tried }) {
+  const { trials, robot, showing, version, tried } = props;
   const isShown = showing.shown.value === tried;
   const isOther = showing.other.value === tried;
   const isCurrent = tried.version === version;
   const { figures } = tried.trial.reply;
-  const before = trials.all.value.findLast(
-    (one) => one.number < tried.number && one.key === tried.key,
-  );
+  const before = trials.before(tried);
   const by = before && difference(SPEED!, before.trial.reply.figures, figures);
   const name = t("design.trialOf", { number: tried.number, key: tried.key });
   return (
@@ -62,7 +70,9 @@ function TrialRow({ trials, showing, version, tried }: ListProps & { tried: Trie
       </button>
       <span class="acts">
         {isCurrent ? (
-          <span class="badge">{t("design.thisTable")}</span>
+          <span class="badge">
+            {t(isSame(tried.robot, robot) ? "design.thisTable" : "design.otherRobot")}
+          </span>
         ) : (
           <button
             class="button quiet small"

@@ -23,7 +23,7 @@ interface ResultProps {
 export function Result({ sheet, trials, showing, onShare }: ResultProps) {
   const tried = showing.shown.value;
   const other = showing.other.value;
-  const before = other ?? trials.beforeShown();
+  const before = other ?? (tried && trials.before(tried));
   if (!tried) return <First onTry={() => void trials.tryIt()} />;
   const { figures, notes = [], fault } = tried.trial.reply;
   const isOld = !tried.name && tried.version !== sheet.version.value;

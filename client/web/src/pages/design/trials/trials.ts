@@ -168,6 +168,11 @@ export class Trials {
     return this.all.value.findLast((one) => !now || one.number < now.number) ?? null;
   }
 
+  /** The trial before another one in which the same key was pressed: what its figures are compared with. */
+  before({ number, key }: Tried): Tried | null {
+    return this.all.value.findLast((one) => one.number < number && one.key === key) ?? null;
+  }
+
   /** Put the table of a trial back, in one step. */
   restore(tried: Tried): void {
     const name = t("design.step.restore", { number: tried.number });
