@@ -113,11 +113,13 @@ class CourtStub:
         self,
         listen: str = "127.0.0.1:0",
         certificate: Pair | None = None,
+        court: str = "main",
         **restored: Any,
     ) -> None:
+        keys = KeySpace(court)
         token_hashes = restored.pop("token_hashes", HASHES)
         self.scales = Scales()
-        inbox = Inbox(KEYS, SEATS, self.scales, secrets.token_bytes, **restored)
+        inbox = Inbox(keys, SEATS, self.scales, secrets.token_bytes, **restored)
         opened(inbox, token_hashes)
         self._links = inbox.links
         self.beat = 0
@@ -126,7 +128,7 @@ class CourtStub:
         self.teams = TeamDesk()
         """Answers teams that ask where they play; no office has told it anything."""
         self.network = CourtNetwork(
-            KEYS,
+            keys,
             [listen],
             inbox,
             desk,

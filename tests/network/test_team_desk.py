@@ -1,7 +1,10 @@
 """The desk of a court for teams that ask where they play."""
 
+import time
+
 import pytest
 from court_stub import CourtStub
+from waiting import LIMIT_S
 
 from lacoc_client.play.asking import NotNow, Patience
 from lacoc_client.play.team_way import TeamWay
@@ -108,3 +111,33 @@ def test_who_gave_a_time_waits_no_longer(court: CourtStub) -> None:
         ),
     ):
         pass
+
+
+def test_a_team_asks_another_court_when_its_own_is_gone() -> None:
+    """A bot or a terminal with a link goes on when the court that it asked has been killed."""
+    ends_s = time.monotonic() + LIMIT_S
+    told = {seal.hash_token(TOKENS["Ants"], SALT): waits("Ants")}
+    there = Whereabouts(team="Ants", state="court", said=say("team.awaits-draw"), call="a call")
+    with CourtStub(court="south") as south:
+        with CourtStub(court="north") as north:
+            north.teams.tell(told)
+            south.teams.tell(told)
+            access = Access(
+                court="north",
+                connect=north.address,
+                others=(south.address,),
+                token=TOKENS["Ants"],
+            )
+            way = TeamWay(
+                access,
+                any_court=True,
+                patience=Patience(LIMIT_S),
+                tell=lambda _: None,
+                stopping=lambda: time.monotonic() > ends_s,
+            )
+        south.teams.tell(dict.fromkeys(told, there))
+        with way:
+            try:
+                assert way.next() == there
+            except KeyboardInterrupt:
+                pytest.fail("it still asks the court that is gone")

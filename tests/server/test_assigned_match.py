@@ -2,7 +2,7 @@
 
 import msgspec
 import pytest
-from stage import LEFT, QUICK, RIGHT, Stage, join, setup
+from stage import LEFT, QUICK, RIGHT, Stage, decide, join, setup
 
 from lacoc_server.court import unjudged
 from lacoc_server.court.assigning import staying
@@ -10,7 +10,7 @@ from lacoc_server.match.match import Match
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.contest.tokens import new_token_hash
-from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.inputs import THE_COURT, JoinSeat
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import WAITING, Assigned, AssignedSeat
 from lacoc_shared.record.schema import Setup
@@ -105,6 +105,25 @@ def test_a_match_without_a_referee_waits_after_its_result() -> None:
     assert stage.phase is Phase.OFFICIAL
     stage.run(1000)
     assert unjudged.decisions(stage.match, list) == []
+
+
+def test_a_halt_by_a_referee_lasts_until_a_referee_resumes() -> None:
+    """A court without a referee ends its own halts by itself, but not that of a person."""
+    stage = stage_of(assigned(), start="ready").to_playing()
+    stage.until(Phase.PLAYING)
+
+    def play_for(beats: int) -> Phase:
+        for _ in range(beats):
+            stage.beat(*unjudged.decisions(stage.match, lambda: [True, True]))
+        return stage.phase
+
+    stage.beat(decide(d.Halt(), by=THE_COURT))
+    assert stage.phase is Phase.HALTED
+    assert play_for(500) is Phase.PLAYING
+    stage.decide(d.Halt())
+    assert play_for(500) is Phase.HALTED
+    stage.decide(d.Resume())
+    assert play_for(500) is Phase.PLAYING
 
 
 def test_teams_that_play_on_keep_their_seats_with_the_new_files() -> None:

@@ -1,5 +1,6 @@
 """Tests of reasons and repairs: a table with one mistake, of which it is known where it is."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -9,6 +10,7 @@ from mistaken_tables import (
     GOOD,
     KEY,
     KINDS,
+    Mistaken,
     beginners,
     change_of,
     mistaken,
@@ -16,8 +18,9 @@ from mistaken_tables import (
     sequence_of,
     told,
 )
-from sample_walks import entry_of
+from sample_walks import course_of, entry_of
 
+from lacoc_server.studio.answers import try_gait
 from lacoc_server.studio.coach.coach import task_of
 from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.harm import harm, worse
@@ -25,6 +28,9 @@ from lacoc_server.studio.coach.trials import try_table
 from lacoc_server.trial.reasons.form import KeyForm
 from lacoc_server.trial.reasons.goal import Goal
 from lacoc_server.trial.reasons.likely import likely_mistake, weigh_repairs
+from lacoc_shared.gait.tables import Gait, Level, PostureTable
+from lacoc_shared.studio import Sentence
+from lacoc_shared.words import render
 
 BEGINNERS = list(beginners())
 
@@ -113,6 +119,113 @@ def test_beside_a_mistake_of_many_numbers_no_leg_is_advised(
     assert "opposed" not in found.codes or kind == "left Roots", found
 
 
+@pytest.mark.parametrize(
+    ("first_deg", "second_deg", "hangs"),
+    [(20, 40, False), (0, 80, False), (0, 90, False), (40, 40, True), (60, 40, True)],
+)
+def test_feet_that_stand_are_not_said_to_hang(first_deg: int, second_deg: int, hangs: bool) -> None:
+    """A shank reaches the floor with all of its thickness, also if its axis ends too high."""
+    posture = posture_of(first_deg, second_deg)
+    mistake = likely_mistake(form_of("hexapod", posture[None], Level.POSTURE))
+    assert (mistake is not None) == hangs
+
+
+def test_a_body_that_leans_onto_its_feet_is_not_said_to_hang() -> None:
+    """If feet stand in the trial, the table's few feet that reach the floor are no reason."""
+    posture = posture_of(44, -5)
+    lean_deg = (0, -25, 7, -12, 3, -4)
+    posture[1] += lean_deg
+    posture[2] -= lean_deg
+    trial = try_gait(course_of("hexapod"), level_a(posture), "A1", 3.0)
+    mistake = likely_mistake(form_of("hexapod", posture[None], Level.POSTURE))
+    assert mistake is not None
+    assert mistake.said.code == "explain.few-reach"
+    assert trial.figures.belly_share < 0.5
+    assert trial.figures.few_feet_share < 0.5
+    assert "few-reach" not in codes_of(trial.explained)
+
+
+@pytest.mark.parametrize(
+    ("rows", "wrong", "others"),
+    [
+        (slice(None), (), ()),
+        (LEFT, ("L,B", "L,F"), ("R,C",)),
+        (slice(3), ("R,C",), ("L,B", "L,F")),
+    ],
+)
+def test_feet_that_push_back_in_half_a_cycle_are_named(
+    rows: slice, wrong: tuple[str, ...], others: tuple[str, ...]
+) -> None:
+    """From one posture of level A to the next, the feet that push the body back are named first."""
+    half = GOOD["tripod"][1]()[:2]
+    if wrong:
+        half[:, 0, rows] *= -1
+    explained = try_gait(course_of("hexapod"), level_a(*half), "A1:1, A2", 1.5).explained
+    if not wrong:
+        assert "half-back" not in codes_of(explained)
+        return
+    said = explained[0].said
+    assert said.code == "explain.half-back"
+    assert (said.values["legs"], said.values["others"]) == (wrong, others)
+    assert explained[0].cell is not None
+    assert explained[0].cell.joint in [entry_of("hexapod").robot.labels.index(leg) for leg in wrong]
+    assert "row 1" in render(said)
+    assert "row 2" in render(said)
+
+
+@pytest.mark.parametrize("table", ["sample", "tripod"])
+def test_two_postures_with_the_same_feet_have_no_wrong_number(table: str) -> None:
+    """If the same feet carry in both postures, others are missing: nothing is to be changed."""
+    good = GOOD[table][1]()
+    found = told(Mistaken("hexapod", "rows", good[:2], set(), good), ("same-feet",))
+    assert found.named, found
+    assert not {"odd-row", "wrong-mirror", "swapped-rows", *ADVICE} & set(found.codes), found
+    repairs = weigh_repairs(form_of("hexapod", good[:2]))
+    assert [one.repair.form.angles_deg.tolist() for one in repairs] == [good[:2].tolist()]
+
+
+@pytest.mark.parametrize("name", ["sample", "tripod", "octopod"])
+@pytest.mark.parametrize("row", range(4))
+def test_a_missing_posture_is_named(name: str, row: int) -> None:
+    """Without one of four postures, the step in which it is left out is named first."""
+    robot, make = GOOD[name]
+    good = make()
+    found = told(Mistaken(robot, "missing", np.delete(good, row, axis=0), set(), good), ())
+    assert found.code == "missing-posture", found
+    one, other = (row - 1) % 3 + 1, row % 3 + 1
+    assert f"From posture {one} to posture {other} " in found.sentences[0], found
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_a_good_gait_misses_nothing(name: str) -> None:
+    """In a good gait no posture is said to be missing, and no joint jumps at the seam."""
+    robot, make = GOOD[name]
+    found = told(Mistaken(robot, "good", make(), set(), make()), ())
+    assert not {"missing-posture", "same-feet", "seam"} & set(found.codes), found
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "code", "cell"),
+    [
+        ("tripod", lambda t: np.add(t[:, 0], -30, out=t[:, 0]), "unstable", "L,B 1st"),
+        ("sample", lambda t: np.add(t[:, 1], 15, out=t[:, 1]), "belly", " 1st"),
+    ],
+)
+def test_a_figure_has_a_number_behind_it(table: str, change: Any, code: str, cell: str) -> None:
+    """A robot that loses balance, or rests on its body, has a number that can be changed."""
+    found = told(change_of(table, code, change), ())
+    assert cell in found.sentences[found.codes.index(code)], found
+
+
+def test_no_space_is_between_japanese_words() -> None:
+    """In Japanese sentences spaces are only beside Latin letters and digits."""
+    for one, _ in BEGINNERS:
+        mistake = likely_mistake(form_of(one.robot, one.table_deg))
+        assert mistake is not None
+        said = render(mistake.said, "ja")
+        assert not re.search(r"[^ -~] [^ -~]", said), said
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_most_mistakes_by_chance_are_found_in_the_table(kind: str) -> None:
     """In four of five tables or more, the mistake that is found has a wrong cell."""
@@ -164,6 +277,22 @@ def test_what_became_worse_is_known() -> None:
     assert harm(turning, slower, Goal.FORWARD, everything=False) >= 5
 
 
-def form_of(robot: str, table_deg: np.ndarray) -> KeyForm:
+def form_of(robot: str, table_deg: np.ndarray, level: Level = Level.LOCOMOTION) -> KeyForm:
     """Return the form of a table that should go forward."""
-    return KeyForm.of(entry_of(robot).robot, sequence_of(table_deg), Goal.FORWARD, KEY)
+    return KeyForm.of(entry_of(robot).robot, sequence_of(table_deg), Goal.FORWARD, KEY, level)
+
+
+def posture_of(first_deg: int, second_deg: int) -> np.ndarray:
+    """Return a posture of the hexapod in which all legs do the same, (3, legs)."""
+    return np.array([[angle] * 6 for angle in (0, first_deg, second_deg)], float)
+
+
+def level_a(*rows_deg: np.ndarray) -> Gait:
+    """Return a gait that has these postures at the keys 1, 2, ... of level A."""
+    postures = sequence_of(np.array(rows_deg))
+    return Gait(PostureTable(dict(enumerate(postures, 1))), None)
+
+
+def codes_of(explained: list[Sentence]) -> list[str]:
+    """Return the codes of the sentences that explain a walk."""
+    return [one.said.code.removeprefix("explain.") for one in explained]

@@ -29,6 +29,7 @@ from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render
 
 SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
 
@@ -249,6 +250,17 @@ def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> N
 
     assert "explain.walks" in codes(60.0)
     assert "explain.walks" not in codes(-60.0)
+
+
+def test_hardly_moving_has_the_figure_of_the_panel(sample: Walk) -> None:
+    """A robot that hardly moves is told with its forward speed, sign and decimal included."""
+    robot, gait = entry_of("hexapod").robot, entry_of("hexapod").gait
+    press = Press(SETTLE_TICKS, Level.LOCOMOTION, 2)
+    sequence = gait.sequence(Level.LOCOMOTION, 2)
+    assert sequence is not None
+    figures = replace(measure(sample), speed_mm_s=-3.3, lateral_mm_s=2.4)
+    said = [render(one.said) for one in explain(robot, sample, figures, press, sequence)]
+    assert "The robot hardly moves: -3.3 mm/s forward." in said
 
 
 def test_foot_bars() -> None:

@@ -39,18 +39,6 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
     return ask(session, keys, keys.where, Where(token=token), Whereabouts)
 
 
-def _court_at(session: Session, court: str, *, any_court: bool) -> str:
-    """Return the name of the court to ask.
-
-    Args:
-        session: a connection to the court.
-        court: the court's name.
-        any_court: whether nobody named the court, so that any court at this address will do.
-    """
-    there = [key.split("/")[1] for key in session.present(EVERY_COURT)] if any_court else []
-    return court if court in there else next(iter(there), court)
-
-
 class TeamWay:
     """Leads a team to its seat, and from court to court; used as a context manager.
 
@@ -75,6 +63,7 @@ class TeamWay:
         stopping: Callable[[], bool],
     ) -> None:
         self._access = access
+        self._any_court = any_court
         self._tell = tell
         self._stopping = stopping
         self._said: Phrase | None = None
@@ -84,7 +73,7 @@ class TeamWay:
             lambda: open_client(access.addresses, authority=access.authority)
         )
         try:
-            self._court = _court_at(self._session, access.court, any_court=any_court)
+            self._court = self._court_there(access.court)
             self._newest = self._first(patience)
         except BaseException:
             self._session.close()
@@ -160,7 +149,19 @@ class TeamWay:
                 self._rest(_SOON_S)
 
     def _ask(self) -> Whereabouts:
-        return where(self._session, self._court, self._access.token)
+        try:
+            return where(self._session, self._court, self._access.token)
+        except NoCourt:
+            # The connection may lead to another court of the event now; that one is asked next.
+            self._court = self._court_there(self._court)
+            raise
+
+    def _court_there(self, court: str) -> str:
+        """Return the name of the court to ask: another one that is there, if nobody named it."""
+        if not self._any_court:
+            return court
+        there = [key.split("/")[1] for key in self._session.present(EVERY_COURT)]
+        return court if court in there else next(iter(there), court)
 
     def _look(self) -> None:
         try:

@@ -78,6 +78,14 @@ def legality(match: MatchState) -> dict[str, Phrase | None]:
 
 def decide(match: MatchState, item: Decide) -> DecisionReply | Refusal:
     """Take a decision, or refuse it with the reason; a refused one changes nothing."""
+    before = match.phase
+    answer = _decide(match, item)
+    if before is not match.phase is Phase.HALTED:
+        match.halted_by = item.by
+    return answer
+
+
+def _decide(match: MatchState, item: Decide) -> DecisionReply | Refusal:
     rule, decision = _RULES[type(item.decision)], item.decision
     name = str(decision.__struct_config__.tag)
     if why := rule.why_not(match):

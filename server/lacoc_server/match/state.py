@@ -15,7 +15,7 @@ from lacoc_server.match.physics import Fault, MakePhysics, Physics
 from lacoc_server.match.seat import Seat
 from lacoc_server.match.staging import Staging
 from lacoc_shared import __version__
-from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.inputs import THE_COURT, JoinSeat
 from lacoc_shared.messages import PROTOCOL, Event, Sheet
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NOBODY, Phase
@@ -101,6 +101,8 @@ class MatchState:
         """
         self.next_wanted = False
         self.fault: Fault | None = None
+        self.halted_by = THE_COURT
+        """Whose decision halted the match last; `THE_COURT` for its own, and for a fault."""
         """The fault that stopped physics in the newest tick; None: none did."""
         self.staging = Staging(self.arena, make_physics)
         self.event_count = 0
@@ -255,6 +257,7 @@ class MatchState:
         """Enter a phase and log it; at the end of the match, also mark the result as changed."""
         assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
         before, self.phase, self.entered_beat = self.phase, phase, self.beats
+        self.halted_by = THE_COURT
         said = _ENTERED.get(phase) or say("event.finished", why=self.ended)
         self.tell("phase", said, before=before.name, after=phase.name, **data)
         if phase in _ENDED:

@@ -209,12 +209,18 @@ def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None =
     walk = course.walk(gait, presses, seconds)
     figures = measure(walk)
     sequence = gait.sequence(last.level, last.digit) or ()
+    before = (
+        presses[-2] if presses[1:] and presses[-2].level is Level.POSTURE is last.level else None
+    )
+    posture = gait.sequence(before.level, before.digit) if before else None
     notes = []
     if walk.fault is not None:
         notes.append(say("trial.fault", why=walk.fault))
     if not figures.cycles and last.level is Level.LOCOMOTION:
         notes.append(say("trial.no-cycle", seconds=figures.seconds))
-    return Trial(last, walk, figures, explain(course.robot, walk, figures, last, sequence), notes)
+    came = (before.digit, posture[-1]) if before and posture else None
+    explained = explain(course.robot, walk, figures, last, sequence, came)
+    return Trial(last, walk, figures, explained, notes)
 
 
 def _check_name(file: SentFile | None) -> None:

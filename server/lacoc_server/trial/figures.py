@@ -86,7 +86,7 @@ def measure(walk: Walk) -> Figures:
     before = max(0, span.first - 1)
     path_m = walk.body_w[before : span.end, :2]
     way_m = path_m[-1] - path_m[0] if len(path_m) else np.zeros(2)
-    yaws = np.unwrap([_yaw_rad(pose) for pose in walk.body_w[before : span.end]] or [0.0])
+    yaws = np.unwrap([yaw_rad(pose) for pose in walk.body_w[before : span.end]] or [0.0])
     ahead = np.array([-math.sin(yaws[0]), math.cos(yaws[0])])  # the body's forward is its +y
     forward_m, left_m = float(way_m @ ahead), float(way_m @ (-ahead[1], ahead[0]))
     way, path = float(np.hypot(*way_m)), float(np.hypot(*np.diff(path_m, axis=0).T).sum())
@@ -133,7 +133,7 @@ def measure(walk: Walk) -> Figures:
     )
 
 
-def _yaw_rad(pose: Floats) -> float:
+def yaw_rad(pose: Floats) -> float:
     """Return the heading of a body: 0 if it faces the world's +y, positive to the left."""
     w, x, y, z = pose[3:]
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

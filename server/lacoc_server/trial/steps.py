@@ -6,8 +6,15 @@ from dataclasses import dataclass
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.feet import mean_phase
 from lacoc_server.trial.support import margin_m
-from lacoc_shared.gait.tables import Posture
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
+LIFT_M = 0.004
+"""A foot that is less above the lowest foot stands on the floor, about [m]."""
+_TOUCHES_M = 0.001
+"""A shank that is higher than the body's underside by less than this touches the floor too."""
+_LEANS_M = 0.025
+"""A foot that is higher than the lowest one by more than this carries nothing: the body would have
+to lean too far."""
 _OUTSIDE_M = 0.03
 """A body whose middle is farther outside the feet that reach the floor than this falls on it."""
 
@@ -21,11 +28,16 @@ class Steps:
     lift_m: list[list[float]]
     """For each leg and posture, how high the foot is above the lowest foot of this posture."""
     reaches: list[list[bool]]
-    """For each leg and posture, whether its shank comes below the body. If it does not, the body
+    """For each leg and posture, whether its thick shank comes as low as the body. If not, the body
     lies on the floor before this foot touches it."""
     stands: list[bool]
-    """For each posture, whether at least half of the feet reach, and the middle of the body is
-    about above them."""
+    """For each posture, whether at least half of the feet reach the floor together, and the middle
+    of the body is about above them."""
+
+    @property
+    def carries(self) -> list[list[bool]]:
+        """For each posture and leg, whether the foot is about as low as the lowest one."""
+        return [[lift < LIFT_M for lift in feet] for feet in zip(*self.lift_m, strict=True)]
 
     @property
     def highest_m(self) -> list[float]:
@@ -71,16 +83,28 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     lowest_m = [min(tip.z for tip in feet) for feet in tips]
     legs = range(len(robot.legs))
     under_m = -robot.size_m[2] / 2
+    shanks = [robot.capsules(posture)[JOINTS_PER_LEG - 1 :: JOINTS_PER_LEG] for posture in sequence]
     reaches = [
-        [min(placed[leg][2].z, placed[leg][3].z) < under_m for placed in points] for leg in legs
+        [
+            min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m + _TOUCHES_M
+            for one in shanks
+        ]
+        for leg in legs
     ]
     return Steps(
         [[feet[leg].y for feet in tips] for leg in legs],
         [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],
         reaches,
         [
-            _stands([(feet[leg].x, feet[leg].y) for leg in legs if reaches[leg][index]], len(legs))
-            for index, feet in enumerate(tips)
+            _stands(
+                [
+                    (feet[leg].x, feet[leg].y)
+                    for leg in legs
+                    if reaches[leg][index] and feet[leg].z - low < _LEANS_M
+                ],
+                len(legs),
+            )
+            for index, (feet, low) in enumerate(zip(tips, lowest_m, strict=True))
         ],
     )
 

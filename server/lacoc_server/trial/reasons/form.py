@@ -99,6 +99,12 @@ class KeyForm:
         return self.postures // 2 if self.postures % 2 == 0 and is_mirrored(self.robot) else 0
 
     @property
+    def start_deg(self) -> Floats:
+        """(3, legs) the angles in which the robot stands before a key."""
+        start: Floats = np.degrees(np.array(self.robot.start_posture))
+        return start.reshape(JOINTS_PER_LEG, self.legs)
+
+    @property
     def paired(self) -> tuple[int, ...]:
         """The levels in which partners and mates do the same: in a turn the roots do not."""
         return (0, 1, 2) if self.goal is Goal.FORWARD else (1, 2)

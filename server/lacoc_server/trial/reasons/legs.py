@@ -5,6 +5,8 @@ import statistics
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+import numpy as np
+
 from lacoc_server.trial.reasons.form import TableCell
 from lacoc_server.trial.reasons.seen import SeenTrial, TrialFinding
 from lacoc_server.trial.steps import Steps, steps_of
@@ -15,6 +17,11 @@ _AT_LIMIT_DEG = 0.5
 SEAM_DEG, SEAM_RATIO = 12.0, 1.6
 """The seam is the step from the last posture to the first. A joint jumps there if its step is
 larger than its largest other step by `SEAM_DEG` degrees, and also by the factor `SEAM_RATIO`."""
+_MISSING = 1.5
+"""In a cycle with an odd number of postures one is probably missing where the joints turn this many
+times as far as in any other step."""
+_STANDS, _STEP_M = 0.9, 0.005
+"""A foot that is down for this share of the time pushes, if it moves this far [m]."""
 _LIFT_M = 0.008
 """Legs are checked for dragging only if the median leg lifts its foot higher than this [m]."""
 _DRAGGED = 0.35
@@ -65,6 +72,54 @@ def seam(seen: SeenTrial) -> Iterator[TrialFinding]:
         last = TableCell(postures - 1, level, leg)
         said = say("explain.seam", cell=form.name(last), jump_deg=seam_deg)
         yield TrialFinding(80, said, leg, last)
+
+
+def missing_posture(seen: SeenTrial) -> Iterator[TrialFinding]:
+    """Find the step in which a posture is left out, in a cycle with an odd number of postures."""
+    form = seen.form
+    if form.postures < 3 or form.postures % 2 == 0:
+        return
+    turns = np.abs(np.roll(form.angles_deg, -1, axis=0) - form.angles_deg)
+    ways = turns.sum(axis=(1, 2))
+    row, other_deg = int(ways.argmax()), float(np.sort(ways)[-2])
+    if ways[row] <= _MISSING * other_deg:
+        return
+    level, leg = np.unravel_index(int(turns[row].argmax()), turns[row].shape)
+    cell = TableCell(row, int(level), int(leg))
+    said = say(
+        "explain.missing-posture",
+        cell=form.name(cell),
+        one=row + 1,
+        other=(row + 1) % form.postures + 1,
+        times=float(ways[row]) / other_deg,
+    )
+    yield TrialFinding(79, said, cell=cell)
+
+
+def half_cycle(seen: SeenTrial) -> Iterator[TrialFinding]:
+    """Find standing feet that push the body back, from one posture of level A to the next."""
+    if seen.before is None:
+        return
+    digit, posture = seen.before
+    ahead_m = steps_of(seen.robot, (posture, *seen.form.sequence)).ahead_m
+    moves_m = {
+        leg: ahead[-1] - ahead[0]
+        for leg, (ahead, share) in enumerate(zip(ahead_m, seen.figures.duty, strict=True))
+        if share >= _STANDS
+    }
+    wrong = [leg for leg, move in moves_m.items() if move > _STEP_M]
+    if not wrong:
+        return
+    cell = TableCell(0, 0, max(wrong, key=lambda leg: moves_m[leg]))
+    said = say(
+        "explain.half-back",
+        cell=seen.form.name(cell),
+        before=digit,
+        row=seen.form.digit,
+        legs=[seen.walk.legs[leg] for leg in wrong],
+        others=[seen.walk.legs[leg] for leg, move in moves_m.items() if move < -_STEP_M],
+    )
+    yield TrialFinding(90, said, cell=cell)
 
 
 def odd_legs(seen: SeenTrial) -> Iterator[TrialFinding]:

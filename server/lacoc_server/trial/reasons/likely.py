@@ -7,7 +7,7 @@ import numpy as np
 from lacoc_server.trial.reasons.form import KeyForm
 from lacoc_server.trial.reasons.reach import reach_repairs
 from lacoc_server.trial.reasons.repairs import Repair, partner_repairs
-from lacoc_server.trial.reasons.shared import shared_repairs
+from lacoc_server.trial.reasons.shared import same_feet_repairs, shared_repairs
 
 _THRUST_DEG = 60.0
 """What the largest thrust of all repaired tables is worth, on the scale of oddness."""
@@ -33,10 +33,10 @@ class Weighed(NamedTuple):
 
 def weigh_repairs(form: KeyForm) -> list[Weighed]:
     """Return the repairs of a table that are worth trying, the most probable first."""
-    lowered = reach_repairs(form)
-    if lowered:
-        # While the feet are in the air, nothing else that they do can be seen.
-        return [Weighed(_THRUST_DEG - one.rare, one, is_sure=True) for one in lowered]
+    # While feet are in the air for ever, nothing else that they do can be seen.
+    whole = reach_repairs(form) or same_feet_repairs(form)
+    if whole:
+        return [Weighed(_THRUST_DEG - one.rare, one, is_sure=True) for one in whole]
     now = _strange_deg(form)
     parts = [(_strange_deg(one.form), one) for one in partner_repairs(form)]
     parts.sort(key=lambda found: found[0] + found[1].rare)

@@ -25,7 +25,7 @@ def reach_repairs(form: KeyForm) -> list[Repair]:
     high = [leg for leg in range(form.legs) if leg not in low]
     if any(steps.stands) or len(low) >= form.legs // 2:
         return []
-    start = np.degrees(np.array(form.robot.start_posture)).reshape(form.angles_deg.shape[1:])
+    start = form.start_deg
     above = (form.angles_deg - start)[:, :, high]
     # The 1st lifts a foot most. If it comes down to a stand's angle, it is the 2nd.
     at = 1 if above[:, 1].min(axis=0).max() > SAME_DEG else 2

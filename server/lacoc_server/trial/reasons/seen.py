@@ -7,7 +7,10 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.reasons.form import KeyForm, TableCell
 from lacoc_server.trial.walk import Walk
+from lacoc_shared.gait.tables import Posture
 from lacoc_shared.words import Phrase
+
+_MOSTLY = 0.5
 
 
 class TrialFinding(NamedTuple):
@@ -30,10 +33,21 @@ class SeenTrial:
     figures: Figures
     form: KeyForm
     """The table of the measured key."""
+    before: tuple[int, Posture] | None = None
+    """Digit and posture [rad] of level A from which the robot came to one of level A."""
+
+    @property
+    def part(self) -> slice:
+        """The measured ticks."""
+        return slice(self.walk.span.first, self.walk.span.end)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the robot stands on its feet, and not on its body, for most of the time."""
+        return self.figures.few_feet_share < _MOSTLY and self.figures.belly_share < _MOSTLY
 
     @property
     def no_feet_share(self) -> float:
         """Share of the measured ticks in which no foot is down."""
-        span = self.walk.span
-        down = self.walk.down[span.first : span.end]
+        down = self.walk.down[self.part]
         return float((down.sum(axis=1) == 0).mean()) if len(down) else 0.0

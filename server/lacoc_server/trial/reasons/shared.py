@@ -6,7 +6,7 @@ import numpy as np
 
 from lacoc_server.trial.reasons.form import KeyForm, TableCell
 from lacoc_server.trial.reasons.repairs import Repair
-from lacoc_server.trial.steps import steps_of
+from lacoc_server.trial.steps import LIFT_M, steps_of
 from lacoc_server.trial.walk import Floats
 from lacoc_shared.gait.tables import LEVEL_NAMES
 from lacoc_shared.words import Phrase, say
@@ -14,13 +14,37 @@ from lacoc_shared.words import Phrase, say
 _SAME_DEG = 2.0
 _RADIANS = 2.0
 """Angles that are all smaller than this are probably in radians, which no table has."""
-_LIFT_M, _SWING_M = 0.004, 0.006
-"""A foot that is lifted less, or swings less, does not at all."""
+_SWING_M = 0.006
+"""A foot that swings less does not at all."""
 _STEP_DEG = 20.0
 """Root of a first step, forward and back."""
 _LIFTS_DEG = ((2, 40.0), (1, 25.0), (1, 40.0))
 """Ways to lift a foot: the joint's level, and by how much."""
 _AREA_M2 = 1e-4
+
+
+def same_feet_repairs(form: KeyForm) -> list[Repair]:
+    """List the repair of a table in which the same feet carry the robot in all postures.
+
+    What these feet push they push back again. Postures are missing, and no number is wrong: the
+    repair leaves the table as it is. A table of four postures or more has a half that could be the
+    mirror of the other, which is another mistake.
+    """
+    steps = steps_of(form.robot, form.sequence)
+    carries = steps.carries[0]
+    if form.postures < 2 or form.half > 1 or all(carries):
+        return []
+    if any(one != carries for one in steps.carries):
+        return []
+    legs = [leg for leg, carrying in enumerate(carries) if carrying]
+    swings_m = [max(steps.ahead_m[leg]) - min(steps.ahead_m[leg]) for leg in legs]
+    if max(swings_m) < _SWING_M:
+        return []
+    leg = legs[swings_m.index(max(swings_m))]
+    cell = TableCell(steps.swings_to(leg), 0, leg)
+    labels = [form.robot.labels[one] for one in legs]
+    said = say("explain.same-feet", cell=form.name(cell), legs=labels)
+    return [Repair(said, cell, form, 5)]
 
 
 def shared_repairs(form: KeyForm) -> Iterator[Repair]:
@@ -55,9 +79,9 @@ def shared_repairs(form: KeyForm) -> Iterator[Repair]:
         return
     thrust = np.array(form.thrust_m2)
     signs = list(_lift_signs(form))
-    if lift.max() < _LIFT_M and signs:
+    if lift.max() < LIFT_M and signs:
         yield from signs
-    elif lift.max() < _LIFT_M:
+    elif lift.max() < LIFT_M:
         folds = np.ptp(angles[:, 1:], axis=0).max() > _SAME_DEG * 3
         row, level, leg = np.unravel_index(
             int(np.abs(angles[:, 1:] - angles[:, 1:].min(axis=0)).argmax()), angles[:, 1:].shape
@@ -66,7 +90,7 @@ def shared_repairs(form: KeyForm) -> Iterator[Repair]:
         name = form.name(cell)
         said = say("explain.all-lifted", cell=name) if folds else say("explain.no-lift", cell=name)
         yield from _lifted(form, said, cell, 5)
-    elif np.abs(thrust).max() < _AREA_M2:
+    elif np.abs(thrust).max() < _AREA_M2 and any(steps.stands):
         cell = TableCell(at, 2, swings)
         said = say("explain.same-height", cell=form.name(cell), leg=form.robot.labels[swings])
         yield from _lifted(form, said, cell, 45)
@@ -78,7 +102,7 @@ def shared_repairs(form: KeyForm) -> Iterator[Repair]:
 def _lift_signs(form: KeyForm) -> Iterator[Repair]:
     """Give all numbers of the 1st or the 2nd joints the other sign, if that lifts the feet."""
     angles = form.angles_deg
-    start = np.degrees(np.array(form.robot.start_posture)).reshape(angles.shape[1:])
+    start = form.start_deg
     for level in (1, 2):
         mean = angles[:, level].mean(axis=0)
         stands_so = np.abs(mean + start[level]).sum() + 1 < np.abs(mean - start[level]).sum()
@@ -103,7 +127,7 @@ def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
     angles = form.angles_deg
     flipped = angles.copy()
     flipped[:, 0] *= -1
-    start = np.degrees(np.array(form.robot.start_posture)).reshape(angles.shape[1:])[0]
+    start = form.start_deg[0]
     mean = angles[:, 0].mean(axis=0)
     is_sign = np.abs(mean + start).sum() + 1 < np.abs(mean - start).sum()
     order = say("explain.backward-order", cell=form.name(cell))
@@ -141,7 +165,8 @@ def _swung(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
 
 def _steps(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
     """Make a first walk: from the robot's own stand, swing and lift half of the feet at a time."""
-    stand = np.degrees(np.array(form.robot.start_posture)).reshape(form.angles_deg.shape[1:])
-    flat = KeyForm(form.robot, np.repeat(stand[None], form.postures, axis=0), form.goal, form.digit)
+    flat = KeyForm(
+        form.robot, np.repeat(form.start_deg[None], form.postures, axis=0), form.goal, form.digit
+    )
     for one in _swung(flat, said, cell):
         yield from _lifted(one.form, said, cell, 5)

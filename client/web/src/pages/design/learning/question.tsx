@@ -43,14 +43,12 @@ export function Question({ learning, phase: { number, asked } }: Props) {
         role="status"
         class={classes("verdict", "phase-verdict", told && (told.right ? "right" : "wrong"))}
       >
-        {told && !asked && (
-          <>
-            {t(told.right ? "design.question.right" : "design.question.wrong", {
-              was: told.was.map(said).join(t("design.question.or")),
-            })}{" "}
-            {said(told.because)}
-          </>
-        )}
+        {told &&
+          !asked &&
+          t(told.right ? "design.question.right" : "design.question.wrong", {
+            was: told.was.map(said).join(t("design.question.or")),
+            because: said(told.because),
+          })}
       </p>
     </>
   );
